@@ -1,0 +1,112 @@
+//! The cascade: position P, velocity PI with feedforward.
+//!
+//! ```text
+//! v_cmd = v_ref + Kv (x_ref − x) + pulse          position loop, motor or load side
+//! e_v   = v_cmd − v_motor                         velocity loop, motor side
+//! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless that drives T further beyond the limit
+//! ```
+//!
+//! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the torque that is really
+//! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it further.
+
+use crate::units::{Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain};
+
+/// Gains of the cascade.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CascadeConfig {
+    /// Kv times the cycle time.
+    pub position_gain: PositionGain,
+    /// Kp.
+    pub velocity_gain: VelocityGain,
+    /// Ki times the cycle time.
+    pub integral_gain: VelocityGain,
+    /// Ja: inertia for acceleration feedforward.
+    pub acceleration_gain: AccelerationGain,
+    /// Limit of the commanded torque.
+    pub torque_limit: Torque,
+}
+
+/// What the cascade gets in one cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CascadeInput {
+    /// Setpoint − measurement.
+    pub error: PositionError,
+    /// Velocity setpoint with everything that is added to it.
+    pub velocity_setpoint: Velocity,
+    /// Acceleration of the setpoint.
+    pub acceleration: Acceleration,
+    /// Velocity of the motor.
+    pub motor_velocity: Velocity,
+    /// Torque added from friction feedforward.
+    pub friction: Torque,
+}
+
+/// Memory of the cascade.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CascadeState {
+    integral: Torque,
+}
+
+impl CascadeState {
+    /// The integral part of the torque.
+    #[must_use]
+    pub const fn integral(&self) -> Torque {
+        self.integral
+    }
+
+    /// One cycle: the torque within its limit, and whether the limit cut it.
+    pub fn step(&mut self, config: &CascadeConfig, input: &CascadeInput) -> (Torque, bool) {
+        let setpoint = input.velocity_setpoint.plus(config.position_gain.times(input.error));
+        let error = setpoint.minus(input.motor_velocity);
+        let integral = self.integral.plus(config.integral_gain.times(error)).limited(config.torque_limit);
+        let direct = config.velocity_gain.times(error);
+        let feedforward = config.acceleration_gain.times(input.acceleration).plus(input.friction);
+        let wanted = direct.plus(integral).plus(feedforward);
+        let torque = wanted.limited(config.torque_limit);
+        if !winds_up(wanted, torque, error) {
+            self.integral = integral;
+        }
+        (torque, torque != wanted)
+    }
+}
+
+fn winds_up(wanted: Torque, limited: Torque, error: Velocity) -> bool {
+    (wanted > limited && error > Velocity::ZERO) || (wanted < limited && error < Velocity::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fixed::types::I20F12;
+
+    fn config() -> CascadeConfig {
+        CascadeConfig {
+            velocity_gain: VelocityGain(I20F12::from_num(1000)),
+            integral_gain: VelocityGain(I20F12::from_num(100)),
+            torque_limit: Torque::from_micro_nm(50_000),
+            ..CascadeConfig::default()
+        }
+    }
+
+    fn input(velocity_setpoint: i32) -> CascadeInput {
+        CascadeInput { velocity_setpoint: Velocity(I20F12::from_num(velocity_setpoint)), ..CascadeInput::default() }
+    }
+
+    #[test]
+    fn the_integral_stands_still_at_the_limit_and_comes_back_at_once() {
+        let mut state = CascadeState::default();
+        for _ in 0..1000 {
+            assert_eq!(state.step(&config(), &input(200)), (Torque::from_micro_nm(50_000), true));
+        }
+        assert_eq!(state.integral(), Torque::ZERO);
+        let (torque, limited) = state.step(&config(), &input(-10));
+        assert!(torque < Torque::ZERO && !limited, "no stored torque to undo");
+    }
+
+    #[test]
+    fn below_the_limit_the_integral_takes_over() {
+        let mut state = CascadeState::default();
+        let torques: Vec<i32> = (0..5).map(|_| state.step(&config(), &input(10)).0.to_micro_nm_lossy()).collect();
+        assert_eq!(torques, [11_000, 12_000, 13_000, 14_000, 15_000]);
+    }
+}

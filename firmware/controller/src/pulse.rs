@@ -1,0 +1,125 @@
+//! The reversal unit: the compensation pulse of the paper.
+//!
+//! On a change of commanded direction, `Δn · exp(−t / T_comp)` is added to the speed setpoint, in the new direction, after an
+//! optional start delay. Source: "Influence of the gap and the friction on trajectory reproduction accuracy in a multiaxis
+//! machine with CNC", §4.2. The exponential is a geometric series: one multiplication a cycle by
+//! `decay = exp(−T_cycle / T_comp)`, computed on the host.
+
+use fixed::types::{I2F30, I20F12};
+
+use crate::direction::Direction;
+use crate::units::Velocity;
+
+/// Parameters of the pulse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PulseConfig {
+    /// Δn: height of the pulse; zero switches it off.
+    pub amplitude: Velocity,
+    /// exp(−T_cycle / T_comp), 0…1.
+    pub decay: I2F30,
+    /// Cycles from the reversal to the start of the pulse.
+    pub start_delay_cycles: u16,
+}
+
+/// Where the pulse stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PulseState {
+    /// No pulse.
+    #[default]
+    Idle,
+    /// A reversal was seen; so many cycles to go.
+    Waiting {
+        /// Cycles until the pulse starts.
+        cycles: u16,
+        /// Its direction.
+        direction: Direction,
+    },
+    /// The pulse decays. Kept as magnitude and direction: rounding down then ends it on both sides.
+    Active {
+        /// Its present height, never negative.
+        height: Velocity,
+        /// Its direction.
+        direction: Direction,
+    },
+}
+
+impl PulseState {
+    /// Advances by one cycle; gives what is added to the speed setpoint.
+    pub fn step(&mut self, config: &PulseConfig, reversal: Option<Direction>) -> Velocity {
+        if let Some(direction) = reversal {
+            *self = Self::Waiting { cycles: config.start_delay_cycles, direction };
+        }
+        match *self {
+            Self::Idle => Velocity::ZERO,
+            Self::Waiting { cycles: 0, direction } => self.emit(config, config.amplitude, direction),
+            Self::Waiting { cycles, direction } => {
+                *self = Self::Waiting { cycles: cycles.saturating_sub(1), direction };
+                Velocity::ZERO
+            }
+            Self::Active { height, direction } => self.emit(config, height, direction),
+        }
+    }
+
+    fn emit(&mut self, config: &PulseConfig, height: Velocity, direction: Direction) -> Velocity {
+        let next = Velocity(I20F12::saturating_from_num(height.0.wide_mul(config.decay)));
+        *self = if next == Velocity::ZERO { Self::Idle } else { Self::Active { height: next, direction } };
+        signed(height, direction)
+    }
+}
+
+fn signed(amplitude: Velocity, direction: Direction) -> Velocity {
+    match direction {
+        Direction::Positive => amplitude,
+        Direction::Negative => amplitude.reversed(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config(delay: u16) -> PulseConfig {
+        // T_comp = 20 cycles.
+        let decay = I2F30::from_num((-1.0_f64 / 20.0).exp());
+        PulseConfig { amplitude: Velocity(I20F12::from_num(100)), decay, start_delay_cycles: delay }
+    }
+
+    #[test]
+    fn the_pulse_is_the_papers_exponential_within_a_thousandth() {
+        let mut state = PulseState::default();
+        for cycle in 0..100_u32 {
+            let reversal = (cycle == 0).then_some(Direction::Negative);
+            let got: f64 = state.step(&config(0), reversal).0.to_num();
+            let wanted = -100.0 * (-f64::from(cycle) / 20.0).exp();
+            assert!((got - wanted).abs() < 0.005, "cycle {cycle}: {got} {wanted}");
+        }
+    }
+
+    #[test]
+    fn the_start_delay_is_counted_in_whole_cycles() {
+        let mut state = PulseState::default();
+        let heights: Vec<f64> = (0..5)
+            .map(|cycle| state.step(&config(3), (cycle == 0).then_some(Direction::Positive)).0.to_num())
+            .collect();
+        assert_eq!(&heights[..3], [0.0; 3]);
+        assert!((heights[3] - 100.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_second_reversal_starts_a_new_pulse() {
+        let mut state = PulseState::default();
+        state.step(&config(0), Some(Direction::Positive));
+        let second: f64 = state.step(&config(0), Some(Direction::Negative)).0.to_num();
+        assert!((second + 100.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_pulse_ends() {
+        let mut state = PulseState::default();
+        state.step(&config(0), Some(Direction::Negative));
+        for _ in 0..2000 {
+            state.step(&config(0), None);
+        }
+        assert_eq!(state, PulseState::Idle);
+    }
+}
