@@ -6,7 +6,7 @@
 
 use core::fmt;
 
-pub use canopen_rs::emcy::EmergencyMessage;
+pub use canopen_rs::emcy::{EmergencyMessage, ErrorRegister};
 pub use canopen_rs::nmt::{NmtCommand, NmtState};
 
 use embedded_can::{Frame, Id};
