@@ -2,12 +2,15 @@
 //!
 //! ```text
 //! v_cmd = v_ref + Kv (x_ref − x) + pulse          position loop, motor or load side
-//! e_v   = v_cmd − v_motor                         velocity loop, motor side
+//! v_f  += α (v_motor − v_f)                         velocity filter
+//! e_v   = v_cmd − v_f                               velocity loop, motor side
 //! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless that drives T further beyond the limit
 //! ```
 //!
 //! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the torque that is really
 //! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it further.
+
+use fixed::types::{I2F30, I20F12};
 
 use crate::units::{Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain};
 
@@ -22,6 +25,8 @@ pub struct CascadeConfig {
     pub integral_gain: VelocityGain,
     /// Ja: inertia for acceleration feedforward.
     pub acceleration_gain: AccelerationGain,
+    /// α: share of the new difference in the velocity filter; 1 switches it off.
+    pub velocity_filter: I2F30,
     /// Limit of the commanded torque.
     pub torque_limit: Torque,
 }
@@ -45,6 +50,7 @@ pub struct CascadeInput {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CascadeState {
     integral: Torque,
+    velocity: Velocity,
 }
 
 impl CascadeState {
@@ -57,7 +63,8 @@ impl CascadeState {
     /// One cycle: the torque within its limit, and whether the limit cut it.
     pub fn step(&mut self, config: &CascadeConfig, input: &CascadeInput) -> (Torque, bool) {
         let setpoint = input.velocity_setpoint.plus(config.position_gain.times(input.error));
-        let error = setpoint.minus(input.motor_velocity);
+        self.velocity = filtered(self.velocity, input.motor_velocity, config.velocity_filter);
+        let error = setpoint.minus(self.velocity);
         let integral = self.integral.plus(config.integral_gain.times(error)).limited(config.torque_limit);
         let direct = config.velocity_gain.times(error);
         let feedforward = config.acceleration_gain.times(input.acceleration).plus(input.friction);
@@ -70,6 +77,11 @@ impl CascadeState {
     }
 }
 
+fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
+    let step = new.minus(before).0.wide_mul(share);
+    before.plus(Velocity(I20F12::saturating_from_num(step)))
+}
+
 fn winds_up(wanted: Torque, limited: Torque, error: Velocity) -> bool {
     (wanted > limited && error > Velocity::ZERO) || (wanted < limited && error < Velocity::ZERO)
 }
@@ -77,13 +89,13 @@ fn winds_up(wanted: Torque, limited: Torque, error: Velocity) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fixed::types::I20F12;
 
     fn config() -> CascadeConfig {
         CascadeConfig {
             velocity_gain: VelocityGain(I20F12::from_num(1000)),
             integral_gain: VelocityGain(I20F12::from_num(100)),
             torque_limit: Torque::from_micro_nm(50_000),
+            velocity_filter: I2F30::ONE,
             ..CascadeConfig::default()
         }
     }

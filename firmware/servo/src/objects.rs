@@ -15,6 +15,7 @@ pub enum Parameter {
     VelocityGain,
     IntegralGain,
     AccelerationGain,
+    VelocityFilter,
     TorqueLimit,
     RatedTorque,
     WayWhole,
@@ -42,7 +43,7 @@ pub enum Parameter {
 }
 
 /// Number of parameters.
-pub const PARAMETERS: usize = 29;
+pub const PARAMETERS: usize = 30;
 
 /// A row of the dictionary that holds a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +86,8 @@ pub const TABLE: [Entry; PARAMETERS] = [
     entry((0x2100, 3), Parameter::VelocityGain, "velocity gain Kp", "uN m per (10 nm/cycle), 2^-12", POSITIVE, 0),
     entry((0x2100, 4), Parameter::IntegralGain, "integral gain Ki", "uN m per (10 nm/cycle) and cycle, 2^-12", POSITIVE, 0),
     entry((0x2100, 5), Parameter::AccelerationGain, "acceleration feedforward Ja", "uN m per (10 nm/cycle^2), 2^-8", POSITIVE, 0),
-    entry((0x2100, 6), Parameter::TorqueLimit, "torque limit", "uN m", (0, controller::filter::TORQUE_LIMIT_MICRO_NM), 0),
+    entry((0x2100, 6), Parameter::VelocityFilter, "velocity filter, share of the new value", "2^-30", (1, 1 << 30), 1 << 30),
+    entry((0x2100, 7), Parameter::TorqueLimit, "torque limit", "uN m", (0, controller::filter::TORQUE_LIMIT_MICRO_NM), 0),
     entry((0x6076, 0), Parameter::RatedTorque, "rated torque", "mN m", (1, i32::MAX), 1000),
     entry((0x2101, 1), Parameter::WayWhole, "way per motor increment, whole", "10 nm", (0, 65_535), 1),
     entry((0x2101, 2), Parameter::WayFraction, "way per motor increment, fraction", "10 nm, 2^-31", POSITIVE, 0),

@@ -115,6 +115,7 @@ impl ParameterSet {
             velocity_gain: VelocityGain(I20F12::from_bits(self.get(Parameter::VelocityGain))),
             integral_gain: VelocityGain(I20F12::from_bits(self.get(Parameter::IntegralGain))),
             acceleration_gain: AccelerationGain(I24F8::from_bits(self.get(Parameter::AccelerationGain))),
+            velocity_filter: I2F30::from_bits(self.get(Parameter::VelocityFilter)),
             torque_limit: Torque::from_micro_nm(self.get(Parameter::TorqueLimit)),
         }
     }

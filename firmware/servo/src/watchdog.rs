@@ -25,9 +25,7 @@ impl Watchdog {
     /// A cycle's setpoint; a fault when too many in a row were missing.
     pub fn setpoint(&mut self, miss: Option<Miss>, allowed: u16) -> Option<Fault> {
         self.setpoint_bridged = self.setpoint_misses > 0;
-        over(&mut self.setpoint_misses, miss, allowed).map(|miss| match miss {
-            Miss::Absent | Miss::Stale | Miss::Implausible | Miss::Malformed => Fault::SetpointMissing,
-        })
+        over(&mut self.setpoint_misses, miss, allowed).map(|_| Fault::SetpointMissing)
     }
 
     /// Whether the setpoint before this one was made up.

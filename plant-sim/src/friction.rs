@@ -1,0 +1,198 @@
+//! Friction at the table, as an exchangeable effect.
+//!
+//! Every law answers one question of the integrator: given the velocity that the table would have without friction, how large is the
+//! friction force over this sub-step? Laws with internal states advance them in the same call. Friction is positive against motion.
+//!
+//! - [`Coulomb`](Friction::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands exactly still while the other
+//!   forces stay below the breakaway force (Moreau's time stepping: friction is solved for, not looked up).
+//! - [`LuGre`](Friction::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż + Fv v` (Canudas de Wit, Olsson,
+//!   Åström, Lischinsky 1995, eq. 2 to 4).
+//! - [`MaxwellSlip`](Friction::MaxwellSlip): parallel elasto-slide elements, for hysteresis with non-local memory (Iwan 1966).
+
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v / vs)²)`, in newtons.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sliding {
+    /// Coulomb friction Fc.
+    pub coulomb_n: f64,
+    /// Breakaway friction Fs; equal to `coulomb_n` where there is no Stribeck fall.
+    pub static_n: f64,
+    /// Stribeck velocity vs.
+    pub stribeck_velocity_m_per_s: f64,
+    /// Viscous friction Fv.
+    pub viscous_n_s_per_m: f64,
+    /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and negative motion.
+    #[serde(default)]
+    pub coulomb_asymmetry: f64,
+    /// Relative difference of viscous friction by direction.
+    #[serde(default)]
+    pub viscous_asymmetry: f64,
+    /// Quadratic drag q v |v|.
+    #[serde(default)]
+    pub quadratic_drag_n_s2_per_m2: f64,
+}
+
+impl Sliding {
+    /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
+    #[must_use]
+    pub fn level_n(&self, v: f64) -> f64 {
+        let ratio = v / self.stribeck_velocity_m_per_s;
+        let fall = if self.static_n == self.coulomb_n { 0.0 } else { (self.static_n - self.coulomb_n) * (-ratio * ratio).exp() };
+        (self.coulomb_n + fall) * (1.0 + self.coulomb_asymmetry * sign(v))
+    }
+
+    /// Viscous coefficient at a velocity, quadratic drag included as `q |v|`.
+    #[must_use]
+    pub fn viscous_n_s_per_m(&self, v: f64) -> f64 {
+        self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v)) + self.quadratic_drag_n_s2_per_m2 * v.abs()
+    }
+}
+
+fn sign(v: f64) -> f64 {
+    if v == 0.0 { 0.0 } else { v.signum() }
+}
+
+/// Which friction law acts, with its own parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "law", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Law {
+    /// Coulomb and Stribeck with a rigid stick phase.
+    Coulomb,
+    /// LuGre.
+    LuGre {
+        /// Bristle stiffness σ0.
+        bristle_stiffness_n_per_m: f64,
+        /// Bristle damping σ1.
+        bristle_damping_n_s_per_m: f64,
+    },
+    /// Maxwell slip.
+    MaxwellSlip {
+        /// Stiffness of each element.
+        stiffness_n_per_m: Vec<f64>,
+        /// Share of the sliding level that each element slips at; the shares add up to one.
+        share: Vec<f64>,
+    },
+}
+
+/// A friction law with its state.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    sliding: Sliding,
+    law: Law,
+    deflection_m: Vec<f64>,
+}
+
+/// What the integrator asks: the table without friction, over one sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    /// Velocity at the begin of the sub-step.
+    pub velocity: f64,
+    /// Velocity that it would have at the end without friction.
+    pub free_velocity: f64,
+    /// Mass that resists (with the implicit part of the screw's damping), kg.
+    pub mass_kg: f64,
+    /// Length of the sub-step.
+    pub dt_s: f64,
+    /// Factor on the sliding level: warm-up and position dependence.
+    pub factor: f64,
+}
+
+impl Friction {
+    /// A law at rest, with relaxed bristles.
+    #[must_use]
+    pub fn new(sliding: Sliding, law: Law) -> Self {
+        let states = match &law {
+            Law::Coulomb => 0,
+            Law::LuGre { .. } => 1,
+            Law::MaxwellSlip { share, .. } => share.len(),
+        };
+        Self { sliding, law, deflection_m: vec![0.0; states] }
+    }
+
+    /// Velocity of the table at the end of the sub-step; advances the internal state.
+    pub fn advance(&mut self, table: Table) -> f64 {
+        let Self { sliding, law, deflection_m } = self;
+        match law {
+            Law::Coulomb => coulomb(sliding, table),
+            Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m } => {
+                let bristle = Bristle { stiffness: *bristle_stiffness_n_per_m, damping: *bristle_damping_n_s_per_m };
+                lugre(sliding, bristle, &mut deflection_m[0], table)
+            }
+            Law::MaxwellSlip { stiffness_n_per_m, share } => {
+                maxwell(sliding, stiffness_n_per_m, share, deflection_m, table)
+            }
+        }
+    }
+
+    /// Bristle deflection (or mean element deflection), m.
+    #[must_use]
+    pub fn deflection_m(&self) -> f64 {
+        self.deflection_m.iter().sum::<f64>() / self.deflection_m.len().max(1) as f64
+    }
+}
+
+/// Moreau: the friction that stops the table within the sub-step, if it is within the breakaway force; else the sliding level against
+/// motion, never past standstill.
+fn coulomb(sliding: &Sliding, table: Table) -> f64 {
+    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
+    let direction = if velocity == 0.0 { free_velocity } else { velocity };
+    let level = sliding.level_n(if velocity == 0.0 { sign(direction) * f64::MIN_POSITIVE } else { velocity }) * factor;
+    let viscous = sliding.viscous_n_s_per_m(direction);
+    let impulse = level * dt_s / mass_kg;
+    if free_velocity.abs() <= impulse {
+        return 0.0;
+    }
+    (free_velocity - free_velocity.signum() * impulse) / (1.0 + viscous * dt_s / mass_kg)
+}
+
+#[derive(Clone, Copy)]
+struct Bristle {
+    stiffness: f64,
+    damping: f64,
+}
+
+/// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the table with the part of the bristle force that is
+/// linear in its velocity taken implicitly, the other half of the bristle.
+fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 {
+    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
+    let rate = |v: f64| bristle.stiffness * v.abs() / (sliding.level_n(v) * factor);
+    *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
+    // Force σ0 z + σ1 (v − r z) + Fv v, trapezoidal in v.
+    let constant = (bristle.stiffness - bristle.damping * rate(velocity)) * *z;
+    let linear = bristle.damping + sliding.viscous_n_s_per_m(velocity);
+    let half = 0.5 * linear * dt_s / mass_kg;
+    let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
+    *z = relaxed(*z, next, rate(next), 0.5 * dt_s);
+    next
+}
+
+/// Solution of `ż = v − r z` after `dt` at constant `v` and `r`.
+fn relaxed(z: f64, v: f64, rate: f64, dt: f64) -> f64 {
+    let x = rate * dt;
+    let share = if x < 1e-6 { dt * (1.0 - 0.5 * x) } else { -(-x).exp_m1() / rate };
+    z + (v - rate * z) * share
+}
+
+fn maxwell(sliding: &Sliding, stiffness: &[f64], share: &[f64], deflection: &mut [f64], table: Table) -> f64 {
+    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
+    let level = sliding.level_n(velocity) * factor;
+    let mut force = 0.0;
+    let mut tangent = 0.0;
+    for ((k, share), z) in stiffness.iter().zip(share).zip(deflection.iter_mut()) {
+        let limit = share * level / k;
+        *z = (*z + 0.5 * velocity * dt_s).clamp(-limit, limit);
+        force += k * *z;
+        tangent += if z.abs() < limit { *k } else { 0.0 };
+    }
+    // The elastic tangent is taken implicitly: it is what makes the stick phase stiff.
+    let linear = 0.5 * tangent * dt_s + sliding.viscous_n_s_per_m(velocity);
+    let next = (free_velocity - force * dt_s / mass_kg) / (1.0 + linear * dt_s / mass_kg);
+    let level = sliding.level_n(next) * factor;
+    for ((k, share), z) in stiffness.iter().zip(share).zip(deflection.iter_mut()) {
+        let limit = share * level / k;
+        *z = (*z + 0.5 * next * dt_s).clamp(-limit, limit);
+    }
+    next
+}

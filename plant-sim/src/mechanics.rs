@@ -1,0 +1,109 @@
+//! Two masses on a ball screw, everything expressed at the table in SI units.
+//!
+//! ```text
+//! M1 ẍ1 = F − Fs − F_ripple(x1) − F_offset            motor, coupling, screw
+//! M2 ẍ2 = Fs − F_friction                             table
+//! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: only pushing where there is a gap, and damping only in contact
+//! ```
+//!
+//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken implicitly; second order
+//! where the forces are smooth. The number of sub-steps comes from the convergence test in `tests/convergence.rs`.
+
+use crate::friction::{Friction, Table};
+
+/// Inertia and screw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mechanics {
+    /// Motor, coupling and screw, seen at the table, kg.
+    pub motor_inertia_kg: f64,
+    /// Table, kg.
+    pub table_mass_kg: f64,
+    /// Screw stiffness K, N/m.
+    pub screw_stiffness_n_per_m: f64,
+    /// Screw damping C, N·s/m.
+    pub screw_damping_n_s_per_m: f64,
+    /// Backlash: width of the gap between screw and table, m.
+    pub backlash_m: f64,
+}
+
+/// Positions and velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Motor position at the table, m.
+    pub motor_m: f64,
+    /// Motor velocity, m/s.
+    pub motor_m_per_s: f64,
+    /// Table position, m.
+    pub table_m: f64,
+    /// Table velocity, m/s.
+    pub table_m_per_s: f64,
+}
+
+/// Forces of one sub-step that do not come from the screw or from friction at the table.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Drive {
+    /// Net force on the motor side, N.
+    pub motor_n: f64,
+    /// External force on the table, N.
+    pub table_n: f64,
+    /// Factor on the friction level at the table.
+    pub friction_factor: f64,
+}
+
+impl Mechanics {
+    /// Deflection of the screw beyond the gap, m.
+    #[must_use]
+    pub fn deflection_m(&self, motion: &Motion) -> f64 {
+        let wind_up = motion.motor_m - motion.table_m;
+        let half_gap = 0.5 * self.backlash_m;
+        wind_up - wind_up.clamp(-half_gap, half_gap)
+    }
+
+    /// One sub-step.
+    pub fn advance(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, dt_s: f64) {
+        motion.motor_m += 0.5 * dt_s * motion.motor_m_per_s;
+        motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
+        self.kick(motion, friction, drive, dt_s);
+        motion.motor_m += 0.5 * dt_s * motion.motor_m_per_s;
+        motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
+    }
+
+    fn kick(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, dt_s: f64) {
+        let deflection = self.deflection_m(motion);
+        let in_contact = self.backlash_m == 0.0 || deflection != 0.0;
+        let damping = if in_contact { self.screw_damping_n_s_per_m } else { 0.0 };
+        let before = *motion;
+        self.solve(motion, friction, drive, deflection, damping, dt_s);
+        if self.backlash_m > 0.0 && in_contact {
+            let relative = mean(before.motor_m_per_s, motion.motor_m_per_s) - mean(before.table_m_per_s, motion.table_m_per_s);
+            let force = self.screw_stiffness_n_per_m * deflection + damping * relative;
+            if force * deflection < 0.0 {
+                // A gap cannot pull: separate without force. (The friction state moves on by less than a sub-step's slip.)
+                *motion = before;
+                self.solve(motion, friction, drive, 0.0, 0.0, dt_s);
+            }
+        }
+    }
+
+    /// Velocities after the kick: damping trapezoidal, friction as its law says. Eliminating the motor leaves one equation for the table with an
+    /// effective mass and a free velocity.
+    fn solve(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, deflection: f64, damping: f64, dt_s: f64) {
+        let spring = self.screw_stiffness_n_per_m * deflection;
+        let half = 0.5 * damping * dt_s;
+        let (m1, m2) = (self.motor_inertia_kg, self.table_mass_kg);
+        let relative = motion.motor_m_per_s - motion.table_m_per_s;
+        // m1 v1' = p1 − half (v1' − v2'),  m2 v2' = p2 + half (v1' − v2') − friction
+        let p1 = m1 * motion.motor_m_per_s + dt_s * (drive.motor_n - spring) - half * relative;
+        let p2 = m2 * motion.table_m_per_s + dt_s * (spring + drive.table_n) + half * relative;
+        let mass = m2 + half * m1 / (m1 + half);
+        let free = (p2 + half * p1 / (m1 + half)) / mass;
+        let factor = drive.friction_factor;
+        let table = Table { velocity: motion.table_m_per_s, free_velocity: free, mass_kg: mass, dt_s, factor };
+        motion.table_m_per_s = friction.advance(table);
+        motion.motor_m_per_s = (p1 + half * motion.table_m_per_s) / (m1 + half);
+    }
+}
+
+fn mean(a: f64, b: f64) -> f64 {
+    0.5 * (a + b)
+}
