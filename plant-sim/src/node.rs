@@ -8,18 +8,17 @@
 //! `TorqueMissing` and stays there until the servo disables and enables it again.
 
 use protocol::cob::{AxisIds, FrameKind, NodeId};
-use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::{self, Decoded, EmergencyMessage, ErrorRegister, Feedback, NmtCommand, NmtState, Torque};
 use protocol::states::{Command, ControlWord};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 use protocol::weight::{LoadIncrements24, MotorIncrements};
-use protocol::{CanFrame, Fault, Message, SyncCounter};
+use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent, SyncTracker};
 
 use crate::axis::{Axis, AxisParameters};
 
 /// Cycles without a torque command of their own that the plant bridges with the last one.
 pub const TORQUE_MISSES_ALLOWED: u16 = 3;
-/// Wall-clock SYNC timeout of the plant, µs.
+/// Wall-clock SYNC timeout of the plant unless [`PlantNode::with_sync_timeout_us`] says otherwise, µs.
 pub const SYNC_TIMEOUT_US: u64 = 1_000_000;
 
 /// Motion of one cycle as it truly was, for instruments that look at the machine from outside (a ballbar).
@@ -45,6 +44,7 @@ pub struct PlantNode {
     newton_per_micro_nm: f64,
     nmt: NmtState,
     cycle: u32,
+    sync: SyncTracker,
     counter: Option<SyncCounter>,
     due: f64,
     staged: Option<f64>,
@@ -52,6 +52,7 @@ pub struct PlantNode {
     misses: u16,
     fault: Option<Fault>,
     last_sync_us: Option<u64>,
+    sync_timeout_us: u64,
 }
 
 impl PlantNode {
@@ -67,6 +68,7 @@ impl PlantNode {
             newton_per_micro_nm,
             nmt: NmtState::PreOperational,
             cycle: 0,
+            sync: SyncTracker::default(),
             counter: None,
             due: 0.0,
             staged: None,
@@ -74,7 +76,15 @@ impl PlantNode {
             misses: 0,
             fault: None,
             last_sync_us: None,
+            sync_timeout_us: SYNC_TIMEOUT_US,
         }
+    }
+
+    /// The same plant with another SYNC timeout.
+    #[must_use]
+    pub fn with_sync_timeout_us(mut self, timeout_us: u64) -> Self {
+        self.sync_timeout_us = timeout_us;
+        self
     }
 
     /// The boot-up message.
@@ -117,22 +127,23 @@ impl PlantNode {
     pub fn on_frame(&mut self, frame: &CanFrame, now_us: u64) -> Vec<CanFrame> {
         match message::decode(self.ids, frame) {
             Ok(Decoded::Message(message)) => self.on_message(message, now_us),
+            Ok(Decoded::Foreign) => Vec::new(),
             // A torque frame that cannot be decoded is one that did not come.
-            Ok(Decoded::Foreign) | Err(_) => Vec::new(),
+            Err(error) => self.on_lost(error.kind, now_us),
         }
     }
 
     /// Takes the token of a frame that the port knows to be lost.
     pub fn on_lost(&mut self, kind: FrameKind, now_us: u64) -> Vec<CanFrame> {
-        match (kind, self.counter) {
-            (FrameKind::Sync, Some(counter)) => self.on_sync(counter.next(), now_us),
-            _ => Vec::new(),
+        if kind != FrameKind::Sync || self.nmt != NmtState::Operational {
+            return Vec::new();
         }
+        self.sync.lost().map_or_else(Vec::new, |counter| self.on_sync(counter, now_us))
     }
 
     /// Lets time pass: notices that SYNC is gone.
     pub fn on_time(&mut self, now_us: u64) -> Vec<CanFrame> {
-        let gone = self.last_sync_us.is_some_and(|last| now_us.saturating_sub(last) > SYNC_TIMEOUT_US);
+        let gone = self.last_sync_us.is_some_and(|last| now_us.saturating_sub(last) > self.sync_timeout_us);
         if gone && self.enabled { self.latch(Fault::SyncMissing) } else { Vec::new() }
     }
 
@@ -162,7 +173,9 @@ impl PlantNode {
             NmtCommand::StopRemoteNode => self.disable(NmtState::Stopped),
             NmtCommand::EnterPreOperational => self.disable(NmtState::PreOperational),
             NmtCommand::ResetNode | NmtCommand::ResetCommunication => {
-                *self = Self::new(self.ids, self.axis.parameters().clone(), self.period_s, self.seed);
+                let timeout_us = self.sync_timeout_us;
+                *self = Self::new(self.ids, self.axis.parameters().clone(), self.period_s, self.seed)
+                    .with_sync_timeout_us(timeout_us);
                 return self.boot();
             }
         }
@@ -180,10 +193,9 @@ impl PlantNode {
         if self.nmt != NmtState::Operational {
             return Vec::new();
         }
-        match self.counter {
-            // A doubled SYNC, or one from the past.
-            Some(now) if counter == now || counter.cycles_since(now) > SYNC_OVERFLOW / 2 => Vec::new(),
-            _ => self.on_sync(counter, now_us),
+        match self.sync.take(counter) {
+            SyncEvent::Begin(counter) | SyncEvent::BeginStale(counter) => self.on_sync(counter, now_us),
+            SyncEvent::Doubled | SyncEvent::Late => Vec::new(),
         }
     }
 

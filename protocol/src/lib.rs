@@ -28,6 +28,7 @@ pub mod load;
 pub mod message;
 pub mod sdo;
 pub mod states;
+pub mod sync;
 pub mod table;
 pub mod weight;
 
@@ -36,3 +37,4 @@ pub use counter::SyncCounter;
 pub use fault::Fault;
 pub use frame::CanFrame;
 pub use message::{DecodeError, Message};
+pub use sync::{SyncEvent, SyncTracker};

@@ -47,7 +47,7 @@ use protocol::message::{self, Decoded, EmergencyMessage, Feedback, NmtCommand, N
 use protocol::states::{Command, ControlWord, StatusWord};
 use protocol::table::{HEARTBEAT_EVERY_CYCLES, STATUS_EVERY_CYCLES};
 use protocol::weight::{FollowingError24, TorqueMicroNm, TorquePerMille};
-use protocol::{CanFrame, Fault, Message, SyncCounter};
+use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent, SyncTracker};
 
 use drive::Drive;
 use encoders::{Encoders, Measured};
@@ -66,6 +66,7 @@ pub struct Servo {
     ids: AxisIds,
     nmt: NmtState,
     cycle: u32,
+    sync: SyncTracker,
     inbox: Inbox,
     encoders: Encoders,
     drive: Drive,
@@ -101,6 +102,7 @@ impl Servo {
             ids,
             nmt: NmtState::PreOperational,
             cycle: 0,
+            sync: SyncTracker::default(),
             inbox: Inbox::default(),
             encoders: Encoders::default(),
             drive: Drive::default(),
@@ -219,10 +221,14 @@ impl Servo {
         if self.nmt != NmtState::Operational {
             return;
         }
-        match self.inbox.counter() {
-            Some(now) if now == counter => self.watchdog.doubled(),
-            Some(now) if counter.cycles_since(now) > protocol::counter::SYNC_OVERFLOW / 2 => self.watchdog.stale(),
-            _ => self.begin(counter, now_us, out),
+        match self.sync.take(counter) {
+            SyncEvent::Begin(counter) => self.begin(counter, now_us, out),
+            SyncEvent::BeginStale(counter) => {
+                self.watchdog.stale();
+                self.begin(counter, now_us, out);
+            }
+            SyncEvent::Doubled => self.watchdog.doubled(),
+            SyncEvent::Late => self.watchdog.stale(),
         }
     }
 
@@ -287,10 +293,10 @@ impl Servo {
     fn miss(&mut self, kind: FrameKind, miss: Miss, now_us: u64, out: &mut Outbox) {
         match kind {
             FrameKind::Sync => {
-                if let Some(counter) = self.inbox.counter()
-                    && self.nmt == NmtState::Operational
+                if self.nmt == NmtState::Operational
+                    && let Some(counter) = self.sync.lost()
                 {
-                    self.begin(counter.next(), now_us, out);
+                    self.begin(counter, now_us, out);
                 }
             }
             FrameKind::Setpoint => self.inbox.miss_setpoint(miss),

@@ -1,0 +1,237 @@
+//! The workbench's end of the buses: one trait, in process or on CAN interfaces.
+
+use std::cell::RefCell;
+use std::io;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use bus::{BusLog, CanPort, InProcessBus};
+use plant_sim::node::Truth;
+use plant_sim::{Machine, PlantNode};
+use protocol::CanFrame;
+use protocol::cob::AxisIds;
+
+use crate::error::{Failure, Outcome};
+
+/// The buses of a machine, seen by the workbench.
+pub trait Link {
+    /// Number of buses.
+    fn buses(&self) -> usize;
+    /// Bus of an axis.
+    fn bus_of(&self, axis: usize) -> usize;
+    /// Sends a frame on a bus.
+    ///
+    /// # Errors
+    /// Where the interface does not take it.
+    fn send(&mut self, bus: usize, frame: CanFrame) -> Outcome<()>;
+    /// Waits for a frame on a bus; `None` after the timeout.
+    ///
+    /// # Errors
+    /// Where the interface is gone.
+    fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>>;
+    /// A cycle begins: time passes.
+    fn pass(&mut self, cycle: Duration);
+    /// What the axis truly does, where an instrument can see it; `None` over a cable.
+    fn truth(&self, axis: usize) -> Option<Truth>;
+    /// Starts logging all frames.
+    fn start_log(&mut self);
+    /// Ends logging; one log per bus.
+    fn take_logs(&mut self) -> Vec<BusLog>;
+}
+
+/// Node ids of axis `index`.
+///
+/// # Errors
+/// Beyond 16 axes.
+pub fn axis_ids(index: usize) -> Outcome<AxisIds> {
+    let ids = u8::try_from(index).ok().and_then(AxisIds::of_axis);
+    ids.ok_or_else(|| Failure::new("a machine has at most 16 axes"))
+}
+
+/// Servo and plant of every axis in this process, one bus per axis (or per named interface).
+pub struct InProcess {
+    buses: Vec<InProcessBus>,
+    bus_of: Vec<usize>,
+    plants: Vec<Rc<RefCell<PlantNode>>>,
+    servos: Vec<Rc<RefCell<servo::Servo>>>,
+}
+
+impl InProcess {
+    /// A machine on in-process buses. `run` tells the noise of one run from that of another.
+    ///
+    /// # Errors
+    /// Beyond 16 axes.
+    pub fn new(machine: &Machine, run: u64) -> Outcome<Self> {
+        let mut link = Self { buses: Vec::new(), bus_of: Vec::new(), plants: Vec::new(), servos: Vec::new() };
+        let mut names: Vec<Option<&str>> = Vec::new();
+        for (index, axis) in machine.axes.iter().enumerate() {
+            let shared = names.iter().position(|name| name.is_some() && *name == axis.interface.as_deref());
+            let bus = shared.unwrap_or_else(|| {
+                names.push(axis.interface.as_deref());
+                link.buses.push(InProcessBus::new());
+                link.buses.len() - 1
+            });
+            let ids = axis_ids(index)?;
+            let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, run, index));
+            let plant = Rc::new(RefCell::new(plant));
+            let servo = Rc::new(RefCell::new(servo::Servo::new(ids)));
+            link.buses[bus].add(Box::new(Rc::clone(&plant)));
+            link.buses[bus].add(Box::new(Rc::clone(&servo)));
+            link.plants.push(plant);
+            link.servos.push(servo);
+            link.bus_of.push(bus);
+        }
+        Ok(link)
+    }
+
+    /// The bus of an axis, for faults and dead nodes. Places: plant `2 a`, servo `2 a + 1` where each axis has its own bus (0 and 1 then).
+    pub fn bus_mut(&mut self, axis: usize) -> &mut InProcessBus {
+        &mut self.buses[self.bus_of[axis]]
+    }
+
+    /// The servo of an axis.
+    #[must_use]
+    pub fn servo(&self, axis: usize) -> Rc<RefCell<servo::Servo>> {
+        Rc::clone(&self.servos[axis])
+    }
+
+    /// The plant of an axis.
+    #[must_use]
+    pub fn plant(&self, axis: usize) -> Rc<RefCell<PlantNode>> {
+        Rc::clone(&self.plants[axis])
+    }
+}
+
+/// Seed of a plant's noise: the same for a plant process of its own, so that runs over vcan repeat those in process.
+#[must_use]
+pub fn plant_seed(machine_seed: u64, run: u64, axis: usize) -> u64 {
+    let axis = u64::try_from(axis).unwrap_or(u64::MAX);
+    machine_seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(run << 8).wrapping_add(axis)
+}
+
+impl Link for InProcess {
+    fn buses(&self) -> usize {
+        self.buses.len()
+    }
+
+    fn bus_of(&self, axis: usize) -> usize {
+        self.bus_of[axis]
+    }
+
+    fn send(&mut self, bus: usize, frame: CanFrame) -> Outcome<()> {
+        self.buses[bus].send(frame);
+        Ok(())
+    }
+
+    fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>> {
+        let us = u64::try_from(timeout.as_micros()).unwrap_or(u64::MAX);
+        Ok(self.buses[bus].receive(us))
+    }
+
+    fn pass(&mut self, cycle: Duration) {
+        let us = u64::try_from(cycle.as_micros()).unwrap_or(u64::MAX);
+        self.buses.iter_mut().for_each(|bus| bus.pass(us));
+    }
+
+    fn truth(&self, axis: usize) -> Option<Truth> {
+        Some(self.plants[axis].borrow().truth())
+    }
+
+    fn start_log(&mut self) {
+        for (index, bus) in self.buses.iter_mut().enumerate() {
+            bus.log(BusLog::new(&format!("can{index}")));
+        }
+    }
+
+    fn take_logs(&mut self) -> Vec<BusLog> {
+        self.buses.iter_mut().filter_map(InProcessBus::take_log).collect()
+    }
+}
+
+/// CAN interfaces of the kernel; the nodes run elsewhere.
+pub struct Interfaces {
+    ports: Vec<CanPort>,
+    names: Vec<String>,
+    bus_of: Vec<usize>,
+    logs: Vec<BusLog>,
+    logging: bool,
+    begun: Instant,
+}
+
+impl Interfaces {
+    /// Opens the interfaces of a machine: `default` for axes that name none of their own; several names separated by commas are given to the
+    /// axes in turn.
+    ///
+    /// # Errors
+    /// Where an interface cannot be opened.
+    pub fn open(machine: &Machine, default: &str) -> Outcome<Self> {
+        let defaults: Vec<&str> = default.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
+        if defaults.is_empty() {
+            return Err(Failure::new("--can needs the name of an interface, for example vcan0"));
+        }
+        let mut names: Vec<String> = Vec::new();
+        let mut bus_of = Vec::new();
+        for (index, axis) in machine.axes.iter().enumerate() {
+            let name = axis.interface.clone().unwrap_or_else(|| defaults[index % defaults.len()].to_owned());
+            let bus = names.iter().position(|known| *known == name).unwrap_or_else(|| {
+                names.push(name);
+                names.len() - 1
+            });
+            bus_of.push(bus);
+        }
+        let open = |name: &String| CanPort::open(name, &[]).map_err(|error| Failure::new(error.to_string()));
+        let ports = names.iter().map(open).collect::<Outcome<Vec<_>>>()?;
+        Ok(Self { ports, names, bus_of, logs: Vec::new(), logging: false, begun: Instant::now() })
+    }
+
+    fn note(&mut self, bus: usize, frame: &CanFrame) {
+        if self.logging {
+            let at_us = u64::try_from(self.begun.elapsed().as_micros()).unwrap_or(u64::MAX);
+            self.logs[bus].push(at_us, frame);
+        }
+    }
+
+    fn failed(&self, bus: usize, error: &io::Error) -> Failure {
+        Failure::new(format!("CAN interface {}: {error}", self.names[bus]))
+    }
+}
+
+impl Link for Interfaces {
+    fn buses(&self) -> usize {
+        self.ports.len()
+    }
+
+    fn bus_of(&self, axis: usize) -> usize {
+        self.bus_of[axis]
+    }
+
+    fn send(&mut self, bus: usize, frame: CanFrame) -> Outcome<()> {
+        self.ports[bus].send(&frame).map_err(|error| self.failed(bus, &error))?;
+        self.note(bus, &frame);
+        Ok(())
+    }
+
+    fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>> {
+        let received = self.ports[bus].receive(timeout).map_err(|error| self.failed(bus, &error))?;
+        if let Some(frame) = received {
+            self.note(bus, &frame);
+        }
+        Ok(received)
+    }
+
+    fn pass(&mut self, _cycle: Duration) {}
+
+    fn truth(&self, _axis: usize) -> Option<Truth> {
+        None
+    }
+
+    fn start_log(&mut self) {
+        self.logs = self.names.iter().map(|name| BusLog::new(name)).collect();
+        self.logging = true;
+    }
+
+    fn take_logs(&mut self) -> Vec<BusLog> {
+        self.logging = false;
+        std::mem::take(&mut self.logs)
+    }
+}
