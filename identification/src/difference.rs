@@ -1,0 +1,292 @@
+//! The difference of motor and load position: backlash, compliance and pitch error, where there is a load scale.
+//!
+//! Candidates: the play operator (a gap that the motor crosses before the load follows), wind-up by the transmitted force
+//! (`F − M1·a` over K), and a function periodic in position. Judged on held-out blocks like the force, but accepted only where the amplitude is
+//! beyond the encoders' counts.
+
+use std::f64::consts::TAU;
+
+use crate::kinematics::Kinematics;
+use crate::record::Dataset;
+use crate::regression::{Blocks, Fit, Gain};
+use crate::selection::Scored;
+
+/// Smallest share of the held-out variance.
+const SHARE: f64 = 0.10;
+/// Smallest share of what was there before any of these effects.
+const SHARE_OF_ALL: f64 = 0.01;
+/// Smallest amplitude, in counts of the coarser encoder.
+const FEWEST_COUNTS: f64 = 2.0;
+const T: f64 = 2.0;
+
+/// What the difference says.
+#[derive(Clone, Debug, Default)]
+pub struct Difference {
+    /// Accepted effects, in the order in which they were found.
+    pub found: Vec<&'static str>,
+    /// All candidates.
+    pub scored: Vec<Scored>,
+    /// Rms that the declared model leaves, µm (or µrad).
+    pub before_um: f64,
+    /// Rms that the extended model leaves.
+    pub after_um: f64,
+    /// Width of the gap, if one was found.
+    pub gap: Option<f64>,
+    /// Stiffness, if compliance was found or declared: effort per length.
+    pub stiffness: Option<f64>,
+    terms: Vec<Column>,
+    coefficients: Vec<f64>,
+    declared: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Column {
+    Constant,
+    WindUp,
+    Play { gap: f64 },
+    Pitch { k: f64 },
+}
+
+impl Column {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::WindUp => "compliance",
+            Self::Play { .. } => "backlash",
+            Self::Pitch { .. } => "pitch_error",
+        }
+    }
+
+    fn columns(self, motion: &Kinematics, position: &[f64]) -> Vec<Vec<f64>> {
+        match self {
+            Self::Constant => vec![vec![1.0; motion.len()]],
+            Self::WindUp => vec![motion.effort_lp.clone(), motion.filter.apply(&motion.acceleration)],
+            Self::Play { gap } => vec![play(position, gap)],
+            Self::Pitch { k } => {
+                let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
+                vec![wave(f64::cos), wave(f64::sin)]
+            }
+        }
+    }
+}
+
+/// What the motor is ahead of a load that follows over a gap: −gap/2…gap/2.
+#[must_use]
+pub fn play(position: &[f64], gap: f64) -> Vec<f64> {
+    let half = 0.5 * gap;
+    let mut load = position.first().copied().unwrap_or(0.0);
+    position
+        .iter()
+        .map(|x| {
+            load = load.max(x - half).min(x + half);
+            x - load
+        })
+        .collect()
+}
+
+struct Bench<'a> {
+    motion: &'a Kinematics,
+    position: &'a [f64],
+    target: &'a [f64],
+    mask: Vec<bool>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(motion: &'a Kinematics, position: &'a [f64], target: &'a [f64]) -> Self {
+        let mask = motion.moving.iter().zip(&motion.slow).map(|(moving, slow)| *moving || *slow).collect();
+        Self { motion, position, target, mask }
+    }
+
+    fn design(&self, terms: &[Column]) -> Vec<Vec<f64>> {
+        terms.iter().flat_map(|term| term.columns(self.motion, self.position)).collect()
+    }
+
+    fn fit(&self, terms: &[Column]) -> Fit {
+        let design = self.design(terms);
+        let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
+        Blocks::new(&columns, self.target, &self.mask, self.motion.period_s).cross_validate()
+    }
+
+    fn rms_um(&self, terms: &[Column], coefficients: &[f64]) -> f64 {
+        let design = self.design(terms);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for at in (0..self.target.len()).filter(|at| self.mask[*at]) {
+            let predicted: f64 = design.iter().zip(coefficients).map(|(column, c)| c * column[at]).sum();
+            sum += (self.target[at] - predicted).powi(2);
+            count += 1.0;
+        }
+        1.0e6 * (sum / f64::max(count, 1.0)).sqrt()
+    }
+}
+
+/// Judges the difference of a training record; `None` where there is no load scale.
+#[must_use]
+pub fn difference(dataset: &Dataset, motion: &Kinematics) -> Option<Difference> {
+    let target = motion.difference.as_deref()?;
+    let bench = Bench::new(motion, &dataset.train.position, target);
+    let mut terms = vec![Column::Constant];
+    if dataset.declared.iter().any(|name| name == "compliance") {
+        terms.push(Column::WindUp);
+    }
+    if dataset.declared.iter().any(|name| name == "backlash") {
+        terms.push(best_gap(&bench, &terms, dataset));
+    }
+    let declared_fit = bench.fit(&terms);
+    let all: f64 = declared_fit.held_out.iter().sum();
+    let mut outcome = Difference {
+        before_um: bench.rms_um(&terms, &declared_fit.coefficients),
+        declared: declared_fit.coefficients.clone(),
+        ..Difference::default()
+    };
+    for round in 0..3 {
+        let base = bench.fit(&terms);
+        let mut candidates: Vec<(Scored, Column, Fit)> = candidates(&bench, &terms, dataset, &base)
+            .into_iter()
+            .map(|column| judge(&bench, &terms, &base, all, column, dataset, round))
+            .collect();
+        candidates.sort_by(|a, b| b.0.gain.share.total_cmp(&a.0.gain.share));
+        let best = candidates.iter().position(|(scored, ..)| scored.accepted);
+        if let Some(best) = best {
+            terms.push(candidates[best].1);
+            outcome.found.push(candidates[best].1.name());
+        }
+        for (place, (mut scored, ..)) in candidates.into_iter().enumerate() {
+            scored.accepted = Some(place) == best;
+            outcome.scored.push(scored);
+        }
+        if best.is_none() {
+            break;
+        }
+    }
+    let fit = bench.fit(&terms);
+    outcome.after_um = bench.rms_um(&terms, &fit.coefficients);
+    outcome.gap = terms.iter().find_map(|term| match term {
+        Column::Play { gap } => Some(*gap),
+        Column::Constant | Column::WindUp | Column::Pitch { .. } => None,
+    });
+    outcome.stiffness = stiffness(&terms, &fit.coefficients);
+    outcome.coefficients = fit.coefficients;
+    outcome.terms = terms;
+    Some(outcome)
+}
+
+impl Difference {
+    /// Rms on another record: declared, extended; µm.
+    #[must_use]
+    pub fn on(&self, motion: &Kinematics, position: &[f64]) -> Option<(f64, f64)> {
+        let target = motion.difference.as_deref()?;
+        let bench = Bench::new(motion, position, target);
+        let declared: Vec<Column> = self.terms.iter().copied().filter(|term| !self.found.contains(&term.name())).collect();
+        Some((bench.rms_um(&declared, &self.declared), bench.rms_um(&self.terms, &self.coefficients)))
+    }
+}
+
+fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
+    let mut place = 0;
+    for term in terms {
+        match term {
+            Column::WindUp => return coefficients.get(place).filter(|c| **c > 0.0).map(|c| 1.0 / c),
+            Column::Constant | Column::Play { .. } => place += 1,
+            Column::Pitch { .. } => place += 2,
+        }
+    }
+    None
+}
+
+fn candidates(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset, base: &Fit) -> Vec<Column> {
+    let has = |name: &str| terms.iter().any(|term| term.name() == name) || dataset.declared.iter().any(|d| d == name);
+    let mut list = Vec::new();
+    if !has("compliance") {
+        list.push(Column::WindUp);
+    }
+    if !has("backlash") {
+        list.push(best_gap(bench, terms, dataset));
+    }
+    if !has("pitch_error") {
+        list.extend(best_pitch(bench, terms, base));
+    }
+    list
+}
+
+fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
+    let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
+    let sse = |gap: f64| bench.fit(&[terms, &[Column::Play { gap }]].concat()).sse;
+    let grid = crate::effects::geometric(counts, 1.0e-3_f64.max(100.0 * counts), 24);
+    let best = grid.into_iter().map(|gap| (sse(gap), gap)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(counts, |(_, gap)| gap);
+    let (mut gap, mut step, mut least) = (best, 0.15 * best, sse(best));
+    for _ in 0..8 {
+        let tries = [gap - step, gap + step].map(|gap| (sse(gap), gap));
+        match tries.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(sse, _)| *sse < least) {
+            Some((sse, better)) => (least, gap) = (sse, better),
+            None => step *= 0.5,
+        }
+    }
+    Column::Play { gap }
+}
+
+fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column> {
+    let (low, high) = bench.motion.span();
+    let step = 0.5 / (high - low);
+    let design = bench.design(terms);
+    let residual: Vec<(f64, f64)> = (0..bench.target.len())
+        .step_by(8)
+        .filter(|at| bench.mask[*at])
+        .map(|at| {
+            let predicted: f64 = design.iter().zip(&base.coefficients).map(|(column, c)| c * column[at]).sum();
+            (bench.position[at], bench.target[at] - predicted)
+        })
+        .collect();
+    let power = |k: f64| {
+        let (re, im) = residual.iter().fold((0.0, 0.0), |(re, im), (x, e)| {
+            let (sin, cos) = (TAU * k * x).sin_cos();
+            (re + cos * e, im + sin * e)
+        });
+        re.hypot(im)
+    };
+    let count = ((4000.0 * (high - low)) as usize).min(4000);
+    let waves = (8..count.max(9)).map(|i| step * i as f64);
+    let best = waves.map(|k| (power(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
+    fine.map(|k| (power(k), k)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| Column::Pitch { k })
+}
+
+fn judge(
+    bench: &Bench<'_>,
+    terms: &[Column],
+    base: &Fit,
+    all: f64,
+    column: Column,
+    dataset: &Dataset,
+    round: usize,
+) -> (Scored, Column, Fit) {
+    let fit = bench.fit(&[terms, &[column]].concat());
+    let gain = Gain::of(base, &fit);
+    let own = &fit.coefficients[base.coefficients.len()..];
+    let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
+    let total: f64 = base.held_out.iter().sum();
+    let (physical, parameter) = match column {
+        Column::Play { gap } => ((0.8..=1.2).contains(&own[0]) && gap >= counts, gap),
+        Column::WindUp => {
+            let motor_mass = -own[1] / own[0];
+            let inertia = crate::selection::declared_inertia(bench.motion);
+            (own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
+        }
+        Column::Pitch { k } => (own[0].hypot(own[1]) >= counts, k),
+        Column::Constant => (false, 0.0),
+    };
+    let removed_of_all = gain.share * total / all.max(f64::MIN_POSITIVE);
+    let accepted = physical && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
+    let scored = Scored { effect: column.name(), parameter, gain, physical, accepted, nameless: false, round };
+    (scored, column, fit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_load_waits_while_the_motor_crosses_the_gap() {
+        let path: Vec<f64> = [0.0, 1.0, 2.0, 3.0, 2.5, 2.0, 1.0, 0.0].to_vec();
+        assert_eq!(play(&path, 1.0), [0.0, 0.5, 0.5, 0.5, 0.0, -0.5, -0.5, -0.5]);
+    }
+}

@@ -1,0 +1,184 @@
+//! The library of effects: one file each, one list.
+//!
+//! An effect of the inverse model gives columns for the regression, at most one nonlinear parameter with its grid, and a test whether what
+//! was fitted is physical. Adding one touches its file and [`LIBRARY`].
+
+use crate::kinematics::Kinematics;
+use crate::record::{AxisKind, Dataset};
+
+pub mod coulomb;
+pub mod friction_drift;
+pub mod hum;
+pub mod inertia;
+pub mod offset;
+pub mod position_dependent_friction;
+pub mod quadratic_drag;
+pub mod spring;
+pub mod stribeck;
+pub mod torque_ripple;
+pub mod viscous;
+pub mod viscous_asymmetry;
+
+/// What an effect may need to know besides the motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting<'a> {
+    /// The axis.
+    pub dataset: &'a Dataset,
+    /// Residual of the present model, low-passed; empty where columns are made for prediction.
+    pub residual: &'a [f64],
+}
+
+/// What was fitted so far, for the physical test.
+#[derive(Clone, Copy, Debug)]
+pub struct Fitted<'a> {
+    /// Coefficients of this effect's columns.
+    pub own: &'a [f64],
+    /// Coulomb coefficient of the same fit.
+    pub coulomb: f64,
+    /// Viscous coefficient of the same fit.
+    pub viscous: f64,
+}
+
+/// A parameter for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// Name, with the effect's name in front where it has several.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Half width of its 95 % interval; `None` for nonlinear parameters.
+    pub half_width: Option<f64>,
+    /// Unit.
+    pub unit: String,
+}
+
+/// How an effect's parameters are named.
+pub struct Naming<'a> {
+    /// Nonlinear parameter.
+    pub parameter: f64,
+    /// Coefficients with the half widths of their intervals.
+    pub coefficients: &'a [(f64, f64)],
+    /// The axis.
+    pub dataset: &'a Dataset,
+}
+
+impl Naming<'_> {
+    /// Unit of effort divided (or multiplied) by something.
+    #[must_use]
+    pub fn effort_unit(&self, rest: &str) -> String {
+        format!("{}{rest}", self.dataset.effort.unit())
+    }
+
+    /// "m" or "rad".
+    #[must_use]
+    pub const fn length(&self) -> &'static str {
+        match self.dataset.kind {
+            AxisKind::Linear => "m",
+            AxisKind::Rotary => "rad",
+        }
+    }
+
+    /// A coefficient by place.
+    #[must_use]
+    pub fn coefficient(&self, name: &str, place: usize, unit: String) -> Named {
+        let (value, half_width) = self.coefficients.get(place).copied().unwrap_or((0.0, 0.0));
+        Named { name: name.into(), value, half_width: Some(half_width), unit }
+    }
+
+    /// The nonlinear parameter.
+    #[must_use]
+    pub fn nonlinear(&self, name: &str, value: f64, unit: String) -> Named {
+        Named { name: name.into(), value, half_width: None, unit }
+    }
+}
+
+/// An effect of the inverse model.
+pub trait Effect: Sync {
+    /// Name, as in the interface.
+    fn name(&self) -> &'static str;
+
+    /// The equation, for people.
+    fn equation(&self) -> &'static str;
+
+    /// Columns at a nonlinear parameter.
+    fn columns(&self, motion: &Kinematics, dataset: &Dataset, parameter: f64) -> Vec<Vec<f64>>;
+
+    /// Start values of the nonlinear parameter; one dummy value where there is none.
+    fn grid(&self, _motion: &Kinematics, _setting: &Setting<'_>) -> Vec<f64> {
+        vec![0.0]
+    }
+
+    /// First step of the refinement about a value; zero where there is nothing to refine.
+    fn refine_step(&self, _motion: &Kinematics, _parameter: f64) -> f64 {
+        0.0
+    }
+
+    /// Bounds of the nonlinear parameter.
+    fn bounds(&self, _motion: &Kinematics) -> (f64, f64) {
+        (f64::MIN_POSITIVE, f64::MAX)
+    }
+
+    /// Whether what was fitted can be this effect.
+    fn is_physical(&self, _fitted: &Fitted<'_>) -> bool {
+        true
+    }
+
+    /// Whether it may be found more than once (ripple orders).
+    fn repeats(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a structure without a name: it keeps named effects from absorbing it, and leads to `unexplained`.
+    fn is_nameless(&self) -> bool {
+        false
+    }
+
+    /// Its parameters for people.
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named>;
+}
+
+/// Every effect of the inverse model; the first four are the usual declared ones.
+pub static LIBRARY: [&dyn Effect; 12] = [
+    &inertia::Inertia,
+    &viscous::Viscous,
+    &coulomb::Coulomb,
+    &offset::Offset,
+    &viscous_asymmetry::ViscousAsymmetry,
+    &stribeck::Stribeck,
+    &torque_ripple::TorqueRipple,
+    &position_dependent_friction::PositionDependentFriction,
+    &friction_drift::FrictionDrift,
+    &quadratic_drag::QuadraticDrag,
+    &spring::Spring,
+    &hum::Hum,
+];
+
+/// Effects that are not columns of the inverse model: found by their own stage.
+pub const OTHERS: [&str; 7] =
+    ["coulomb_asymmetry", "presliding", "backlash", "compliance", "pitch_error", "torque_saturation", "delay"];
+
+/// The effect of a name, where it is one of the inverse model.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static dyn Effect> {
+    LIBRARY.into_iter().find(|effect| effect.name() == name)
+}
+
+/// Whether a name is a known effect.
+#[must_use]
+pub fn is_known(name: &str) -> bool {
+    OTHERS.contains(&name) || find(name).is_some_and(|effect| !effect.is_nameless())
+}
+
+/// All names that may be declared.
+#[must_use]
+pub fn known_names() -> Vec<&'static str> {
+    let named = LIBRARY.into_iter().filter(|effect| !effect.is_nameless()).map(Effect::name);
+    named.chain(OTHERS).collect()
+}
+
+/// `count` values from `low` to `high` with a constant ratio.
+#[must_use]
+pub fn geometric(low: f64, high: f64, count: u32) -> Vec<f64> {
+    let ratio = (high / low).powf(1.0 / f64::from(count.max(2) - 1));
+    (0..count).map(|i| low * ratio.powi(i32::try_from(i).unwrap_or(0))).collect()
+}

@@ -1,0 +1,25 @@
+//! Coulomb friction: force Fc·sign(v); at standstill, whatever holds.
+
+use super::{Effect, Kinematics, Named, Naming};
+use crate::record::Dataset;
+
+/// Fc·sign(v).
+pub struct Coulomb;
+
+impl Effect for Coulomb {
+    fn name(&self) -> &'static str {
+        "coulomb"
+    }
+
+    fn equation(&self) -> &'static str {
+        "Fc sign(v)"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.direction.clone()]
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.coefficient("coulomb", 0, naming.effort_unit(""))]
+    }
+}

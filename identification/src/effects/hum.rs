@@ -1,0 +1,67 @@
+//! A force periodic in time: no effect of the list (mains hum, a pump nearby), but it must not be absorbed by one.
+
+use std::f64::consts::TAU;
+
+use super::{Effect, Kinematics, Named, Naming, Setting};
+use crate::record::Dataset;
+
+/// a cos(2π f t) + b sin(2π f t).
+pub struct Hum;
+
+const SLOWEST_HZ: f64 = 0.2;
+const FASTEST_HZ: f64 = 60.0;
+/// Every so many samples are scanned.
+const STRIDE: usize = 8;
+
+impl Effect for Hum {
+    fn name(&self) -> &'static str {
+        "force over time"
+    }
+
+    fn equation(&self) -> &'static str {
+        "a cos(2 pi f t) + b sin(2 pi f t)"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, hz: f64) -> Vec<Vec<f64>> {
+        let angle = |t: &f64| TAU * hz * t;
+        let t = &motion.time_s;
+        vec![t.iter().map(|t| angle(t).cos()).collect(), t.iter().map(|t| angle(t).sin()).collect()]
+    }
+
+    fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
+        let step = 0.5 / motion.duration_s();
+        let fastest = FASTEST_HZ.min(0.4 / (motion.period_s * STRIDE as f64));
+        let count = ((fastest - SLOWEST_HZ) / step).clamp(0.0, 20_000.0) as usize;
+        let samples: Vec<(f64, f64)> = (0..motion.len())
+            .step_by(STRIDE)
+            .filter(|at| motion.moving[*at])
+            .map(|at| (motion.time_s[at], setting.residual.get(at).copied().unwrap_or(0.0)))
+            .collect();
+        let power = |hz: f64| {
+            let (re, im) = samples.iter().fold((0.0, 0.0), |(re, im), (t, e)| {
+                let (sin, cos) = (TAU * hz * t).sin_cos();
+                (re + cos * e, im + sin * e)
+            });
+            re.hypot(im)
+        };
+        let frequencies = (0..count).map(|i| SLOWEST_HZ + step * i as f64);
+        let best = frequencies.map(|hz| (power(hz), hz)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, hz)| hz);
+        (-3..=3).map(|i| best + step / 3.0 * f64::from(i)).collect()
+    }
+
+    fn refine_step(&self, motion: &Kinematics, _: f64) -> f64 {
+        0.1 / motion.duration_s()
+    }
+
+    fn repeats(&self) -> bool {
+        true
+    }
+
+    fn is_nameless(&self) -> bool {
+        true
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.nonlinear("force_over_time_frequency", naming.parameter, "Hz".into())]
+    }
+}

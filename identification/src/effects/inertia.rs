@@ -1,0 +1,26 @@
+//! Inertia: force M·a.
+
+use super::{Effect, Kinematics, Named, Naming};
+use crate::record::Dataset;
+
+/// M·a.
+pub struct Inertia;
+
+impl Effect for Inertia {
+    fn name(&self) -> &'static str {
+        "inertia"
+    }
+
+    fn equation(&self) -> &'static str {
+        "M a"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.acceleration.clone()]
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = naming.effort_unit(&format!(" s2/{}", naming.length()));
+        vec![naming.coefficient("inertia", 0, unit)]
+    }
+}

@@ -1,0 +1,30 @@
+//! Quadratic drag: `q v |v|`.
+
+use super::{Effect, Fitted, Kinematics, Named, Naming};
+use crate::record::Dataset;
+
+/// q·v·|v|.
+pub struct QuadraticDrag;
+
+impl Effect for QuadraticDrag {
+    fn name(&self) -> &'static str {
+        "quadratic_drag"
+    }
+
+    fn equation(&self) -> &'static str {
+        "q v |v|"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.velocity_lp.iter().map(|v| v * v.abs()).collect()]
+    }
+
+    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
+        fitted.own.first().is_some_and(|q| *q > 0.0) && fitted.viscous >= 0.0
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = naming.effort_unit(&format!(" s2/{}2", naming.length()));
+        vec![naming.coefficient("quadratic_drag", 0, unit)]
+    }
+}

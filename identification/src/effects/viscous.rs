@@ -1,0 +1,26 @@
+//! Viscous friction: force Fv·v.
+
+use super::{Effect, Kinematics, Named, Naming};
+use crate::record::Dataset;
+
+/// Fv·v.
+pub struct Viscous;
+
+impl Effect for Viscous {
+    fn name(&self) -> &'static str {
+        "viscous"
+    }
+
+    fn equation(&self) -> &'static str {
+        "Fv v"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.velocity.clone()]
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = naming.effort_unit(&format!(" s/{}", naming.length()));
+        vec![naming.coefficient("viscous", 0, unit)]
+    }
+}

@@ -1,0 +1,28 @@
+//! Viscous friction that differs by direction: `(Fv ± c) v`, that is a column `|v|`.
+//!
+//! Janot, Gautier and Brunot saw it on EMPS (2019) and blamed screw fatigue.
+
+use super::{Effect, Kinematics, Named, Naming};
+use crate::record::Dataset;
+
+/// c·|v|.
+pub struct ViscousAsymmetry;
+
+impl Effect for ViscousAsymmetry {
+    fn name(&self) -> &'static str {
+        "viscous_asymmetry"
+    }
+
+    fn equation(&self) -> &'static str {
+        "c |v|: Fv + c forwards, Fv - c backwards"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.velocity.iter().map(|v| v.abs()).collect()]
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = naming.effort_unit(&format!(" s/{}", naming.length()));
+        vec![naming.coefficient("viscous_asymmetry", 0, unit)]
+    }
+}

@@ -1,0 +1,507 @@
+//! Records: CSV with a header, SI units in the column names, and `dataset.toml` beside it.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::error::IdentificationError;
+
+type Outcome<T> = Result<T, IdentificationError>;
+
+/// Kind of axis: tells the units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AxisKind {
+    /// Metres.
+    #[default]
+    Linear,
+    /// Radians.
+    Rotary,
+}
+
+impl AxisKind {
+    /// Velocity above which a sample counts as moving: 1 mm/s or 0.1 rad/s.
+    #[must_use]
+    pub const fn moving_velocity(self) -> f64 {
+        match self {
+            Self::Linear => 1.0e-3,
+            Self::Rotary => 0.1,
+        }
+    }
+
+    /// Suffix of position columns.
+    #[must_use]
+    pub const fn position_unit(self) -> &'static str {
+        match self {
+            Self::Linear => "m",
+            Self::Rotary => "rad",
+        }
+    }
+}
+
+/// Which effort was recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// `force_n`.
+    Force,
+    /// `torque_nm`.
+    Torque,
+    /// `current_a`.
+    Current,
+}
+
+impl Effort {
+    const ALL: [Self; 3] = [Self::Force, Self::Torque, Self::Current];
+
+    /// Name of its column.
+    #[must_use]
+    pub const fn column(self) -> &'static str {
+        match self {
+            Self::Force => "force_n",
+            Self::Torque => "torque_nm",
+            Self::Current => "current_a",
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::Torque => "N m",
+            Self::Current => "A",
+        }
+    }
+}
+
+/// When the effort of a row acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EffortHold {
+    /// At the time of its row.
+    #[default]
+    Instant,
+    /// From the time of its row until that of the next.
+    ZeroOrder,
+}
+
+/// A record on a uniform time base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Time of the first row since the start of the record, s.
+    pub start_s: f64,
+    /// Sample period, s.
+    pub period_s: f64,
+    /// Motor position.
+    pub position: Vec<f64>,
+    /// Load position, if it was measured.
+    pub load: Option<Vec<f64>>,
+    /// Setpoint, if it was recorded.
+    pub reference: Option<Vec<f64>>,
+    /// Effort.
+    pub effort: Vec<f64>,
+    /// Time stamps of the rows as they stand in the file.
+    pub time_s: Vec<f64>,
+}
+
+impl Record {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there is nothing in it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// A part of the record; time goes on from the whole.
+    #[must_use]
+    pub fn part(&self, range: std::ops::Range<usize>) -> Self {
+        let cut = |values: &[f64]| values[range.clone()].to_vec();
+        Self {
+            start_s: self.start_s + self.period_s * range.start as f64,
+            period_s: self.period_s,
+            position: cut(&self.position),
+            load: self.load.as_deref().map(cut),
+            reference: self.reference.as_deref().map(cut),
+            effort: cut(&self.effort),
+            time_s: cut(&self.time_s),
+        }
+    }
+
+    /// The time stamp, with the uniform base where the part has been resampled.
+    #[must_use]
+    pub fn time_at(&self, row: usize) -> f64 {
+        self.time_s.get(row).copied().unwrap_or(self.start_s + self.period_s * row as f64)
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+struct DatasetForm {
+    name: Option<String>,
+    sample_period_s: Option<f64>,
+    #[serde(default)]
+    effort_hold: EffortHold,
+    effort_lag_s: Option<f64>,
+    axis: Option<AxisForm>,
+    declared: Option<DeclaredForm>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+struct AxisForm {
+    #[serde(default)]
+    kind: AxisKind,
+    lead_m_per_rev: Option<f64>,
+    encoder_resolution_m: Option<f64>,
+    encoder_resolution_rad: Option<f64>,
+    load_encoder_resolution_m: Option<f64>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+struct DeclaredForm {
+    #[serde(default)]
+    effects: Vec<String>,
+}
+
+/// A dataset: what is known of the axis, and its records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dataset {
+    /// Name.
+    pub name: String,
+    /// Kind of axis.
+    pub kind: AxisKind,
+    /// Which effort was recorded.
+    pub effort: Effort,
+    /// When the effort of a row acts.
+    pub hold: EffortHold,
+    /// Known first-order lag between the recorded and the acting effort, s.
+    pub effort_lag_s: f64,
+    /// Travel per motor revolution, where it is known, m.
+    pub lead_m_per_rev: Option<f64>,
+    /// Resolution of the motor encoder.
+    pub resolution: f64,
+    /// Resolution of the load scale.
+    pub load_resolution: f64,
+    /// Declared effects.
+    pub declared: Vec<String>,
+    /// Training record.
+    pub train: Record,
+    /// Validation record.
+    pub validate: Record,
+    /// Whether the validation record is the last part of the training record's file.
+    pub held_back: bool,
+}
+
+/// Share of the time that is kept for validation where there is no record of its own.
+pub const HELD_BACK: f64 = 0.3;
+/// Fewest rows of a training record: the filter's ends (2 × 200) and a few blocks.
+pub const FEWEST_ROWS: usize = 2000;
+
+impl Dataset {
+    /// Reads a dataset folder; `validate` and `declared` replace what the folder says.
+    ///
+    /// # Errors
+    /// What is wrong with which file, in one line.
+    pub fn read(folder: &Path, validate: Option<&Path>, declared: Option<Vec<String>>) -> Outcome<Self> {
+        if !folder.is_dir() {
+            return Err(IdentificationError::new(format!(
+                "{}: not a folder; a dataset is a folder with train.csv and dataset.toml",
+                folder.display()
+            )));
+        }
+        let form = read_form(&folder.join("dataset.toml"))?;
+        let axis = form.axis.clone().unwrap_or_default();
+        let (whole, effort) = read_csv(&folder.join("train.csv"), axis.kind, form.sample_period_s)?;
+        let beside = folder.join("validate.csv");
+        let other: Option<PathBuf> = validate.map(Path::to_path_buf).or_else(|| beside.is_file().then_some(beside));
+        let (train, validation, held_back) = match other {
+            Some(path) => {
+                let (validation, validation_effort) = read_csv(&path, axis.kind, form.sample_period_s)?;
+                check_pair(&path, &whole, effort, &validation, validation_effort)?;
+                (whole, validation, false)
+            }
+            None => {
+                let cut = whole.len() - (whole.len() as f64 * HELD_BACK).round() as usize;
+                (whole.part(0..cut), whole.part(cut..whole.len()), true)
+            }
+        };
+        for (what, record) in [("training", &train), ("validation", &validation)] {
+            check_motion(folder, what, record, axis.kind)?;
+        }
+        let resolution = match axis.kind {
+            AxisKind::Linear => axis.encoder_resolution_m,
+            AxisKind::Rotary => axis.encoder_resolution_rad,
+        };
+        Ok(Self {
+            name: form.name.unwrap_or_else(|| folder.display().to_string()),
+            kind: axis.kind,
+            effort,
+            hold: form.effort_hold,
+            effort_lag_s: form.effort_lag_s.unwrap_or(0.0),
+            lead_m_per_rev: axis.lead_m_per_rev,
+            resolution: resolution.unwrap_or_else(|| smallest_step(&train.position)),
+            load_resolution: axis
+                .load_encoder_resolution_m
+                .unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
+            declared: check_declared(folder, declared.or(form.declared.map(|declared| declared.effects)))?,
+            train,
+            validate: validation,
+            held_back,
+        })
+    }
+
+    /// The training record with the held-back part, where they are one file.
+    #[must_use]
+    pub fn whole(&self) -> Option<Record> {
+        self.held_back.then(|| {
+            let join = |a: &[f64], b: &[f64]| [a, b].concat();
+            let both = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| a.as_deref().zip(b.as_deref()).map(|(a, b)| join(a, b));
+            Record {
+                position: join(&self.train.position, &self.validate.position),
+                load: both(&self.train.load, &self.validate.load),
+                reference: both(&self.train.reference, &self.validate.reference),
+                effort: join(&self.train.effort, &self.validate.effort),
+                time_s: join(&self.train.time_s, &self.validate.time_s),
+                ..self.train.clone()
+            }
+        })
+    }
+}
+
+fn read_form(path: &Path) -> Outcome<DatasetForm> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| IdentificationError::new(format!("{}: {error}; a dataset needs this file", path.display())))?;
+    toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
+        IdentificationError::new(format!("{}:{line}: {}", path.display(), error.message()))
+    })
+}
+
+fn check_declared(folder: &Path, declared: Option<Vec<String>>) -> Outcome<Vec<String>> {
+    let declared = declared.unwrap_or_else(|| ["inertia", "viscous", "coulomb", "offset"].map(String::from).to_vec());
+    match declared.iter().find(|name| !crate::effects::is_known(name)) {
+        Some(name) => Err(IdentificationError::new(format!(
+            "{}: unknown declared effect \"{name}\"; known: {}",
+            folder.display(),
+            crate::effects::known_names().join(", ")
+        ))),
+        None if declared.is_empty() => {
+            Err(IdentificationError::new(format!("{}: no declared effects; give at least inertia", folder.display())))
+        }
+        None => Ok(declared),
+    }
+}
+
+struct Table {
+    path: String,
+    header: Vec<String>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Outcome<Self> {
+        let shown = path.display().to_string();
+        let failed = |error: csv::Error| IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"));
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(failed)?;
+        let header: Vec<String> = reader.headers().map_err(failed)?.iter().map(String::from).collect();
+        let mut columns = vec![Vec::new(); header.len()];
+        for row in reader.records() {
+            let row = row.map_err(failed)?;
+            let line = row.position().map_or(0, csv::Position::line);
+            for ((text, name), column) in row.iter().zip(&header).zip(&mut columns) {
+                let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+                column.push(value.ok_or_else(|| {
+                    IdentificationError::new(format!(
+                        "{shown}:{line}: column {name}: \"{text}\" is not a finite number; remove the row or fill the gap"
+                    ))
+                })?);
+            }
+        }
+        Ok(Self { path: shown, header, columns })
+    }
+
+    fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let place = self.header.iter().position(|known| known == name)?;
+        self.columns.get(place).cloned()
+    }
+
+    fn required(&self, name: &str) -> Outcome<Vec<f64>> {
+        self.column(name).ok_or_else(|| {
+            IdentificationError::new(format!("{}:1: no column {name}; the header has {}", self.path, self.header.join(", ")))
+        })
+    }
+
+    fn effort(&self) -> Outcome<(Vec<f64>, Effort)> {
+        let present: Vec<Effort> =
+            Effort::ALL.into_iter().filter(|effort| self.header.iter().any(|name| name == effort.column())).collect();
+        match present[..] {
+            [effort] => Ok((self.required(effort.column())?, effort)),
+            [] => Err(IdentificationError::new(format!(
+                "{}:1: no effort column; give force_n, torque_nm or current_a (the header has {})",
+                self.path,
+                self.header.join(", ")
+            ))),
+            _ => Err(IdentificationError::new(format!(
+                "{}:1: more than one effort column; keep one of force_n, torque_nm, current_a",
+                self.path
+            ))),
+        }
+    }
+}
+
+fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Record, Effort)> {
+    let table = Table::read(path)?;
+    let unit = kind.position_unit();
+    let time_s = table.required("time_s")?;
+    if time_s.len() < FEWEST_ROWS {
+        return Err(IdentificationError::new(format!(
+            "{}: {} rows; identification needs at least {FEWEST_ROWS}, record longer",
+            table.path,
+            time_s.len()
+        )));
+    }
+    check_time(&table.path, &time_s)?;
+    let (effort, which) = table.effort()?;
+    let raw = Record {
+        start_s: 0.0,
+        period_s: 0.0,
+        position: table.required(&format!("position_{unit}"))?,
+        load: table.column(&format!("load_position_{unit}")),
+        reference: table.column(&format!("reference_{unit}")),
+        effort,
+        time_s,
+    };
+    check_effort(&table.path, which, &raw)?;
+    Ok((uniform(raw, period_s), which))
+}
+
+fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
+    let back = time_s.windows(2).position(|pair| pair[1] <= pair[0]);
+    if let Some(row) = back {
+        return Err(IdentificationError::new(format!(
+            "{path}:{}: time_s does not increase ({} after {}); sort the rows or remove doubles",
+            row + 3,
+            time_s[row + 1],
+            time_s[row]
+        )));
+    }
+    let period = median_step(time_s);
+    let gap = time_s.windows(2).position(|pair| pair[1] - pair[0] > 50.0 * period);
+    match gap {
+        Some(row) => Err(IdentificationError::new(format!(
+            "{path}:{}: {:.3} s are missing (the median step is {period:.6} s); split the record there",
+            row + 3,
+            time_s[row + 1] - time_s[row]
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn check_effort(path: &str, which: Effort, record: &Record) -> Outcome<()> {
+    let (low, high) = range(&record.effort);
+    if high - low <= 0.0 {
+        return Err(IdentificationError::new(format!(
+            "{path}: column {} is constant ({low}); was the effort recorded?",
+            which.column()
+        )));
+    }
+    Ok(())
+}
+
+fn check_motion(folder: &Path, what: &str, record: &Record, kind: AxisKind) -> Outcome<()> {
+    let limit = kind.moving_velocity() * record.period_s * 5.0;
+    let moving = record.position.windows(6).filter(|w| (w[5] - w[0]).abs() > limit).count();
+    if moving * 20 < record.len() {
+        return Err(IdentificationError::new(format!(
+            "{}: the axis hardly moves in the {what} record ({moving} of {} rows above {} {}/s); record motion, or check the unit of the position",
+            folder.display(),
+            record.len(),
+            kind.moving_velocity(),
+            kind.position_unit()
+        )));
+    }
+    Ok(())
+}
+
+fn check_pair(path: &Path, train: &Record, effort: Effort, other: &Record, other_effort: Effort) -> Outcome<()> {
+    if effort != other_effort {
+        return Err(IdentificationError::new(format!(
+            "{}: effort is {}, the training record has {}; record both the same way",
+            path.display(),
+            other_effort.column(),
+            effort.column()
+        )));
+    }
+    if train.load.is_some() != other.load.is_some() {
+        return Err(IdentificationError::new(format!(
+            "{}: one record has a load position and the other has not; record both the same way",
+            path.display()
+        )));
+    }
+    let ratio = other.period_s / train.period_s;
+    if !(0.99..=1.01).contains(&ratio) {
+        return Err(IdentificationError::new(format!(
+            "{}: sample period {} s, the training record has {} s; record both at the same rate",
+            path.display(),
+            other.period_s,
+            train.period_s
+        )));
+    }
+    Ok(())
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
+fn median_step(time_s: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps[steps.len() / 2]
+}
+
+fn smallest_step(values: &[f64]) -> f64 {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    steps.fold(f64::INFINITY, f64::min).min(1.0e-6)
+}
+
+/// Brings a record with jittered time stamps onto a uniform base by linear interpolation; leaves a uniform one as it is.
+fn uniform(raw: Record, period_s: Option<f64>) -> Record {
+    let median = median_step(&raw.time_s);
+    let period_s = period_s.filter(|period| (period / median - 1.0).abs() < 0.2).unwrap_or(median);
+    let start = raw.time_s[0];
+    let even = raw.time_s.iter().enumerate().all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
+    if even {
+        return Record { start_s: start, period_s, ..raw };
+    }
+    let duration = raw.time_s[raw.time_s.len() - 1] - start;
+    let rows = (duration / period_s).floor() as usize + 1;
+    let at: Vec<f64> = (0..rows).map(|i| start + period_s * i as f64).collect();
+    let on_base = |values: &[f64]| interpolate(&raw.time_s, values, &at);
+    Record {
+        start_s: start,
+        period_s,
+        position: on_base(&raw.position),
+        load: raw.load.as_deref().map(on_base),
+        reference: raw.reference.as_deref().map(on_base),
+        effort: on_base(&raw.effort),
+        time_s: at,
+    }
+}
+
+fn interpolate(time_s: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+    let mut right = 1;
+    at.iter()
+        .map(|t| {
+            while right + 1 < time_s.len() && time_s[right] < *t {
+                right += 1;
+            }
+            let (t0, t1) = (time_s[right - 1], time_s[right]);
+            let share = ((t - t0) / (t1 - t0)).clamp(0.0, 1.0);
+            values[right - 1] + share * (values[right] - values[right - 1])
+        })
+        .collect()
+}
