@@ -139,6 +139,7 @@ pub fn wait_readable(descriptors: &[RawFd], timeout: Option<Duration>) -> io::Re
     });
     let limit = limit.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
     let count = libc::nfds_t::try_from(entries.len()).unwrap_or(0);
+    #[expect(unsafe_code, reason = "ppoll has no safe wrapper here")]
     // SAFETY: `entries` holds `count` valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long.
     let ready = unsafe { libc::ppoll(entries.as_mut_ptr(), count, limit, std::ptr::null()) };
     match ready {
