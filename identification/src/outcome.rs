@@ -453,3 +453,18 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
         moving: moving.collect(),
     }
 }
+
+/// Coulomb friction as the declared model alone sees it; for feedforward.
+///
+/// # Errors
+/// Where the declared model has no Coulomb friction, or the record leaves nothing to fit.
+pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
+    let motion = kinematics(dataset, &dataset.train)?;
+    let model = selection::declared_model(dataset);
+    let place = model.terms.iter().position(|term| term.effect.name() == "coulomb");
+    let fit = Bench { dataset, motion: &motion }.fit(&model);
+    // The declared effects in front of it have one column each.
+    place.and_then(|place| fit.coefficients.get(place).copied()).ok_or_else(|| {
+        IdentificationError::new(format!("{}: the declared model has no Coulomb friction", dataset.name))
+    })
+}

@@ -1,10 +1,24 @@
 //! The `quadrant` program as a library: what its commands do, without the command line.
+//!
+//! The workbench is NMT master, SYNC producer, SDO client and source of setpoints ([`master`]) on any bus ([`link`]); it moves machines ([`run`],
+//! [`trajectory`], [`excitation`]), records them ([`recording`]), looks at circles ([`ballbar`]), tunes ([`tune`]) and reports ([`report`], [`plots`]).
 
 pub mod ballbar;
+pub mod circle;
+pub mod cli;
+pub mod commission;
 pub mod compensation;
 pub mod drive;
 pub mod error;
+pub mod excitation;
+pub mod identify;
 pub mod link;
 pub mod master;
+pub mod nodes;
+pub mod plots;
+pub mod progress;
+pub mod recording;
+pub mod report;
 pub mod run;
 pub mod trajectory;
+pub mod tune;

@@ -52,6 +52,7 @@ use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent, SyncTracker};
 use drive::Drive;
 use encoders::{Encoders, Measured};
 use inbox::{Inbox, Miss, Taken};
+use objects::Parameter;
 use parameters::{ParameterSet, Settings};
 use sdo_server::{Effect, Readings, SdoServer};
 use stop::Stop;
@@ -78,6 +79,7 @@ pub struct Servo {
     server: SdoServer,
     watchdog: Watchdog,
     last: Last,
+    sync_timeout_us: i32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +116,17 @@ impl Servo {
             server: SdoServer::default(),
             watchdog: Watchdog::default(),
             last: Last::default(),
+            sync_timeout_us: DEFAULT_SYNC_TIMEOUT_US,
         }
+    }
+
+    /// The same node with another SYNC timeout after reset (object 2131h).
+    #[must_use]
+    pub fn with_sync_timeout_us(mut self, timeout_us: u32) -> Self {
+        self.sync_timeout_us = i32::try_from(timeout_us).unwrap_or(DEFAULT_SYNC_TIMEOUT_US);
+        self.server.stage(Parameter::SyncTimeout, self.sync_timeout_us);
+        self.active = self.server.staged_settings();
+        self
     }
 
     /// The boot-up message.
@@ -205,7 +217,8 @@ impl Servo {
             NmtCommand::StopRemoteNode => self.leave_operational(NmtState::Stopped, out),
             NmtCommand::EnterPreOperational => self.leave_operational(NmtState::PreOperational, out),
             NmtCommand::ResetNode | NmtCommand::ResetCommunication => {
-                *self = Self::new(self.ids);
+                let timeout_us = self.sync_timeout_us.unsigned_abs();
+                *self = Self::new(self.ids).with_sync_timeout_us(timeout_us);
                 out.extend(self.boot());
             }
         }
@@ -490,6 +503,7 @@ impl Servo {
     }
 }
 
+const DEFAULT_SYNC_TIMEOUT_US: i32 = 1_000_000;
 const ERROR_REGISTER: message::ErrorRegister = message::ErrorRegister(message::ErrorRegister::GENERIC);
 
 /// Whether something that is sent every so many cycles is due; the period is a table constant above zero.

@@ -2,7 +2,7 @@
 
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 
-use crate::objects::{self, Entry};
+use crate::objects::{self, Entry, Parameter};
 use crate::parameters::{ParameterSet, Settings};
 
 /// Values that a client may read but not write.
@@ -37,6 +37,20 @@ pub enum Effect {
 }
 
 impl SdoServer {
+    /// Stages a value that the node itself chooses (what a command line says at start); out of range it is left out.
+    pub fn stage(&mut self, parameter: Parameter, value: i32) {
+        let fits = |entry: &&Entry| entry.parameter == parameter && (entry.min..=entry.max).contains(&value);
+        if objects::TABLE.iter().find(fits).is_some() {
+            self.staged.set(parameter, value);
+        }
+    }
+
+    /// The settings of the staged set; `None` where it does not go together.
+    #[must_use]
+    pub fn staged_settings(&self) -> Option<Settings> {
+        self.staged.settings().ok()
+    }
+
     /// Answers a request. `may_change_encoders` is false while the loop is closed.
     pub fn handle(
         &mut self,

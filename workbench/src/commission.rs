@@ -1,0 +1,313 @@
+//! `quadrant commission`: the main job, from recording to the circle with compensation.
+
+use std::path::Path;
+
+use identification::{Dataset, Identification};
+use plant_sim::Machine;
+use serde::Serialize;
+
+use crate::circle::{self, CircleReport, CircleRun};
+use crate::cli;
+use crate::compensation::{self, AxisCompensation};
+use crate::error::{Failure, Outcome};
+use crate::identify::{self, write};
+use crate::master::AxisCycle;
+use crate::plots::{self, Curve, Trace};
+use crate::progress;
+use crate::recording;
+use crate::report::{self, Page};
+use crate::run::{Place, Session};
+use crate::trajectory::{Circle, Move};
+use crate::tune::{self, Tuned};
+
+/// The circle of commissioning: R 100 mm, F 2000 mm/min.
+const CIRCLE: Circle = Circle { radius_m: 0.1, feed_m_per_s: 2.0 / 60.0, turns: 3, counter_clockwise: true };
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    machine: &'a str,
+    axes: Vec<AxisSummary<'a>>,
+    circle_before: &'a CircleReport,
+    circle_after: &'a CircleReport,
+    burst_reduction_percent: f64,
+    tuning_circles: u32,
+    bus_load_percent: f64,
+}
+
+#[derive(Serialize)]
+struct AxisSummary<'a> {
+    name: &'a str,
+    #[serde(flatten)]
+    report: &'a identification::outcome::Report,
+}
+
+/// Runs the main job.
+///
+/// # Errors
+/// Where an argument, a file or the machine is wrong.
+pub fn command(arguments: &cli::Commission) -> Outcome<()> {
+    let (machine, place) = circle::machine(&arguments.machine)?;
+    let reference = fitting_circle(&machine);
+    crate::run::check_circle(&machine, &reference)?;
+    let out = &arguments.out;
+    std::fs::create_dir_all(out).map_err(|error| Failure::file(out, &error))?;
+    let load = machine.bus_load_per_mille();
+    println!("machine {}: {} axes, computed bus load {}.{} %", machine.name, machine.axes.len(), load / 10, load % 10);
+
+    let results = identify_axes(&machine, &place, out)?;
+    let none = vec![AxisCompensation::default(); machine.axes.len()];
+    progress::step("circle without compensation");
+    let before = circle::run(&machine, &place, &reference, &none)?;
+    println!("circle before: largest burst {:.2} µm", before.report.figures.peak_max_um);
+    progress::step("tuning the pulse on circles");
+    let tuned = tune::pulse(&machine, &place, &reference, 0.0)?;
+    let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
+    circle::print_tuned(&names, &tuned);
+    progress::step("downloading the compensation; circle with it");
+    let after = circle::run(&machine, &place, &reference, &tuned.compensation)?;
+    let reduction = 100.0 * (1.0 - after.report.figures.peak_max_um / before.report.figures.peak_max_um);
+    println!("circle after: largest burst {:.2} µm, {reduction:.1} % less", after.report.figures.peak_max_um);
+
+    let job = Job { machine: &machine, place: &place, results: &results, before: &before, after: &after, tuned: &tuned, reduction };
+    job.write(out, &names)?;
+    println!("report: {}", out.join("report.html").display());
+    Ok(())
+}
+
+/// The usual circle, or a smaller and slower one where the axes are short or slow.
+fn fitting_circle(machine: &Machine) -> Circle {
+    let travel = machine.axes.iter().map(|axis| axis.limits.travel_m).fold(f64::INFINITY, f64::min);
+    let velocity = machine.axes.iter().map(|axis| axis.limits.velocity_m_per_s).fold(f64::INFINITY, f64::min);
+    let acceleration = machine.axes.iter().map(|axis| axis.limits.acceleration_m_per_s2).fold(f64::INFINITY, f64::min);
+    let radius_m = CIRCLE.radius_m.min(0.8 * travel);
+    let feed_m_per_s = CIRCLE.feed_m_per_s.min(0.5 * velocity).min((0.5 * acceleration * radius_m).sqrt());
+    Circle { radius_m, feed_m_per_s, ..CIRCLE }
+}
+
+fn identify_axes(machine: &Machine, place: &Place, out: &Path) -> Outcome<Vec<Identification>> {
+    progress::step("recording: slow and fast runs, reversals");
+    let none = vec![AxisCompensation::default(); machine.axes.len()];
+    let mut session = Session::open(machine, place, &none, 1)?;
+    let train = recording::record(&mut session, machine, false)?;
+    progress::step("recording the validation record");
+    let validate = recording::record(&mut session, machine, true)?;
+    circle::write_logs(&out.join("records.candump.log"), &session.close()?)?;
+    let mut results = Vec::new();
+    for (index, axis) in machine.axes.iter().enumerate() {
+        let folder = out.join(format!("records-{}", axis.name));
+        recording::write_dataset(&folder, machine, axis, &train[index], &validate[index])?;
+        let dataset = Dataset::read(&folder, None, None)?;
+        progress::step(&format!("identifying axis {}", axis.name));
+        let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
+        println!("axis {}:", axis.name);
+        identify::print(&result);
+        results.push(result);
+    }
+    Ok(results)
+}
+
+struct Job<'a> {
+    machine: &'a Machine,
+    place: &'a Place,
+    results: &'a [Identification],
+    before: &'a CircleRun,
+    after: &'a CircleRun,
+    tuned: &'a Tuned,
+    reduction: f64,
+}
+
+impl Job<'_> {
+    fn write(&self, out: &Path, names: &[String]) -> Outcome<()> {
+        let models: Vec<(String, &Identification)> = names.iter().cloned().zip(self.results).collect();
+        write(&out.join("model.toml"), &identify::model_toml(&models))?;
+        write(&out.join("compensation.toml"), &compensation::text(names, &self.tuned.compensation)?)?;
+        write(&out.join("summary.json"), &self.summary()?)?;
+        circle::write_logs(&out.join("circle-after.candump.log"), &self.after.logs)?;
+        write(&out.join("report.html"), &self.page()?)
+    }
+
+    fn summary(&self) -> Outcome<String> {
+        let axes = self.machine.axes.iter().zip(self.results);
+        let summary = Summary {
+            machine: &self.machine.name,
+            axes: axes.map(|(axis, result)| AxisSummary { name: &axis.name, report: &result.report }).collect(),
+            circle_before: &self.before.report,
+            circle_after: &self.after.report,
+            burst_reduction_percent: self.reduction,
+            tuning_circles: self.tuned.circles,
+            bus_load_percent: f64::from(self.machine.bus_load_per_mille()) / 10.0,
+        };
+        let text = serde_json::to_string_pretty(&summary).map_err(|error| Failure::new(error.to_string()))?;
+        Ok(text + "\n")
+    }
+
+    fn page(&self) -> Outcome<String> {
+        let mut page = Page::new(&format!("Commissioning of machine {}", self.machine.name));
+        self.overview(&mut page)?;
+        for (axis, result) in self.machine.axes.iter().zip(self.results) {
+            report::identification(&mut page, &format!("Axis {}: what the model lacks", axis.name), result)?;
+        }
+        self.reversal(&mut page)?;
+        Ok(page.finish())
+    }
+
+    fn overview(&self, page: &mut Page) -> Outcome<()> {
+        let (before, after) = (&self.before.report.figures, &self.after.report.figures);
+        let first = self.results.first().map_or_else(String::new, |result| report::sentence(&result.report));
+        page.key(&format!(
+            "{first}. Largest burst on the circle: {:.2} µm before, {:.2} µm with the tuned pulse, {:.1} % less.",
+            before.peak_max_um, after.peak_max_um, self.reduction
+        ));
+        page.table(&self.overview_table());
+        let title = format!("Circle R {} mm, F {:.0} mm/min", self.before.report.radius_mm, self.before.report.feed_mm_min);
+        let radius_m = 1.0e-3 * self.before.report.radius_mm;
+        let traces = [("before", self.before), ("after", self.after)]
+            .map(|(name, run)| Trace { name: name.into(), points: one_turn(run), radius_m });
+        page.pictures(&[plots::polar(&title, &traces)?]);
+        Ok(())
+    }
+
+    fn overview_table(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![["", "before", "after", "unit"].map(String::from).to_vec()];
+        for (axis, result) in self.machine.axes.iter().zip(self.results) {
+            let errors = &result.report.validate;
+            rows.push(row(
+                &format!("force error of the model, axis {}, validation record", axis.name),
+                errors.force_error_before_percent,
+                errors.force_error_after_percent,
+                "%",
+            ));
+            rows.push(row(
+                &format!("force not explained about reversals, axis {}, validation record", axis.name),
+                errors.reversal_error_before,
+                errors.reversal_error_after,
+                result.effort_unit,
+            ));
+        }
+        let (before, after) = (&self.before.report.figures, &self.after.report.figures);
+        rows.push(row("largest burst", before.peak_max_um, after.peak_max_um, "µm"));
+        rows.push(row("circular deviation G", before.circular_deviation_g_um, after.circular_deviation_g_um, "µm"));
+        if let Some((b, a)) = before.circular_hysteresis_h_um.zip(after.circular_hysteresis_h_um) {
+            rows.push(row("circular hysteresis H", b, a, "µm"));
+        }
+        rows.push(row("radial deviation Fmax", before.radial_deviation_fmax_um, after.radial_deviation_fmax_um, "µm"));
+        rows.push(row("radial deviation Fmin", before.radial_deviation_fmin_um, after.radial_deviation_fmin_um, "µm"));
+        rows
+    }
+
+    /// The six curves of the paper's Fig. 8(a), about one reversal of the first axis on a sine.
+    fn reversal(&self, page: &mut Page) -> Outcome<()> {
+        page.heading("One reversal in time");
+        page.paragraph(
+            "The six curves of the paper's Fig. 8(a) about a reversal of the first axis, before and after: setpoint, table, disturbance \
+             (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
+        );
+        let none = vec![AxisCompensation::default(); self.machine.axes.len()];
+        for (name, compensation) in [("before", &none), ("after", &self.tuned.compensation)] {
+            let rows = reversal_rows(self.machine, self.place, compensation, &fitting_circle(self.machine))?;
+            page.pictures(&six_curves(self.machine, name, &rows)?);
+        }
+        Ok(())
+    }
+}
+
+fn row(name: &str, before: f64, after: f64, unit: &str) -> Vec<String> {
+    vec![name.to_owned(), format!("{before:.2}"), format!("{after:.2}"), unit.to_owned()]
+}
+
+fn one_turn(run: &CircleRun) -> &[crate::ballbar::Point] {
+    &run.points[..run.points.len() / 3]
+}
+
+/// Cycles about one reversal of the first axis on a sine with the path of a circle.
+///
+/// # Errors
+/// Where the machine cannot run it.
+pub fn reversal_rows(
+    machine: &Machine,
+    place: &Place,
+    compensation: &[AxisCompensation],
+    circle: &Circle,
+) -> Outcome<Vec<(f64, AxisCycle)>> {
+    let mut session = Session::open(machine, place, compensation, 2)?;
+    let rest = vec![0.0; machine.axes.len() - 1];
+    let setpoints = |x: f64| [vec![x], rest.clone()].concat();
+    let omega = circle.feed_m_per_s / circle.radius_m;
+    session.go_to(&setpoints(circle.at(0.0)[0]))?;
+    // To the second reversal of X (three quarters of a turn), and a little on.
+    let end_s = (1..).map(|i| 0.01 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.75 * std::f64::consts::PI).unwrap_or(1.0);
+    let reversal_s = (1..).map(|i| 0.001 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.5 * std::f64::consts::PI).unwrap_or(0.5);
+    let window_s = (0.25 / omega).min(0.6);
+    let mut rows = Vec::new();
+    session.follow(
+        end_s,
+        |time_s| setpoints(circle.at(time_s)[0]),
+        |time_s, axes| {
+            if (time_s - reversal_s).abs() <= window_s {
+                rows.push((time_s - reversal_s, axes[0]));
+            }
+        },
+    )?;
+    let back = Move::new(&setpoints(circle.at(end_s)[0]), &setpoints(0.0), 0.1, 1.0);
+    session.follow(back.duration_s(), |time_s| back.at(time_s), |_, _| ())?;
+    session.close()?;
+    Ok(rows)
+}
+
+/// Setpoint and table; disturbance and drive force; speed; error.
+///
+/// # Errors
+/// Where a plot cannot be drawn.
+pub fn six_curves(machine: &Machine, name: &str, rows: &[(f64, AxisCycle)]) -> Outcome<Vec<String>> {
+    let period_s = machine.period_s;
+    let inertia = machine.axes.first().map_or(0.0, |axis| {
+        let mechanics = &axis.actual.mechanics;
+        mechanics.motor_inertia_kg + mechanics.table_mass_kg
+    });
+    let turning_m = rows.iter().map(|(_, axis)| axis.reference_m).fold(f64::INFINITY, f64::min);
+    let table = |axis: &AxisCycle| axis.truth.map_or(axis.load_m, |truth| truth.table_m);
+    let curve = |name: &str, value: &dyn Fn(usize) -> f64| Curve {
+        name: name.into(),
+        points: (10..rows.len().saturating_sub(10)).map(|i| (1.0e3 * rows[i].0, value(i))).collect(),
+        dots: false,
+    };
+    // Over 10 cycles to either side: single encoder counts would be noise.
+    let speed = |i: usize| (rows[i + 10].1.motor_m - rows[i - 10].1.motor_m) / (20.0 * period_s);
+    let acceleration =
+        |i: usize| (rows[i + 10].1.motor_m - 2.0 * rows[i].1.motor_m + rows[i - 10].1.motor_m) / (100.0 * period_s * period_s);
+    let force = |i: usize| rows[i].1.truth.map_or(rows[i].1.force_n, |truth| truth.force_n);
+    let size = (540, 300);
+    Ok(vec![
+        plots::curves(
+            &format!("Position, {name}"),
+            "time from the reversal, ms",
+            "µm from the turning point",
+            size,
+            &[
+                curve("(1) setpoint", &|i| 1.0e6 * (rows[i].1.reference_m - turning_m)),
+                curve("(2) table", &|i| 1.0e6 * (table(&rows[i].1) - turning_m)),
+            ],
+        )?,
+        plots::curves(
+            &format!("Force, {name}"),
+            "time from the reversal, ms",
+            "N",
+            size,
+            &[curve("(3) disturbance", &|i| force(i) - inertia * acceleration(i)), curve("(4) drive", &force)],
+        )?,
+        plots::curves(
+            &format!("Speed of the motor, {name}"),
+            "time from the reversal, ms",
+            "mm/s",
+            size,
+            &[curve("(5) speed", &|i| 1.0e3 * speed(i))],
+        )?,
+        plots::curves(
+            &format!("Error, {name}"),
+            "time from the reversal, ms",
+            "µm",
+            size,
+            &[curve("(6) error", &|i| 1.0e6 * (rows[i].1.reference_m - table(&rows[i].1)))],
+        )?,
+    ])
+}

@@ -1,0 +1,105 @@
+//! `quadrant identify`.
+
+use std::path::Path;
+
+use identification::{Dataset, Identification, IdentificationError};
+
+use crate::cli;
+use crate::error::{Failure, Outcome};
+use crate::progress;
+use crate::report::{self, Page};
+
+impl From<IdentificationError> for Failure {
+    fn from(error: IdentificationError) -> Self {
+        Self::new(error.to_string())
+    }
+}
+
+/// Identifies a dataset and writes what was asked for.
+///
+/// # Errors
+/// Where the dataset is wrong, or a file cannot be written.
+pub fn run(arguments: &cli::Identify) -> Outcome<()> {
+    let dataset = Dataset::read(&arguments.dataset, arguments.validate.as_deref(), arguments.declared.clone())?;
+    let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
+    print(&result);
+    let json = json(&result)?;
+    if let Some(path) = &arguments.json {
+        write(path, &json)?;
+    }
+    if let Some(folder) = &arguments.out {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
+        write(&folder.join("identification.json"), &json)?;
+        write(&folder.join("prediction.csv"), &prediction_csv(&result))?;
+        write(&folder.join("model.toml"), &model_toml(&[(dataset.name.clone(), &result)]))?;
+        let mut page = Page::new(&format!("Identification of {}", dataset.name));
+        report::identification(&mut page, "Result", &result)?;
+        write(&folder.join("report.html"), &page.finish())?;
+        println!("report: {}", folder.join("report.html").display());
+    }
+    Ok(())
+}
+
+/// Writes a file.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write(path: &Path, text: &str) -> Outcome<()> {
+    std::fs::write(path, text).map_err(|error| Failure::file(path, &error))
+}
+
+/// The JSON text of a result.
+///
+/// # Errors
+/// Never in practice: the form is plain data.
+pub fn json(result: &Identification) -> Outcome<String> {
+    serde_json::to_string_pretty(&result.report).map(|text| text + "\n").map_err(|error| Failure::new(error.to_string()))
+}
+
+/// Prints the result for people.
+pub fn print(result: &Identification) {
+    println!("{}", report::sentence(&result.report));
+    for row in report::error_table(result) {
+        let cells: Vec<String> = row.iter().skip(1).map(|cell| format!("{cell:>28}")).collect();
+        println!("  {:<32}{}", row.first().map_or("", String::as_str), cells.join(""));
+    }
+    for warning in &result.report.warnings {
+        println!("  note: {warning}");
+    }
+}
+
+/// `prediction.csv` of the validation record.
+#[must_use]
+pub fn prediction_csv(result: &Identification) -> String {
+    let curves = &result.curves;
+    let mut text = format!("time_s,{},declared,extended\n", result.effort_column);
+    for (((time, effort), declared), extended) in
+        curves.time_s.iter().zip(&curves.effort).zip(&curves.declared).zip(&curves.extended)
+    {
+        text.push_str(&format!("{time},{effort},{declared:.6},{extended:.6}\n"));
+    }
+    text
+}
+
+/// The identified models as TOML: effects and parameters of each axis.
+#[must_use]
+pub fn model_toml(axes: &[(String, &Identification)]) -> String {
+    let mut text = String::from("# Identified models: declared effects, what they lacked, parameters with 95 % intervals.\n");
+    for (name, result) in axes {
+        let report = &result.report;
+        let list = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        text.push_str(&format!(
+            "\n[[axis]]\nname = \"{name}\"\ndeclared = [{}]\nfound = [{}]\nverdict = \"{}\"\n",
+            list(&report.declared),
+            list(&report.found),
+            report.verdict
+        ));
+        for (name, p) in &report.parameters {
+            text.push_str(&format!(
+                "parameters.{name} = {{ value = {:e}, low = {:e}, high = {:e}, unit = \"{}\" }}\n",
+                p.value, p.low, p.high, p.unit
+            ));
+        }
+    }
+    text
+}

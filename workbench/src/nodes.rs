@@ -1,0 +1,99 @@
+//! `quadrant plant` and `quadrant servo`: one node each, for a bus with other people's nodes on it.
+
+use std::time::{Duration, Instant};
+
+use bus::{CanPort, FaultPlan, FaultyPort, Received, Station};
+use plant_sim::{Machine, PlantNode};
+use protocol::cob::{AxisIds, FrameKind, NodeId};
+use quadrant_host::port::Port;
+
+use crate::cli;
+use crate::error::{Failure, Outcome};
+use crate::link::plant_seed;
+
+/// A node runs until its process is ended.
+const fn never() -> bool {
+    false
+}
+
+fn ids(servo: u8, plant: u8) -> Outcome<AxisIds> {
+    match (NodeId::new(servo), NodeId::new(plant)) {
+        (Some(servo), Some(plant)) if servo != plant => Ok(AxisIds { servo, plant }),
+        _ => Err(Failure::new(format!("--node: servo {servo} and plant {plant} must be two different ids from 1 to 127"))),
+    }
+}
+
+/// Runs the servo node until it is ended.
+///
+/// # Errors
+/// Where the interface cannot be opened or goes away.
+pub fn servo(arguments: &cli::Servo) -> Outcome<()> {
+    let ids = ids(arguments.node, arguments.plant_node)?;
+    let port = open(&arguments.can, &quadrant_host::accepted(ids))?;
+    let servo = servo::Servo::new(ids).with_sync_timeout_us(arguments.pace.sync_timeout_us());
+    quadrant_host::run(servo, Port::Can(port), arguments.faults, never).map_err(|error| gone(&arguments.can, &error))
+}
+
+/// Runs the plant node of an axis until it is ended.
+///
+/// # Errors
+/// Where the machine file is wrong, or the interface cannot be opened or goes away.
+pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
+    let machine = match &arguments.machine {
+        Some(path) => Machine::read(path)?,
+        None => Machine::reference(),
+    };
+    let index = usize::from(arguments.node).wrapping_sub(0x11);
+    let Some(axis) = machine.axes.get(index) else {
+        return Err(Failure::new(format!(
+            "--node {:#04x}: machine {} has {} axes, with plants at 0x11 to {:#04x}",
+            arguments.node,
+            machine.name,
+            machine.axes.len(),
+            0x10 + machine.axes.len()
+        )));
+    };
+    let servo = arguments.node - 0x10;
+    let ids = ids(servo, arguments.node)?;
+    let accepted = [FrameKind::Nmt, FrameKind::Sync, FrameKind::Torque].map(|kind| ids.identifier(kind));
+    let port = open(&arguments.can, &accepted)?;
+    let timeout_us = u64::from(arguments.pace.sync_timeout_us());
+    let node = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index));
+    run(node.with_sync_timeout_us(timeout_us), &port, arguments.faults).map(|never| match never {}).map_err(|error| gone(&arguments.can, &error))
+}
+
+fn open(interface: &str, accepted: &[embedded_can::StandardId]) -> Outcome<CanPort> {
+    CanPort::open(interface, accepted).map_err(|error| Failure::new(error.to_string()))
+}
+
+fn gone(interface: &str, error: &std::io::Error) -> Failure {
+    Failure::new(format!("CAN interface {interface}: {error}"))
+}
+
+/// The node notices time this often.
+const TICK: Duration = Duration::from_millis(5);
+
+fn run(mut node: PlantNode, port: &CanPort, faults: Option<FaultPlan>) -> std::io::Result<std::convert::Infallible> {
+    let ids = node.ids();
+    let mut faults = faults.map(|plan| FaultyPort::new(plan, ids, ids.plant.get()));
+    let begun = Instant::now();
+    let now_us = || u64::try_from(begun.elapsed().as_micros()).unwrap_or(u64::MAX);
+    let (mut received, mut out) = (Vec::new(), Vec::new());
+    Station::boot(&mut node, &mut out);
+    let mut ticked_us = 0;
+    loop {
+        out.drain(..).try_for_each(|frame| port.send(&frame))?;
+        if let Some(frame) = port.receive(TICK)? {
+            match &mut faults {
+                None => received.push(Received::Frame(frame)),
+                Some(faults) => faults.receive(frame, &mut received),
+            }
+        }
+        let now = now_us();
+        received.drain(..).for_each(|received| node.take(received, now, &mut out));
+        if now >= ticked_us + 5000 {
+            ticked_us = now;
+            node.tick(now, &mut out);
+        }
+    }
+}
