@@ -1,0 +1,7 @@
+//! Rigs that close the loop for tests, and golden tables that people review.
+//!
+//! Three gears: the in-process rig drives the nodes directly in virtual time (blind to the kernel and to scheduling), the vcan scenarios
+//! run every node as a process of its own (blind to bandwidth), the board image is linked and looked at (blind to booting).
+
+pub mod golden;
+pub mod rig;

@@ -1,0 +1,85 @@
+//! The rig: machines for scenarios, and a master on the in-process bus whose plugs can be pulled.
+
+use plant_sim::Machine;
+use plant_sim::friction::Law;
+use plant_sim::machine::PositionSensor;
+use workbench::compensation::AxisCompensation;
+use workbench::error::Outcome;
+use workbench::link::InProcess;
+use workbench::master::Master;
+
+/// The reference machine without noise, for figures that have to repeat to the digit.
+#[must_use]
+pub fn quiet_reference() -> Machine {
+    let mut machine = Machine::reference();
+    machine.axes.iter_mut().for_each(|axis| axis.actual.force_noise_n = 0.0);
+    machine
+}
+
+/// The reference machine with both axes on one bus, as on a single vcan.
+#[must_use]
+pub fn shared_bus() -> Machine {
+    let mut machine = Machine::reference();
+    machine.axes.iter_mut().for_each(|axis| axis.interface = Some("vcan0".into()));
+    machine
+}
+
+/// The first axis only.
+#[must_use]
+pub fn one_axis() -> Machine {
+    let mut machine = quiet_reference();
+    machine.axes.truncate(1);
+    machine
+}
+
+/// The paper's Fig. 4: a gap outside the position loop.
+#[must_use]
+pub fn gap_outside(gap_m: f64) -> Machine {
+    let mut machine = quiet_reference();
+    for axis in &mut machine.axes {
+        axis.actual.mechanics.backlash_m = gap_m;
+        axis.gains.position_sensor = PositionSensor::Motor;
+    }
+    machine
+}
+
+/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the prototype's figures.
+#[must_use]
+pub fn gap_inside(gap_m: f64) -> Machine {
+    let mut machine = quiet_reference();
+    machine.period_s = 0.5e-3;
+    for axis in &mut machine.axes {
+        axis.actual.mechanics.backlash_m = gap_m;
+        axis.gains.position_gain_per_s = 60.0;
+        axis.gains.velocity_bandwidth_hz = 45.0;
+        axis.gains.velocity_integral_hz = 11.25;
+    }
+    machine
+}
+
+/// The paper's Fig. 8: dry friction with a rigid stick phase, a stiff motor-side loop.
+#[must_use]
+pub fn dry_friction() -> Machine {
+    let mut machine = quiet_reference();
+    for axis in &mut machine.axes {
+        axis.actual.law = Law::Coulomb;
+        axis.actual.sliding.static_n = axis.actual.sliding.coulomb_n;
+    }
+    machine
+}
+
+/// A master on an enabled machine, no compensation.
+///
+/// # Errors
+/// Where the machine does not come up.
+pub fn enabled(machine: &Machine) -> Outcome<Master<InProcess>> {
+    let mut master = Master::start(InProcess::new(machine, 0)?, machine)?;
+    master.configure(machine, &vec![AxisCompensation::default(); machine.axes.len()])?;
+    master.enable()?;
+    Ok(master)
+}
+
+/// Place of the plant on the bus of its axis, where every axis has a bus of its own.
+pub const PLANT: usize = 0;
+/// Place of the servo.
+pub const SERVO: usize = 1;
