@@ -149,9 +149,9 @@ fn corrupted(frame: &CanFrame, kind: FrameKind, how: u8) -> CanFrame {
         (0, _) => shortened(frame, payload),
         (1, _) => CanFrame::new_remote(frame.id(), payload.len()).unwrap_or(*frame),
         (2, Some(at)) => {
-            // Two to nine cycles old.
-            let back = 2 + how / 4 % 8;
-            data[at] = (data[at] + 239 - back) % 240 + 1;
+            // Three to ten cycles old: two would pass for the late frame of a cycle that was closed by its token.
+            let back = 3 + u16::from(how) / 4 % 8;
+            data[at] = u8::try_from((u16::from(data[at]) + 239 - back) % 240 + 1).unwrap_or(1);
             CanFrame::new(frame.id(), &data).unwrap_or(*frame)
         }
         (3, _) if kind == FrameKind::Feedback => {

@@ -36,7 +36,7 @@ impl Station for servo::Servo {
     fn take(&mut self, received: Received, now_us: u64, out: &mut Vec<CanFrame>) {
         match received {
             Received::Frame(frame) => out.extend(self.on_frame(&frame, now_us)),
-            Received::Lost(kind) => out.extend(self.on_lost(kind, now_us)),
+            Received::Lost(kind) => out.extend(self.on_lost(kind)),
         }
     }
 
@@ -57,7 +57,7 @@ impl Station for plant_sim::PlantNode {
     fn take(&mut self, received: Received, now_us: u64, out: &mut Vec<CanFrame>) {
         match received {
             Received::Frame(frame) => out.extend(self.on_frame(&frame, now_us)),
-            Received::Lost(kind) => out.extend(self.on_lost(kind, now_us)),
+            Received::Lost(kind) => out.extend(self.on_lost(kind)),
         }
     }
 

@@ -13,18 +13,19 @@ pub struct Measured {
     pub name: String,
     /// Value.
     pub value: f64,
+    /// Unit.
+    pub unit: &'static str,
 }
 
 /// A row.
-pub fn row(name: impl Into<String>, value: f64) -> Measured {
-    Measured { name: name.into(), value }
+pub fn row(name: impl Into<String>, value: f64, unit: &'static str) -> Measured {
+    Measured { name: name.into(), value, unit }
 }
 
 struct Row {
     name: String,
     value: f64,
     tolerance: f64,
-    unit: String,
     note: String,
 }
 
@@ -38,12 +39,11 @@ fn parse(text: &str) -> Vec<Row> {
         .filter(|line| line.starts_with('|'))
         .map(cells)
         .filter_map(|cells| {
-            let [name, value, tolerance, unit, note] = &cells[..] else { return None };
+            let [name, value, tolerance, _, note] = &cells[..] else { return None };
             Some(Row {
                 name: name.clone(),
                 value: value.parse().ok()?,
                 tolerance: tolerance.parse().ok()?,
-                unit: unit.clone(),
                 note: note.clone(),
             })
         })
@@ -67,7 +67,7 @@ pub fn check(table: &str, measured: &[Measured]) {
             None => writeln!(wrong, "new row: {} = {}", new.name, new.value),
             Some(row) if (new.value - row.value).abs() <= row.tolerance => Ok(()),
             Some(row) => {
-                writeln!(wrong, "{}: {} ± {} {} wanted, {} measured", row.name, row.value, row.tolerance, row.unit, new.value)
+                writeln!(wrong, "{}: {} ± {} {} wanted, {} measured", row.name, row.value, row.tolerance, new.unit, new.value)
             }
         }
         .expect("a String takes everything");
@@ -83,11 +83,8 @@ fn blessed(text: &str, rows: &[Row], measured: &[Measured]) -> String {
     let mut out = head + "| figure | value | tolerance | unit | note |\n|---|---|---|---|---|\n";
     for new in measured {
         let known = rows.iter().find(|row| row.name == new.name);
-        let (tolerance, unit, note) = known.map_or_else(
-            || (0.02 * new.value.abs(), String::new(), String::new()),
-            |row| (row.tolerance, row.unit.clone(), row.note.clone()),
-        );
-        writeln!(out, "| {} | {:.3} | {tolerance:.3} | {unit} | {note} |", new.name, new.value).expect("a String takes everything");
+        let (tolerance, note) = known.map_or_else(|| (0.02 * new.value.abs(), ""), |row| (row.tolerance, &row.note));
+        writeln!(out, "| {} | {:.3} | {tolerance:.3} | {} | {note} |", new.name, new.value, new.unit).expect("a String takes everything");
     }
     out
 }

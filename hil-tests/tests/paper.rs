@@ -46,7 +46,7 @@ fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up
         for step_um in figures.step_um {
             assert!((step_um / wanted_um - 1.0).abs() < 0.02, "gap {gap_um} µm: step {step_um} µm, wanted {wanted_um} µm");
         }
-        rows.push(row(format!("Fig. 4, gap {gap_um} µm outside, step X"), figures.step_um[0]));
+        rows.push(row(format!("Fig. 4, gap {gap_um} µm outside, step X"), figures.step_um[0], "µm"));
         if gap_um == 100.0 {
             let trace = Trace { name: "gap 100 µm outside".into(), points: &points[..points.len() / 3], radius_m: 0.1 };
             keep("fig-1a-step.svg", &plots::polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]).unwrap());
@@ -70,7 +70,7 @@ fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
     assert!(crossing.len() > 50, "{} samples", crossing.len());
     let (low, high) = crossing.iter().fold((f64::MAX, f64::MIN), |(low, high), (x, _)| (low.min(*x), high.max(*x)));
     let moved_um = 1.0e6 * (high - low);
-    golden::check("paper-fig-4-flat", &[row("way of the table while the motor crosses half the gap of 100 µm", moved_um)]);
+    golden::check("paper-fig-4-flat", &[row("way of the table while the motor crosses half the gap of 100 µm", moved_um, "µm")]);
     assert!(moved_um < 0.5, "{moved_um} µm");
 }
 
@@ -85,7 +85,7 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
         let figures = ballbar::figures(&points, circle.radius_m, 1.0e-6 * gap_um, MEASURE_FROM_RAD);
         let burst = figures.peak_max_um;
         assert!((burst / prototype_um - 1.0).abs() < 0.25, "gap {gap_um} µm: {burst} µm, prototype {prototype_um} µm");
-        rows.push(row(format!("Fig. 5, gap {gap_um} µm inside, burst"), burst));
+        rows.push(row(format!("Fig. 5, gap {gap_um} µm inside, burst"), burst, "µm"));
         bursts.push(burst);
         if gap_um == 400.0 {
             let trace = Trace { name: "gap 400 µm inside".into(), points: &points[..points.len() / 3], radius_m: 0.01 };
@@ -94,7 +94,7 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
     }
     assert!(bursts.windows(2).all(|pair| pair[0] < pair[1]));
     // Between 100 and 400 µm: burst ∝ gap^n.
-    rows.push(row("Fig. 5, exponent of burst over gap", (bursts[3] / bursts[1]).ln() / 4.0_f64.ln()));
+    rows.push(row("Fig. 5, exponent of burst over gap", (bursts[3] / bursts[1]).ln() / 4.0_f64.ln(), ""));
     golden::check("paper-fig-5", &rows);
 }
 
@@ -120,8 +120,8 @@ fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     golden::check(
         "paper-fig-8",
         &[
-            row("Fig. 8, stagnation at R 100 F 2000", stagnation_ms),
-            row("Fig. 8, change of drive force during it", change_n),
+            row("Fig. 8, stagnation at R 100 F 2000", stagnation_ms, "ms"),
+            row("Fig. 8, change of drive force during it", change_n, "N"),
         ],
     );
 }
@@ -137,6 +137,6 @@ fn fig_1_and_8_friction_inside_the_loop_gives_bursts_on_the_polar_plot() {
     keep("fig-1b-burst.svg", &plots::polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces).unwrap());
     golden::check(
         "paper-fig-1",
-        &[row("Fig. 1(b), burst of the reference machine", figures(&points)), row("Fig. 8(b), burst with dry friction", figures(&dry))],
+        &[row("Fig. 1(b), burst of the reference machine", figures(&points), "µm"), row("Fig. 8(b), burst with dry friction", figures(&dry), "µm")],
     );
 }

@@ -41,13 +41,13 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
         assert!((before / prototype - 1.0).abs() < 0.25, "R {radius} F {feed}: {before} µm, prototype {prototype} µm");
         assert!((pulse / prototype_pulse - 1.0).abs() < 0.25, "R {radius} F {feed}: {pulse} µm, prototype {prototype_pulse} µm");
         let name = |what: &str| format!("R {radius} F {feed}, {what}");
-        rows.push(row(name("none"), before));
-        rows.push(row(name("pulse tuned at R 100 F 2000"), pulse));
-        rows.push(row(name("bare Coulomb force"), force));
+        rows.push(row(name("none"), before, "µm"));
+        rows.push(row(name("pulse tuned at R 100 F 2000"), pulse, "µm"));
+        rows.push(row(name("bare Coulomb force"), force, "µm"));
         if (radius, feed) == (100.0, 2000.0) {
             let reduction = 100.0 * (1.0 - pulse / before);
             assert!(reduction >= 78.0, "{reduction} %");
-            rows.push(row("burst reduction at R 100 F 2000", reduction));
+            rows.push(row("burst reduction at R 100 F 2000", reduction, "%"));
         }
     }
     golden::check("reference-machine", &rows);

@@ -144,10 +144,11 @@ impl Axis {
     fn sub_step(&mut self, target_n: f64, disturbance_n: f64, lag: f64, dt_s: f64) {
         let before = self.force_n;
         self.force_n += lag * (target_n - self.force_n);
+        let mean_n = target_n + (before - target_n) * mean_share(lag);
         let effects = &self.parameters.effects;
         let middle = self.motion.motor_m + 0.5 * dt_s * self.motion.motor_m_per_s;
         let drive = Drive {
-            motor_n: 0.5 * (before + self.force_n)
+            motor_n: mean_n
                 + disturbance_n
                 + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
             table_n: -effects.offset_n,
@@ -165,4 +166,9 @@ fn floor(value: f64) -> i64 {
 /// Share of the way to its target that a first-order lag covers in `dt`.
 fn lag_share(dt_s: f64, time_constant_s: f64) -> f64 {
     if time_constant_s > 0.0 { -(-dt_s / time_constant_s).exp_m1() } else { 1.0 }
+}
+
+/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at once.
+fn mean_share(lag: f64) -> f64 {
+    if lag >= 1.0 { 0.0 } else { lag / -(-lag).ln_1p() }
 }

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Friction never vanishes altogether: a bristle without friction has no equation.
+const SMALLEST_FACTOR: f64 = 1.0e-3;
+
 /// Force periodic in the motor position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -68,7 +71,7 @@ impl Effects {
     #[must_use]
     pub fn friction_factor(&self, table_m: f64, time_s: f64) -> f64 {
         let drift = self.friction_drift.map_or(0.0, |drift| drift.gain * (-time_s / drift.time_constant_s).exp());
-        ((1.0 + self.position_dependent_friction_per_m * table_m) * (1.0 + drift)).max(0.0)
+        ((1.0 + self.position_dependent_friction_per_m * table_m) * (1.0 + drift)).max(SMALLEST_FACTOR)
     }
 
     /// Error of the load scale at a table position.

@@ -126,6 +126,17 @@ impl Friction {
         }
     }
 
+    /// The internal state, to go back to with [`Self::restore`].
+    #[must_use]
+    pub fn state(&self) -> Vec<f64> {
+        self.deflection_m.clone()
+    }
+
+    /// Goes back to a state.
+    pub fn restore(&mut self, state: Vec<f64>) {
+        self.deflection_m = state;
+    }
+
     /// Bristle deflection (or mean element deflection), m.
     #[must_use]
     pub fn deflection_m(&self) -> f64 {
@@ -139,12 +150,14 @@ fn coulomb(sliding: &Sliding, table: Table) -> f64 {
     let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
     let direction = if velocity == 0.0 { free_velocity } else { velocity };
     let level = sliding.level_n(if velocity == 0.0 { sign(direction) * f64::MIN_POSITIVE } else { velocity }) * factor;
-    let viscous = sliding.viscous_n_s_per_m(direction);
+    // Viscous part trapezoidal, so that the scheme stays second order while it slides.
+    let half = 0.5 * sliding.viscous_n_s_per_m(direction) * dt_s / mass_kg;
+    let free_velocity = free_velocity - half * velocity;
     let impulse = level * dt_s / mass_kg;
     if free_velocity.abs() <= impulse {
         return 0.0;
     }
-    (free_velocity - free_velocity.signum() * impulse) / (1.0 + viscous * dt_s / mass_kg)
+    (free_velocity - free_velocity.signum() * impulse) / (1.0 + half)
 }
 
 #[derive(Clone, Copy)]
@@ -159,9 +172,11 @@ fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 
     let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
     let rate = |v: f64| bristle.stiffness * v.abs() / (sliding.level_n(v) * factor);
     *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
-    // Force σ0 z + σ1 (v − r z) + Fv v, trapezoidal in v.
-    let constant = (bristle.stiffness - bristle.damping * rate(velocity)) * *z;
-    let linear = bristle.damping + sliding.viscous_n_s_per_m(velocity);
+    // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken trapezoidal.
+    let level = sliding.level_n(velocity) * factor;
+    let constant = bristle.stiffness * *z;
+    let linear =
+        bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level) + sliding.viscous_n_s_per_m(velocity);
     let half = 0.5 * linear * dt_s / mass_kg;
     let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
     *z = relaxed(*z, next, rate(next), 0.5 * dt_s);
@@ -177,22 +192,19 @@ fn relaxed(z: f64, v: f64, rate: f64, dt: f64) -> f64 {
 
 fn maxwell(sliding: &Sliding, stiffness: &[f64], share: &[f64], deflection: &mut [f64], table: Table) -> f64 {
     let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
-    let level = sliding.level_n(velocity) * factor;
-    let mut force = 0.0;
-    let mut tangent = 0.0;
-    for ((k, share), z) in stiffness.iter().zip(share).zip(deflection.iter_mut()) {
-        let limit = share * level / k;
-        *z = (*z + 0.5 * velocity * dt_s).clamp(-limit, limit);
-        force += k * *z;
-        tangent += if z.abs() < limit { *k } else { 0.0 };
-    }
-    // The elastic tangent is taken implicitly: it is what makes the stick phase stiff.
-    let linear = 0.5 * tangent * dt_s + sliding.viscous_n_s_per_m(velocity);
-    let next = (free_velocity - force * dt_s / mass_kg) / (1.0 + linear * dt_s / mass_kg);
-    let level = sliding.level_n(next) * factor;
-    for ((k, share), z) in stiffness.iter().zip(share).zip(deflection.iter_mut()) {
-        let limit = share * level / k;
-        *z = (*z + 0.5 * next * dt_s).clamp(-limit, limit);
-    }
+    // An element slips at the level of the direction it is deflected in, whatever the table does at the moment.
+    let slide = |deflection: &mut [f64], velocity: f64| {
+        let (forth, back) = (sliding.level_n(velocity.abs()) * factor, sliding.level_n(-velocity.abs()) * factor);
+        let mut force = 0.0;
+        for ((k, share), z) in stiffness.iter().zip(share).zip(deflection) {
+            *z = (*z + 0.5 * velocity * dt_s).clamp(-share * back / k, share * forth / k);
+            force += k * *z;
+        }
+        force
+    };
+    let force = slide(deflection, velocity);
+    let half = 0.5 * sliding.viscous_n_s_per_m(velocity) * dt_s / mass_kg;
+    let next = (free_velocity - force * dt_s / mass_kg - half * velocity) / (1.0 + half);
+    slide(deflection, next);
     next
 }

@@ -361,6 +361,8 @@ impl Source<'_> {
         self.check_mechanics(part, &mechanics)?;
         self.check_actual(part, &actual)?;
         self.check_drive(part, &encoders, &actuator, &limits, &gains)?;
+        self.check_sub_step(part, &mechanics, &actual.friction)?;
+        self.check_increments(part, &mechanics, &encoders, &limits)?;
         self.check_declared(part, &declared)?;
         Ok(MachineAxis {
             name: own.name.clone(),
@@ -422,7 +424,8 @@ impl Source<'_> {
         self.range(part, "viscous_n_s_per_m", sliding.viscous_n_s_per_m, 0.0, 1.0e7)?;
         self.range(part, "coulomb_asymmetry", sliding.coulomb_asymmetry, -0.9, 0.9)?;
         self.range(part, "viscous_asymmetry", sliding.viscous_asymmetry, -0.9, 0.9)?;
-        self.range(part, "delay_s", form.effects.delay_s, 0.0, 1.0e-3)?;
+        self.range(part, "quadratic_drag_n_s2_per_m2", sliding.quadratic_drag_n_s2_per_m2, 0.0, 1.0e7)?;
+        self.check_effects(part, &form.effects)?;
         match &form.friction {
             Law::Coulomb => Ok(()),
             Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m } => {
@@ -432,6 +435,63 @@ impl Source<'_> {
             }
             Law::MaxwellSlip { stiffness_n_per_m, share } => self.check_maxwell(part, stiffness_n_per_m, share),
         }
+    }
+
+    fn check_effects(&self, part: &Range<usize>, effects: &Effects) -> Result<(), MachineError> {
+        self.range(part, "delay_s", effects.delay_s, 0.0, 1.0e-3)?;
+        self.range(part, "offset_n", effects.offset_n, -1.0e6, 1.0e6)?;
+        self.range(part, "torque_saturation_per_n", effects.torque_saturation_per_n, 0.0, 1.0)?;
+        self.range(part, "position_dependent_friction_per_m", effects.position_dependent_friction_per_m, -100.0, 100.0)?;
+        if let Some(ripple) = effects.torque_ripple {
+            self.range(part, "torque_ripple", ripple.amplitude_n, 0.0, 1.0e6)?;
+            self.range(part, "torque_ripple", ripple.order_per_rev, 1.0e-3, 1.0e4)?;
+            self.range(part, "torque_ripple", ripple.phase_rad, -1.0e3, 1.0e3)?;
+        }
+        if let Some(pitch) = effects.pitch_error {
+            self.range(part, "pitch_error", pitch.amplitude_m, 0.0, 1.0e-3)?;
+            self.range(part, "pitch_error", pitch.period_m, 1.0e-5, 10.0)?;
+        }
+        if let Some(drift) = effects.friction_drift {
+            self.range(part, "friction_drift", drift.gain, -0.9, 10.0)?;
+            self.range(part, "friction_drift", drift.time_constant_s, 1.0e-3, 1.0e6)?;
+        }
+        Ok(())
+    }
+
+    /// The sub-step has to resolve the fastest vibration: ω · dt below one half.
+    fn check_sub_step(&self, part: &Range<usize>, mechanics: &MechanicsForm, friction: &Law) -> Result<(), MachineError> {
+        let (m1, m2) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
+        let bristles = match friction {
+            Law::Coulomb => 0.0,
+            Law::LuGre { bristle_stiffness_n_per_m, .. } => *bristle_stiffness_n_per_m,
+            Law::MaxwellSlip { stiffness_n_per_m, .. } => stiffness_n_per_m.iter().sum(),
+        };
+        let stiffest = |mass: f64| 0.25 * mass / (crate::axis::SUB_STEP_S * crate::axis::SUB_STEP_S);
+        let screw = stiffest(m1 * m2 / (m1 + m2));
+        if mechanics.screw_stiffness_n_per_m > screw {
+            return Err(self.error(
+                part,
+                "screw_stiffness_n_per_m",
+                format!("with these masses the simulation resolves at most {screw:.3e} N/m, got {:.3e}", mechanics.screw_stiffness_n_per_m),
+            ));
+        }
+        if bristles > stiffest(m2) {
+            return Err(self.error(
+                part,
+                "law",
+                format!("with this table mass the simulation resolves friction stiffness up to {:.3e} N/m, got {bristles:.3e}", stiffest(m2)),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Increments over the travel have to fit the feedback frame.
+    fn check_increments(&self, part: &Range<usize>, mechanics: &MechanicsForm, encoders: &EncodersForm, limits: &Limits) -> Result<(), MachineError> {
+        let increments = limits.travel_m / mechanics.lead_m_per_rev * f64::from(encoders.motor_counts_per_rev);
+        if increments < f64::from(i32::MAX) {
+            return Ok(());
+        }
+        Err(self.error(part, "motor_counts_per_rev", format!("{increments:.3e} increments over the travel do not fit the 32 bits of the feedback")))
     }
 
     fn check_maxwell(&self, part: &Range<usize>, stiffness: &[f64], share: &[f64]) -> Result<(), MachineError> {

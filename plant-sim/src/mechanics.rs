@@ -73,13 +73,16 @@ impl Mechanics {
         let in_contact = self.backlash_m == 0.0 || deflection != 0.0;
         let damping = if in_contact { self.screw_damping_n_s_per_m } else { 0.0 };
         let before = *motion;
+        let can_separate = self.backlash_m > 0.0 && in_contact;
+        let bristles = can_separate.then(|| friction.state());
         self.solve(motion, friction, drive, deflection, damping, dt_s);
-        if self.backlash_m > 0.0 && in_contact {
+        if let Some(bristles) = bristles {
             let relative = mean(before.motor_m_per_s, motion.motor_m_per_s) - mean(before.table_m_per_s, motion.table_m_per_s);
             let force = self.screw_stiffness_n_per_m * deflection + damping * relative;
             if force * deflection < 0.0 {
-                // A gap cannot pull: separate without force. (The friction state moves on by less than a sub-step's slip.)
+                // A gap cannot pull: separate without force.
                 *motion = before;
+                friction.restore(bristles);
                 self.solve(motion, friction, drive, 0.0, 0.0, dt_s);
             }
         }

@@ -8,6 +8,7 @@
 //! `TorqueMissing` and stays there until the servo disables and enables it again.
 
 use protocol::cob::{AxisIds, FrameKind, NodeId};
+use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::{self, Decoded, EmergencyMessage, ErrorRegister, Feedback, NmtCommand, NmtState, Torque};
 use protocol::states::{Command, ControlWord};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
@@ -48,6 +49,7 @@ pub struct PlantNode {
     counter: Option<SyncCounter>,
     due: f64,
     staged: Option<f64>,
+    armed: bool,
     enabled: bool,
     misses: u16,
     fault: Option<Fault>,
@@ -72,6 +74,7 @@ impl PlantNode {
             counter: None,
             due: 0.0,
             staged: None,
+            armed: false,
             enabled: false,
             misses: 0,
             fault: None,
@@ -117,6 +120,12 @@ impl PlantNode {
         self.fault
     }
 
+    /// Torque commands in a row that the present force had to do without.
+    #[must_use]
+    pub const fn bridged(&self) -> u16 {
+        self.misses
+    }
+
     /// Force command that is active at present, N.
     #[must_use]
     pub const fn commanded_n(&self) -> f64 {
@@ -129,16 +138,16 @@ impl PlantNode {
             Ok(Decoded::Message(message)) => self.on_message(message, now_us),
             Ok(Decoded::Foreign) => Vec::new(),
             // A torque frame that cannot be decoded is one that did not come.
-            Err(error) => self.on_lost(error.kind, now_us),
+            Err(error) => self.on_lost(error.kind),
         }
     }
 
     /// Takes the token of a frame that the port knows to be lost.
-    pub fn on_lost(&mut self, kind: FrameKind, now_us: u64) -> Vec<CanFrame> {
+    pub fn on_lost(&mut self, kind: FrameKind) -> Vec<CanFrame> {
         if kind != FrameKind::Sync || self.nmt != NmtState::Operational {
             return Vec::new();
         }
-        self.sync.lost().map_or_else(Vec::new, |counter| self.on_sync(counter, now_us))
+        self.sync.lost().map_or_else(Vec::new, |counter| self.on_sync(counter))
     }
 
     /// Lets time pass: notices that SYNC is gone.
@@ -184,6 +193,9 @@ impl PlantNode {
 
     fn disable(&mut self, next: NmtState) {
         self.nmt = next;
+        self.sync = SyncTracker::default();
+        self.counter = None;
+        self.armed = false;
         self.enabled = false;
         self.due = 0.0;
         self.staged = None;
@@ -193,24 +205,29 @@ impl PlantNode {
         if self.nmt != NmtState::Operational {
             return Vec::new();
         }
+        self.last_sync_us = Some(now_us);
         match self.sync.take(counter) {
-            SyncEvent::Begin(counter) | SyncEvent::BeginStale(counter) => self.on_sync(counter, now_us),
+            SyncEvent::Begin(counter) | SyncEvent::BeginStale(counter) => self.on_sync(counter),
             SyncEvent::Doubled | SyncEvent::Late => Vec::new(),
         }
     }
 
-    fn on_sync(&mut self, counter: SyncCounter, now_us: u64) -> Vec<CanFrame> {
+    fn on_sync(&mut self, counter: SyncCounter) -> Vec<CanFrame> {
         let mut out = Vec::new();
-        let cycles = self.counter.map_or(0, |before| counter.cycles_since(before));
+        // A counter that goes back (a restarted SYNC producer) is one cycle, not 240 minus a few.
+        let cycles = match self.counter.map(|before| counter.cycles_since(before)) {
+            None => 0,
+            Some(ahead) if ahead > SYNC_OVERFLOW / 2 => 1,
+            Some(ahead) => ahead,
+        };
         for _ in 0..cycles {
             self.axis.advance(self.due, self.period_s);
             out.extend(self.take_due());
         }
-        self.last_sync_us = Some(now_us);
         self.counter = Some(counter);
         let reading = self.axis.read();
         let feedback = Feedback {
-            motor: MotorIncrements(i32::try_from(reading.motor_increments).unwrap_or(i32::MAX)),
+            motor: MotorIncrements(saturated(reading.motor_increments)),
             load: LoadIncrements24::from_counts(reading.load_10_nm),
             counter,
         };
@@ -246,14 +263,16 @@ impl PlantNode {
         if self.nmt != NmtState::Operational || self.counter != Some(torque.counter) {
             return Vec::new();
         }
-        let enable = torque.control.command() == Some(Command::EnableOperation);
-        if !enable {
+        let command = torque.control.command();
+        if command != Some(Command::EnableOperation) {
+            // CiA 402: the way to operation goes through `switched on`.
+            self.armed = command == Some(Command::SwitchOn);
             self.enabled = false;
             self.due = 0.0;
             self.staged = None;
             return self.forgive(torque.control);
         }
-        if self.fault.is_none() {
+        if self.fault.is_none() && (self.armed || self.enabled) {
             self.enabled = true;
             self.staged = Some(f64::from(torque.torque.0) * self.newton_per_micro_nm);
         }
@@ -271,6 +290,7 @@ impl PlantNode {
     }
 
     fn latch(&mut self, fault: Fault) -> Vec<CanFrame> {
+        self.armed = false;
         self.enabled = false;
         self.due = 0.0;
         self.staged = None;
@@ -279,4 +299,8 @@ impl PlantNode {
         let emergency = EmergencyMessage::new(fault.emergency_code(), ErrorRegister(ErrorRegister::GENERIC), detail);
         vec![Message::PlantEmergency(emergency).encode(self.ids)]
     }
+}
+
+fn saturated(increments: i64) -> i32 {
+    i32::try_from(increments).unwrap_or(if increments < 0 { i32::MIN } else { i32::MAX })
 }

@@ -61,7 +61,7 @@ impl Fault {
             Self::SetpointMissing | Self::FeedbackMissing | Self::TorqueMissing => 0x8250,
             Self::FollowingError => 0x8611,
             Self::EncoderJump => 0x7305,
-            Self::StaleCounter => 0x8240,
+            Self::StaleCounter => 0xFF02,
             Self::SyncMissing => 0x8700,
             Self::HeartbeatLost => 0x8130,
             Self::PeerFault => 0xFF01,

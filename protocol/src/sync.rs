@@ -1,7 +1,7 @@
 //! Following SYNC by its counter, the same way in every node.
 //!
 //! A SYNC begins a cycle unless it is a double of the present one or the late one of a cycle that was begun by its lost-frame
-//! token. A stale counter begins the cycle that is due: the frame shows that a cycle began, whatever its content says. Two stale counters in
+//! token. A stale counter begins the cycle that is due: the frame shows that a cycle began, whatever its content says. Three stale counters in
 //! sequence show that it is this node that is off; it follows them.
 
 use crate::counter::{SYNC_OVERFLOW, SyncCounter};
@@ -23,9 +23,14 @@ pub enum SyncEvent {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SyncTracker {
     now: Option<SyncCounter>,
+    /// The present cycle, and the one before it, were begun by a token; their SYNC may still come.
     begun_by_token: bool,
-    suspect: Option<SyncCounter>,
+    before_by_token: bool,
+    suspect: Option<(SyncCounter, u8)>,
 }
+
+/// Stale counters in sequence after which the node follows them.
+const FOLLOW_AFTER: u8 = 3;
 
 impl SyncTracker {
     /// Counter of the present cycle; `None` before the first SYNC.
@@ -44,14 +49,18 @@ impl SyncTracker {
         if ahead <= SYNC_OVERFLOW / 2 {
             return self.begin(counter);
         }
-        if self.suspect.is_some_and(|before| before.next() == counter) {
-            return self.begin(counter);
-        }
-        if core::mem::take(&mut self.begun_by_token) && counter.next() == now {
+        if counter.next() == now && core::mem::take(&mut self.before_by_token) {
             return SyncEvent::Late;
         }
+        let in_sequence = match self.suspect {
+            Some((before, times)) if before.next() == counter => times.saturating_add(1),
+            _ => 1,
+        };
+        if in_sequence >= FOLLOW_AFTER {
+            return self.begin(counter);
+        }
         self.begin(now.next());
-        self.suspect = Some(counter);
+        self.suspect = Some((counter, in_sequence));
         SyncEvent::BeginStale(now.next())
     }
 
@@ -64,8 +73,7 @@ impl SyncTracker {
     }
 
     fn begin(&mut self, counter: SyncCounter) -> SyncEvent {
-        // A late SYNC of the cycle before can come during the cycle after it, so the mark outlives one begin.
-        *self = Self { now: Some(counter), begun_by_token: self.begun_by_token, suspect: None };
+        *self = Self { now: Some(counter), begun_by_token: false, before_by_token: self.begun_by_token, suspect: None };
         SyncEvent::Begin(counter)
     }
 }
@@ -103,11 +111,23 @@ mod tests {
     }
 
     #[test]
-    fn a_stale_counter_begins_the_cycle_that_is_due_and_two_of_them_are_followed() {
+    fn two_late_syncs_in_a_row_begin_nothing() {
+        let mut tracker = tracker(7);
+        assert_eq!(tracker.lost(), Some(count(8)));
+        assert_eq!(tracker.lost(), Some(count(9)));
+        assert_eq!(tracker.take(count(8)), SyncEvent::Late);
+        assert_eq!(tracker.take(count(10)), SyncEvent::Begin(count(10)));
+        assert_eq!(tracker.take(count(9)), SyncEvent::Late);
+        assert_eq!(tracker.take(count(11)), SyncEvent::Begin(count(11)));
+    }
+
+    #[test]
+    fn a_stale_counter_begins_the_cycle_that_is_due_and_three_in_sequence_are_followed() {
         let mut tracker = tracker(20);
         assert_eq!(tracker.take(count(15)), SyncEvent::BeginStale(count(21)));
         assert_eq!(tracker.take(count(22)), SyncEvent::Begin(count(22)));
         assert_eq!(tracker.take(count(11)), SyncEvent::BeginStale(count(23)));
-        assert_eq!(tracker.take(count(12)), SyncEvent::Begin(count(12)));
+        assert_eq!(tracker.take(count(12)), SyncEvent::BeginStale(count(24)));
+        assert_eq!(tracker.take(count(13)), SyncEvent::Begin(count(13)));
     }
 }

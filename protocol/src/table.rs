@@ -108,7 +108,7 @@ const EMERGENCY: &[Signal] = &[
     unsigned("ErrorCode", 0, 16, "CiA 301 error code, 0 for error reset"),
     unsigned("ErrorRegister", 16, 8, "object 1001h"),
     unsigned("Fault", 24, 8, "fault code as in the status frame"),
-    unsigned("Detail", 32, 32, "fault detail: cycles missed, or the offending value"),
+    unsigned("Detail", 32, 32, "SYNC counter of the cycle in which it was latched"),
 ];
 const SDO: &[Signal] = &[
     unsigned("Command", 0, 8, "command specifier"),

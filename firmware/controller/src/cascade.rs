@@ -60,30 +60,41 @@ impl CascadeState {
         self.integral
     }
 
-    /// One cycle: the torque within its limit, and whether the limit cut it.
-    pub fn step(&mut self, config: &CascadeConfig, input: &CascadeInput) -> (Torque, bool) {
+    /// First half of a cycle: the torque that is wanted.
+    pub fn propose(&mut self, config: &CascadeConfig, input: &CascadeInput) -> Proposal {
         let setpoint = input.velocity_setpoint.plus(config.position_gain.times(input.error));
         self.velocity = filtered(self.velocity, input.motor_velocity, config.velocity_filter);
         let error = setpoint.minus(self.velocity);
         let integral = self.integral.plus(config.integral_gain.times(error)).limited(config.torque_limit);
         let direct = config.velocity_gain.times(error);
         let feedforward = config.acceleration_gain.times(input.acceleration).plus(input.friction);
-        let wanted = direct.plus(integral).plus(feedforward);
-        let torque = wanted.limited(config.torque_limit);
-        if !winds_up(wanted, torque, error) {
-            self.integral = integral;
-        }
-        (torque, torque != wanted)
+        Proposal { torque: direct.plus(integral).plus(feedforward), integral, error }
     }
+
+    /// Second half: `commanded` is what is left of it after every limit and filter. Tells whether a limit cut it.
+    pub fn settle(&mut self, config: &CascadeConfig, proposal: &Proposal, commanded: Torque) -> bool {
+        let limit = config.torque_limit;
+        let high = commanded >= limit || proposal.torque > limit;
+        let low = commanded <= limit.reversed() || proposal.torque < limit.reversed();
+        if !(high && proposal.error > Velocity::ZERO || low && proposal.error < Velocity::ZERO) {
+            self.integral = proposal.integral;
+        }
+        high || low
+    }
+}
+
+/// What the cascade wants, before limits and filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Proposal {
+    /// Torque without any limit.
+    pub torque: Torque,
+    integral: Torque,
+    error: Velocity,
 }
 
 fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
     let step = new.minus(before).0.wide_mul(share);
     before.plus(Velocity(I20F12::saturating_from_num(step)))
-}
-
-fn winds_up(wanted: Torque, limited: Torque, error: Velocity) -> bool {
-    (wanted > limited && error > Velocity::ZERO) || (wanted < limited && error < Velocity::ZERO)
 }
 
 #[cfg(test)]
@@ -104,21 +115,27 @@ mod tests {
         CascadeInput { velocity_setpoint: Velocity(I20F12::from_num(velocity_setpoint)), ..CascadeInput::default() }
     }
 
+    fn step(state: &mut CascadeState, velocity_setpoint: i32) -> (Torque, bool) {
+        let proposal = state.propose(&config(), &input(velocity_setpoint));
+        let commanded = proposal.torque.limited(config().torque_limit);
+        (commanded, state.settle(&config(), &proposal, commanded))
+    }
+
     #[test]
     fn the_integral_stands_still_at_the_limit_and_comes_back_at_once() {
         let mut state = CascadeState::default();
         for _ in 0..1000 {
-            assert_eq!(state.step(&config(), &input(200)), (Torque::from_micro_nm(50_000), true));
+            assert_eq!(step(&mut state, 200), (Torque::from_micro_nm(50_000), true));
         }
         assert_eq!(state.integral(), Torque::ZERO);
-        let (torque, limited) = state.step(&config(), &input(-10));
+        let (torque, limited) = step(&mut state, -10);
         assert!(torque < Torque::ZERO && !limited, "no stored torque to undo");
     }
 
     #[test]
     fn below_the_limit_the_integral_takes_over() {
         let mut state = CascadeState::default();
-        let torques: Vec<i32> = (0..5).map(|_| state.step(&config(), &input(10)).0.to_micro_nm_lossy()).collect();
+        let torques: Vec<i32> = (0..5).map(|_| step(&mut state, 10).0.to_micro_nm_lossy()).collect();
         assert_eq!(torques, [11_000, 12_000, 13_000, 14_000, 15_000]);
     }
 }

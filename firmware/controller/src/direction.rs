@@ -15,6 +15,15 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// The other one.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+        }
+    }
+
     /// The direction of a velocity; `None` at standstill.
     #[must_use]
     pub fn of(velocity: Velocity) -> Option<Self> {

@@ -126,7 +126,12 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let (offset, offset_velocity) = state.backlash.step(&config.backlash, direction, now.velocity);
 
     let following_error = input.setpoint.error_from(measured(config.position_source, input));
-    let (torque, limited) = state.cascade.step(
+    // With the load scale in the loop the table has to be at the setpoint itself; only the motor gets the offset's velocity.
+    let offset = match config.position_source {
+        PositionSource::Motor => offset,
+        PositionSource::Load => PositionError::ZERO,
+    };
+    let proposal = state.cascade.propose(
         &config.cascade,
         &CascadeInput {
             error: following_error.plus(offset),
@@ -136,7 +141,9 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
             friction: coulomb(config.coulomb, direction),
         },
     );
-    let torque = state.filter.step(&config.filter, torque, config.cascade.torque_limit);
+    let limit = config.cascade.torque_limit;
+    let torque = state.filter.step(&config.filter, proposal.torque.limited(limit), limit);
+    let limited = state.cascade.settle(&config.cascade, &proposal, torque);
     Output { torque, following_error, limited }
 }
 

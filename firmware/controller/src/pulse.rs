@@ -51,7 +51,11 @@ impl PulseState {
         }
         match *self {
             Self::Idle => Velocity::ZERO,
-            Self::Waiting { cycles: 0, direction } => self.emit(config, config.amplitude, direction),
+            Self::Waiting { cycles: 0, direction } => {
+                // A negative height is a pulse the other way; the state keeps magnitudes only.
+                let direction = if config.amplitude < Velocity::ZERO { direction.opposite() } else { direction };
+                self.emit(config, Velocity(config.amplitude.0.saturating_abs()), direction)
+            }
             Self::Waiting { cycles, direction } => {
                 *self = Self::Waiting { cycles: cycles.saturating_sub(1), direction };
                 Velocity::ZERO

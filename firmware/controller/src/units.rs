@@ -70,6 +70,13 @@ impl Position {
         Velocity(I20F12::saturating_from_num(self.0.saturating_sub(earlier.0)))
     }
 
+    /// Mean velocity since an earlier position, so many cycles ago; zero cycles count as one.
+    #[must_use]
+    pub fn velocity_since(self, earlier: Self, cycles: u16) -> Velocity {
+        let way = self.step_from(earlier);
+        Velocity(way.0.checked_div_int(i32::from(cycles)).unwrap_or(way.0))
+    }
+
     /// Where a constant velocity leads within one cycle.
     #[must_use]
     pub fn after(self, velocity: Velocity) -> Self {

@@ -106,7 +106,7 @@ impl Node {
             let now_us = Instant::now().as_micros();
             let out = match received {
                 Received::Frame(frame) => self.servo.on_frame(&frame, now_us),
-                Received::Lost(kind) => self.servo.on_lost(kind, now_us),
+                Received::Lost(kind) => self.servo.on_lost(kind),
             };
             self.send(&out, port);
         }

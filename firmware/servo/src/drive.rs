@@ -125,7 +125,9 @@ impl Drive {
             (Self::Faulted(first), _) => Self::Faulted(first),
             (Self::FaultReaction(first, _), Reaction::TorqueZero) => Self::Faulted(first),
             (Self::FaultReaction(..), Reaction::ControlledStop) => self,
-            (Self::OperationEnabled | Self::QuickStop(_), Reaction::ControlledStop) => Self::FaultReaction(fault, stop),
+            (Self::OperationEnabled, Reaction::ControlledStop) => Self::FaultReaction(fault, stop),
+            // The ramp that runs goes on.
+            (Self::QuickStop(running), Reaction::ControlledStop) => Self::FaultReaction(fault, running),
             (
                 Self::SwitchOnDisabled
                 | Self::ReadyToSwitchOn

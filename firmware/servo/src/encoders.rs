@@ -26,6 +26,7 @@ struct Track {
     load_raw: LoadIncrements24,
     motor_velocity: Velocity,
     load_velocity: Velocity,
+    good: Measured,
     predicted_cycles: u16,
 }
 
@@ -63,8 +64,10 @@ impl Track {
         let motor_counts: i64 = motor.0.to_num();
         let near = LoadIncrements24::from_counts(motor_counts);
         let load_counts = motor_counts.saturating_add(i64::from(near.step_to(load)));
+        let at = Measured { motor, load: Position::from_counts(load_counts) };
         Self {
-            at: Measured { motor, load: Position::from_counts(load_counts) },
+            at,
+            good: at,
             load_counts,
             load_raw: load,
             motor_velocity: Velocity::ZERO,
@@ -89,8 +92,9 @@ impl Track {
             at,
             load_counts,
             load_raw: load,
-            motor_velocity: if cycles == 1 { motor.step_from(self.at.motor) } else { self.motor_velocity },
-            load_velocity: if cycles == 1 { at.load.step_from(self.at.load) } else { self.load_velocity },
+            good: at,
+            motor_velocity: motor.velocity_since(self.good.motor, cycles),
+            load_velocity: at.load.velocity_since(self.good.load, cycles),
             predicted_cycles: 0,
         })
     }

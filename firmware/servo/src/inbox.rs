@@ -123,7 +123,9 @@ impl Inbox {
         self.setpoint = match self.next_setpoint {
             Slot::Fresh(early) if early.counter == counter => Slot::Fresh(early),
             Slot::Fresh(_) => Slot::Missed(Miss::Stale),
-            other => other,
+            // Setpoints come one cycle early: at SYNC it is there, or it was lost without a token.
+            Slot::Waiting => Slot::Missed(Miss::Absent),
+            Slot::Missed(miss) => Slot::Missed(miss),
         };
         self.next_setpoint = Slot::Waiting;
     }
@@ -143,7 +145,9 @@ impl Inbox {
         }
         if now.is_none_or(|now| now.next() == setpoint.counter) {
             return match self.next_setpoint {
-                Slot::Fresh(_) => Taken::Doubled,
+                // Before the first SYNC there is no cycle to belong to: the newest counts.
+                Slot::Fresh(_) if now.is_some() => Taken::Doubled,
+                Slot::Fresh(_) => fill(&mut self.next_setpoint, setpoint),
                 Slot::Waiting | Slot::Missed(_) => fill(&mut self.next_setpoint, setpoint),
             };
         }

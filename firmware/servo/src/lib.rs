@@ -82,10 +82,31 @@ pub struct Servo {
     sync_timeout_us: i32,
 }
 
-#[derive(Clone, Copy, Debug)]
+/// The setpoint of the present cycle: from the bus, or carried on from the last good one.
+#[derive(Clone, Copy, Debug, Default)]
 struct Track {
     position: Position,
     velocity: Velocity,
+    good: Position,
+    cycles_since_good: u16,
+}
+
+impl Track {
+    fn begin(position: Position) -> Self {
+        Self { position, velocity: Velocity::ZERO, good: position, cycles_since_good: 0 }
+    }
+
+    /// A good setpoint came: the velocity is the way since the last good one.
+    fn take(self, position: Position) -> Self {
+        let velocity = position.velocity_since(self.good, self.cycles_since_good.saturating_add(1));
+        Self { position, velocity, good: position, cycles_since_good: 0 }
+    }
+
+    /// None came: it goes on as before.
+    fn carry_on(self) -> Self {
+        let position = self.position.after(self.velocity);
+        Self { position, cycles_since_good: self.cycles_since_good.saturating_add(1), ..self }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -155,6 +176,18 @@ impl Servo {
         self.last.torque
     }
 
+    /// Setpoints and feedbacks in a row that the present torque had to do without.
+    #[must_use]
+    pub const fn bridged(&self) -> (u16, u16) {
+        self.watchdog.misses()
+    }
+
+    /// Frames lost, stale, malformed, implausible and doubled since reset.
+    #[must_use]
+    pub const fn diagnostics(&self) -> [u32; 5] {
+        self.watchdog.diagnostics()
+    }
+
     /// Takes a frame from the bus.
     pub fn on_frame(&mut self, frame: &CanFrame, now_us: u64) -> Outbox {
         let mut out = Outbox::new();
@@ -163,7 +196,7 @@ impl Servo {
             Ok(Decoded::Message(message)) => self.on_message(message, now_us, &mut out),
             Err(error) => {
                 self.watchdog.malformed();
-                self.miss(error.kind, Miss::Malformed, now_us, &mut out);
+                self.miss(error.kind, Miss::Malformed, &mut out);
             }
         }
         self.compute_if_complete(&mut out);
@@ -171,10 +204,10 @@ impl Servo {
     }
 
     /// Takes the token of a frame that the port knows to be lost.
-    pub fn on_lost(&mut self, kind: FrameKind, now_us: u64) -> Outbox {
+    pub fn on_lost(&mut self, kind: FrameKind) -> Outbox {
         let mut out = Outbox::new();
         self.watchdog.lost();
-        self.miss(kind, Miss::Absent, now_us, &mut out);
+        self.miss(kind, Miss::Absent, &mut out);
         self.compute_if_complete(&mut out);
         out
     }
@@ -225,35 +258,49 @@ impl Servo {
     }
 
     fn leave_operational(&mut self, next: NmtState, out: &mut Outbox) {
-        self.drive = self.drive.commanded(Some(Command::DisableVoltage), false, self.stop());
+        // A fault reaction does not listen to commands, so it is ended first.
+        self.drive = self.drive.stopped().commanded(Some(Command::DisableVoltage), false, self.stop());
         self.drive_to_zero(out);
         self.nmt = next;
+        self.sync = SyncTracker::default();
+        self.inbox = Inbox::default();
     }
 
     fn on_sync(&mut self, counter: SyncCounter, now_us: u64, out: &mut Outbox) {
         if self.nmt != NmtState::Operational {
             return;
         }
+        self.watchdog.sync(now_us);
         match self.sync.take(counter) {
-            SyncEvent::Begin(counter) => self.begin(counter, now_us, out),
+            SyncEvent::Begin(counter) => self.begin(counter, out),
             SyncEvent::BeginStale(counter) => {
                 self.watchdog.stale();
-                self.begin(counter, now_us, out);
+                self.begin(counter, out);
             }
             SyncEvent::Doubled => self.watchdog.doubled(),
             SyncEvent::Late => self.watchdog.stale(),
         }
     }
 
-    fn begin(&mut self, counter: SyncCounter, now_us: u64, out: &mut Outbox) {
+    fn begin(&mut self, counter: SyncCounter, out: &mut Outbox) {
         if self.inbox.is_open() {
             self.compute(out);
         }
-        self.watchdog.sync(now_us);
+        let cycles = self.inbox.counter().map_or(1, |before| counter.cycles_since(before));
+        if cycles <= protocol::counter::SYNC_OVERFLOW / 2 {
+            (1..cycles).for_each(|_| self.bridge_cycle(out));
+        }
         if let Some(settings) = self.committed.take() {
             self.active = Some(settings);
         }
         self.inbox.begin(counter);
+    }
+
+    /// A cycle passed whose SYNC never came: everything in it counts as missing.
+    fn bridge_cycle(&mut self, out: &mut Outbox) {
+        let Some(settings) = self.active.clone() else { return };
+        self.measure(Err(Miss::Absent), &settings, out);
+        self.target(Err(Miss::Absent), &settings, out);
     }
 
     fn on_setpoint(&mut self, setpoint: Setpoint) {
@@ -285,6 +332,8 @@ impl Servo {
         let (response, effect) = self.server.handle(request, &readings, active, free);
         match effect {
             Effect::None => {}
+            // At rest at once; in motion with the next cycle, as a whole.
+            Effect::Commit(settings) if free => self.active = Some(settings),
             Effect::Commit(settings) => self.committed = Some(settings),
         }
         if let Some(response) = response {
@@ -303,13 +352,13 @@ impl Servo {
         }
     }
 
-    fn miss(&mut self, kind: FrameKind, miss: Miss, now_us: u64, out: &mut Outbox) {
+    fn miss(&mut self, kind: FrameKind, miss: Miss, out: &mut Outbox) {
         match kind {
             FrameKind::Sync => {
                 if self.nmt == NmtState::Operational
                     && let Some(counter) = self.sync.lost()
                 {
-                    self.begin(counter, now_us, out);
+                    self.begin(counter, out);
                 }
             }
             FrameKind::Setpoint => self.inbox.miss_setpoint(miss),
@@ -336,10 +385,11 @@ impl Servo {
     fn compute(&mut self, out: &mut Outbox) {
         let Some(settings) = self.active.clone() else { return };
         let (setpoint, feedback) = self.inbox.end();
+        let stop = self.stop();
         let measured = self.measure(feedback, &settings, out);
         let target = self.target(setpoint, &settings, out);
         self.check_heartbeat(&settings, out);
-        self.follow_control_word(setpoint, measured.is_some());
+        self.follow_control_word(setpoint, measured.is_some(), stop, out);
         self.last.torque = Torque::ZERO;
         self.last.limited = false;
         match measured.zip(target) {
@@ -360,8 +410,9 @@ impl Servo {
         self.last.warning |= accepted.is_err();
         match self.watchdog.feedback(accepted.err(), settings.limits.feedback_misses) {
             Some(fault) if self.drive.is_energised() => self.latch(fault, out),
-            Some(_) if accepted == Err(Miss::Implausible) => self.encoders = Encoders::default(),
-            _ => {}
+            // Without torque nothing is at stake: forget the old position, so that nobody enables on it.
+            Some(_) => self.encoders = Encoders::default(),
+            None => {}
         }
         accepted.ok().or_else(|| self.encoders.predict())
     }
@@ -376,13 +427,9 @@ impl Servo {
         self.setpoint = match setpoint {
             Ok(setpoint) => {
                 let position = Position::from_fine_counts(setpoint.position.counts());
-                let bridged = self.watchdog.bridged_setpoint();
-                let velocity = before.map_or(Velocity::ZERO, |before| {
-                    if bridged { before.velocity } else { position.step_from(before.position) }
-                });
-                Some(Track { position, velocity })
+                Some(before.map_or_else(|| Track::begin(position), |track| track.take(position)))
             }
-            Err(_) => before.map(|track| Track { position: track.position.after(track.velocity), ..track }),
+            Err(_) => before.map(Track::carry_on),
         };
         self.setpoint
     }
@@ -393,15 +440,17 @@ impl Servo {
         }
     }
 
-    fn follow_control_word(&mut self, setpoint: Result<Setpoint, Miss>, measured: bool) {
+    /// `stop` starts where the law stood before this cycle's setpoint, so that a stop begins without a step.
+    fn follow_control_word(&mut self, setpoint: Result<Setpoint, Miss>, measured: bool, stop: Stop, out: &mut Outbox) {
         let Ok(Setpoint { control, .. }) = setpoint else { return };
         let reset_edge = (control.0 & !self.control.0) & ControlWord::FAULT_RESET.0 != 0;
         self.control = control;
         let command = control.command().filter(|command| measured || *command != Command::EnableOperation);
         let before = self.drive;
-        self.drive = self.drive.commanded(command, reset_edge, self.stop());
+        self.drive = self.drive.commanded(command, reset_edge, stop);
         if before.fault().is_some() && self.drive.fault().is_none() {
             self.watchdog.forgive();
+            self.send(out, Message::ServoEmergency(EmergencyMessage::error_reset()));
         }
     }
 
@@ -439,7 +488,7 @@ impl Servo {
 
     fn stop(&self) -> Stop {
         let cycles = self.active.as_ref().map_or(0, |active| active.limits.stop);
-        let track = self.setpoint.unwrap_or(Track { position: Position::default(), velocity: Velocity::ZERO });
+        let track = self.setpoint.unwrap_or_default();
         Stop::from(track.position, track.velocity, cycles)
     }
 

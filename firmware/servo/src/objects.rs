@@ -92,7 +92,7 @@ pub const TABLE: [Entry; PARAMETERS] = [
     entry((0x2101, 1), Parameter::WayWhole, "way per motor increment, whole", "10 nm", (0, 65_535), 1),
     entry((0x2101, 2), Parameter::WayFraction, "way per motor increment, fraction", "10 nm, 2^-31", POSITIVE, 0),
     entry((0x2110, 1), Parameter::PulseAmplitude, "reversal pulse height", "10 nm/cycle, 2^-12", ANY, 0),
-    entry((0x2110, 2), Parameter::PulseDecay, "reversal pulse decay per cycle", "2^-30", (0, 1 << 30), 0),
+    entry((0x2110, 2), Parameter::PulseDecay, "reversal pulse decay per cycle", "2^-30", (0, (1 << 30) - 1), 0),
     entry((0x2110, 3), Parameter::PulseStartDelay, "reversal pulse start delay", "cycles", (0, 10_000), 0),
     entry((0x2111, 1), Parameter::BacklashHalfGap, "half the backlash to compensate", "10 nm, 2^-8", POSITIVE, 0),
     entry((0x2111, 2), Parameter::VelocityLimit, "velocity limit of the axis", "10 nm/cycle, 2^-12", POSITIVE, 0),

@@ -10,7 +10,6 @@ use crate::inbox::Miss;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     setpoint_misses: u16,
-    setpoint_bridged: bool,
     feedback_misses: u16,
     heartbeat_cycles: u16,
     last_sync_us: Option<u64>,
@@ -24,14 +23,7 @@ pub struct Watchdog {
 impl Watchdog {
     /// A cycle's setpoint; a fault when too many in a row were missing.
     pub fn setpoint(&mut self, miss: Option<Miss>, allowed: u16) -> Option<Fault> {
-        self.setpoint_bridged = self.setpoint_misses > 0;
         over(&mut self.setpoint_misses, miss, allowed).map(|_| Fault::SetpointMissing)
-    }
-
-    /// Whether the setpoint before this one was made up.
-    #[must_use]
-    pub const fn bridged_setpoint(&self) -> bool {
-        self.setpoint_bridged
     }
 
     /// A cycle's feedback; a fault when too many in a row were missing, named after the last miss.
@@ -45,6 +37,12 @@ impl Watchdog {
             Miss::Malformed => Fault::MalformedFrame,
             Miss::Implausible => Fault::EncoderJump,
         })
+    }
+
+    /// Setpoints and feedbacks that were missing in a row.
+    #[must_use]
+    pub const fn misses(&self) -> (u16, u16) {
+        (self.setpoint_misses, self.feedback_misses)
     }
 
     /// The plant is alive.
