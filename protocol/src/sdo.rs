@@ -1,11 +1,7 @@
 //! SDO, expedited transfers only (CiA 301 §7.2.4.3): requests and responses as values.
 //!
-//! The byte layout comes from `canopen-rs`; its list of abort codes lacks those of range checks and device state, and
-//! it has no decoder of requests, so these two are here.
-
-use canopen_rs::datatypes::Value;
-use canopen_rs::object_dictionary::Address as WireAddress;
-use canopen_rs::sdo as wire;
+//! `canopen-rs` serves for NMT and EMCY; its SDO side lacks a decoder of requests and the abort codes of range checks and device state, and its
+//! encoder keeps a panic path, so the expedited layout is here.
 
 /// Object index and subindex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,8 +19,10 @@ impl Address {
         Self { index, subindex }
     }
 
-    const fn on_wire(self) -> WireAddress {
-        WireAddress { index: self.index, subindex: self.subindex }
+    /// A transfer: command specifier, address, four data bytes.
+    const fn transfer(self, command: u8, [a, b, c, d]: [u8; 4]) -> [u8; 8] {
+        let [low, high] = self.index.to_le_bytes();
+        [command, low, high, self.subindex, a, b, c, d]
     }
 }
 
@@ -86,13 +84,10 @@ impl Expedited {
         self.len
     }
 
-    fn on_wire(self) -> Value {
-        let [a, b, ..] = self.bytes;
-        match self.len {
-            1 => Value::Unsigned8(a),
-            2 => Value::Unsigned16(u16::from_le_bytes([a, b])),
-            _ => Value::Unsigned32(self.to_u32()),
-        }
+    /// Command specifier of an expedited transfer with its size: bits 2 and 3 count the bytes without data.
+    const fn command(self, request_or_response: u8) -> u8 {
+        let unused = 4_u8.saturating_sub(self.len) & 3;
+        request_or_response | unused.wrapping_shl(2) | 0x03
     }
 }
 
@@ -105,7 +100,7 @@ const fn fill(high: u8) -> u8 {
 pub enum Request {
     /// Read an object.
     Upload(Address),
-    /// Write an object; `data` is `None` where the client did not say the size (then all 4 bytes count).
+    /// Write an object; where the client does not say the size, all 4 bytes count.
     Download(Address, Expedited),
     /// Anything else: segmented or block transfers, unknown command specifiers.
     Unsupported(Address),
@@ -132,12 +127,11 @@ impl Request {
 
     /// The 8 bytes of a request. `Unsupported` is encoded as an abort: it has no bytes of its own.
     #[must_use]
-    pub fn encode(self) -> [u8; 8] {
+    pub const fn encode(self) -> [u8; 8] {
         match self {
-            Self::Upload(address) => wire::encode_upload_request(address.on_wire()),
-            Self::Download(address, data) => wire::encode_download_expedited(address.on_wire(), &data.on_wire())
-                .unwrap_or_else(|_| abort(address, AbortCode::GeneralError)),
-            Self::Unsupported(address) | Self::Abort(address) => abort(address, AbortCode::GeneralError),
+            Self::Upload(address) => address.transfer(0x40, [0; 4]),
+            Self::Download(address, data) => address.transfer(data.command(0x20), data.bytes),
+            Self::Unsupported(address) | Self::Abort(address) => abort(address, AbortCode::GeneralError.value()),
         }
     }
 }
@@ -174,25 +168,18 @@ impl Response {
 
     /// The 8 bytes of a response.
     #[must_use]
-    pub fn encode(self) -> [u8; 8] {
+    pub const fn encode(self) -> [u8; 8] {
         match self {
-            Self::Uploaded(address, data) => wire::encode_upload_expedited_response(address.on_wire(), &data.on_wire())
-                .unwrap_or_else(|_| abort(address, AbortCode::GeneralError)),
-            Self::Downloaded(address) => wire::encode_download_response(address.on_wire()),
-            Self::Aborted(address, code) => abort_raw(address, code),
-            Self::Unknown => abort_raw(Address::new(0, 0), AbortCode::GeneralError.value()),
+            Self::Uploaded(address, data) => address.transfer(data.command(0x40), data.bytes),
+            Self::Downloaded(address) => address.transfer(0x60, [0; 4]),
+            Self::Aborted(address, code) => abort(address, code),
+            Self::Unknown => abort(Address::new(0, 0), AbortCode::GeneralError.value()),
         }
     }
 }
 
-fn abort(address: Address, code: AbortCode) -> [u8; 8] {
-    abort_raw(address, code.value())
-}
-
-const fn abort_raw(address: Address, code: u32) -> [u8; 8] {
-    let [low, high] = address.index.to_le_bytes();
-    let [a, b, c, d] = code.to_le_bytes();
-    [0x80, low, high, address.subindex, a, b, c, d]
+const fn abort(address: Address, code: u32) -> [u8; 8] {
+    address.transfer(0x80, code.to_le_bytes())
 }
 
 /// Abort codes, CiA 301 table 22.
@@ -287,6 +274,16 @@ mod tests {
                 response => prop_assert_eq!(Response::decode(response.encode()).encode(), response.encode()),
             }
         }
+    }
+
+    #[test]
+    fn expedited_transfers_have_the_bytes_of_cia_301() {
+        let at = Address::new(0x6065, 0x02);
+        assert_eq!(Request::Upload(at).encode(), [0x40, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
+        assert_eq!(Request::Download(at, Expedited::u8(7)).encode(), [0x2F, 0x65, 0x60, 0x02, 7, 0, 0, 0]);
+        assert_eq!(Request::Download(at, Expedited::u16(0x1234)).encode(), [0x2B, 0x65, 0x60, 0x02, 0x34, 0x12, 0, 0]);
+        assert_eq!(Response::Uploaded(at, Expedited::i32(-2)).encode(), [0x43, 0x65, 0x60, 0x02, 0xFE, 0xFF, 0xFF, 0xFF]);
+        assert_eq!(Response::Downloaded(at).encode(), [0x60, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
     }
 
     #[test]

@@ -1,13 +1,9 @@
 //! Optional second-order filter on the torque command: low-pass or notch.
 //!
-//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form 1 with first-order error
-//! feedback, from the `idsp` crate; coefficients in Q29, computed on the host. Headroom: inputs and outputs stay below
-//! [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7, so that the 32-bit
-//! output cannot wrap before it is clamped.
-
-use dsp_fixedpoint::Q32;
-use dsp_process::SplitProcess;
-use idsp::iir::{Biquad, BiquadClamp, DirectForm1Dither};
+//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form 1, coefficients in Q29 computed on the host. What rounding
+//! cuts off is carried into the next cycle (first-order error feedback), so that the gain at rest is exact and small torques do not stick.
+//! Headroom: inputs and outputs stay within [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and [`FilterConfig::new`] takes no set whose magnitudes add up to more than
+//! 7 < 2³, so the accumulator stays below 2⁶⁰.
 
 use crate::units::Torque;
 
@@ -15,11 +11,11 @@ use crate::units::Torque;
 pub const TORQUE_LIMIT_MICRO_NM: i32 = 250_000_000;
 
 /// Fractional bits of a coefficient.
-pub const COEFFICIENT_FRACTION_BITS: u8 = 29;
+pub const COEFFICIENT_FRACTION_BITS: u32 = 29;
 
-/// Coefficients of the filter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FilterConfig(Biquad<Q32<29>>);
+/// Coefficients of the filter: `[b0, b1, b2, a1, a2]` in Q29.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilterConfig([i32; 5]);
 
 /// The coefficients add up to more than the headroom of the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +26,7 @@ pub struct CoefficientsTooLarge {
 
 impl FilterConfig {
     /// Passes the torque through.
-    pub const OFF: Self = Self(Biquad::IDENTITY);
+    pub const OFF: Self = Self([1 << COEFFICIENT_FRACTION_BITS, 0, 0, 0, 0]);
 
     /// `[b0, b1, b2, a1, a2]` in Q29.
     ///
@@ -41,23 +37,35 @@ impl FilterConfig {
         if sum > 7 << COEFFICIENT_FRACTION_BITS {
             return Err(CoefficientsTooLarge { sum });
         }
-        Ok(Self(Biquad { ba: coefficients.map(Q32::from_bits) }))
+        Ok(Self(coefficients))
     }
 }
 
-/// Memory of the filter.
-#[derive(Clone, Debug, Default)]
-pub struct FilterState(DirectForm1Dither);
+/// Memory of the filter: `[x1, x2, y1, y2]` in µN·m, and what rounding cut off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FilterState {
+    past: [i32; 4],
+    rest: i64,
+}
 
 impl FilterState {
-    /// Filters one torque; both sides within `±limit_micro_nm`.
+    /// Filters one torque; both sides within `±limit`.
     pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: Torque) -> Torque {
         let limit = limit.to_micro_nm_lossy().clamp(0, TORQUE_LIMIT_MICRO_NM);
-        let input = torque.to_micro_nm_lossy().max(limit.saturating_neg()).min(limit);
-        let filter = BiquadClamp { coeff: config.0.clone(), u: 0, min: limit.saturating_neg(), max: limit };
-        Torque::from_micro_nm(filter.process(&mut self.0, input))
+        let x0 = torque.to_micro_nm_lossy().max(limit.saturating_neg()).min(limit);
+        let [x1, x2, y1, y2] = self.past;
+        let products = config.0.into_iter().zip([x0, x1, x2, y1, y2]);
+        // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the same.
+        let sum = products.fold(self.rest, |sum, (c, v)| sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v))));
+        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS)).unwrap_or(if sum < 0 { i32::MIN } else { i32::MAX });
+        let y0 = whole.max(limit.saturating_neg()).min(limit);
+        self.rest = sum & REST_MASK;
+        self.past = [x0, x1, y0, y1];
+        Torque::from_micro_nm(y0)
     }
 }
+
+const REST_MASK: i64 = (1 << COEFFICIENT_FRACTION_BITS) - 1;
 
 #[cfg(test)]
 mod tests {

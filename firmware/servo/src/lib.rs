@@ -154,7 +154,7 @@ impl Servo {
     #[must_use]
     pub fn boot(&self) -> Outbox {
         let mut out = Outbox::new();
-        self.send(&mut out, Message::ServoHeartbeat(NmtState::Initialising));
+        self.send(&mut out, BOOT_UP);
         out
     }
 
@@ -252,7 +252,7 @@ impl Servo {
             NmtCommand::ResetNode | NmtCommand::ResetCommunication => {
                 let timeout_us = self.sync_timeout_us.unsigned_abs();
                 *self = Self::new(self.ids).with_sync_timeout_us(timeout_us);
-                out.extend(self.boot());
+                self.send(out, BOOT_UP);
             }
         }
     }
@@ -552,6 +552,7 @@ impl Servo {
     }
 }
 
+const BOOT_UP: Message = Message::ServoHeartbeat(NmtState::Initialising);
 const DEFAULT_SYNC_TIMEOUT_US: i32 = 1_000_000;
 const ERROR_REGISTER: message::ErrorRegister = message::ErrorRegister(message::ErrorRegister::GENERIC);
 

@@ -1,0 +1,82 @@
+//! The control path alone, for one question: can it panic?
+//!
+//! The panic handler calls a symbol that does not exist, so the image links only if no panic is reachable from any entry point. Linked for soft float, so that a
+//! float would show as an `__aeabi_f…` symbol. Built with optimisation: the proof is one of the optimised program, which is the one that runs.
+//! Inputs and states come in by reference and as plain numbers, so that nothing folds away.
+#![no_std]
+#![no_main]
+
+use core::mem::MaybeUninit;
+
+use embedded_can::{ExtendedId, Frame, StandardId};
+use protocol::CanFrame;
+use protocol::cob::{AxisIds, FrameKind};
+use servo::{Outbox, Servo};
+
+#[expect(unsafe_code, reason = "a symbol that does not exist can only be declared")]
+unsafe extern "C" {
+    safe fn a_panic_is_reachable_from_the_control_path() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    a_panic_is_reachable_from_the_control_path()
+}
+
+/// A servo of any axis.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_new(axis: u8, timeout_us: u32, place: &mut MaybeUninit<Servo>) -> bool {
+    match AxisIds::of_axis(axis) {
+        Some(ids) => {
+            place.write(Servo::new(ids).with_sync_timeout_us(timeout_us));
+            true
+        }
+        None => false,
+    }
+}
+
+/// Its boot-up.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_boot(servo: &mut Servo, out: &mut Outbox) {
+    *out = servo.boot();
+}
+
+/// Any frame that a bus can carry.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_frame(servo: &mut Servo, id: u32, flags: u8, data: &[u8; 8], length: u8, now_us: u64, out: &mut Outbox) {
+    let data = data.get(..usize::from(length)).unwrap_or(data);
+    let frame = match (flags & 1, flags & 2) {
+        (0, 0) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new(id, data)),
+        (0, _) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new_remote(id, data.len())),
+        _ => ExtendedId::new(id & 0x1FFF_FFFF).and_then(|id| CanFrame::new(id, data)),
+    };
+    if let Some(frame) = frame {
+        *out = servo.on_frame(&frame, now_us);
+    }
+}
+
+/// Any token.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_lost(servo: &mut Servo, kind: u8, out: &mut Outbox) {
+    if let Some(kind) = FrameKind::ALL.get(usize::from(kind)) {
+        *out = servo.on_lost(*kind);
+    }
+}
+
+/// Any time.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_time(servo: &mut Servo, now_us: u64, out: &mut Outbox) {
+    *out = servo.on_time(now_us);
+}
+
+/// The bus load: the only computation of the protocol crate that the servo does not use.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_load(bit_rate: u32, axes: u8, cycle_ns: u64) -> u32 {
+    protocol::load::cyclic_load_per_mille(protocol::load::BusFormat::Classic { bit_rate }, axes, cycle_ns)
+}
