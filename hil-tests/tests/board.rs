@@ -1,0 +1,120 @@
+//! The board image links within its budgets, and no panic is reachable from the control path. Linking is not booting.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, elf};
+use serde::Deserialize;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+/// Builds a leaf for a Cortex-M target, in a target folder of its own so that it does not wait for the tests' lock; gives the image.
+fn build(package: &str, target: &str, profile: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("cortex-m");
+    let added = Command::new("rustup").args(["target", "add", target]).output().expect("rustup is part of the toolchain");
+    assert!(added.status.success(), "rustup target add {target}: {}", String::from_utf8_lossy(&added.stderr));
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--locked", "--package", package, "--target", target, "--profile", profile, "--target-dir"])
+        .arg(&folder)
+        .current_dir(root())
+        .env_remove("RUSTFLAGS")
+        .output()
+        .unwrap();
+    assert!(built.status.success(), "{package}: {}", String::from_utf8_lossy(&built.stderr));
+    folder.join(target).join(profile).join(package)
+}
+
+#[derive(Deserialize)]
+struct Budget {
+    min: u64,
+    max: u64,
+    of: u64,
+}
+
+#[derive(Deserialize)]
+struct Image {
+    flash: Budget,
+    static_ram: Budget,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+struct Budgets {
+    board_g431: Image,
+}
+
+fn check(what: &str, used: u64, budget: &Budget) {
+    println!("{what}: {used} of {} bytes ({:.1} %)", budget.of, 100.0 * used as f64 / budget.of as f64);
+    assert!((budget.min..=budget.max).contains(&used), "{what}: {used} bytes, budget {} to {}", budget.min, budget.max);
+}
+
+#[test]
+fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
+    let image = build("board-g431", "thumbv7em-none-eabihf", "release");
+    let bytes = std::fs::read(&image).unwrap();
+    let file = object::File::parse(&*bytes).unwrap();
+    let (mut flash, mut ram) = (0, 0);
+    for section in file.sections() {
+        let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
+        if sh_flags & u64::from(elf::SHF_ALLOC) == 0 || section.address() < 0x0800_0000 {
+            continue;
+        }
+        let in_ram = (0x2000_0000..0x2000_8000).contains(&section.address());
+        let is_stored = section.kind() != SectionKind::UninitializedData;
+        flash += if is_stored { section.size() } else { 0 };
+        ram += if in_ram { section.size() } else { 0 };
+    }
+    let text = std::fs::read_to_string(root().join("hil-tests/budgets.toml")).unwrap();
+    let budgets: Budgets = toml::from_str(&text).unwrap();
+    check("flash of the STM32G431CB", flash, &budgets.board_g431.flash);
+    check("static RAM", ram, &budgets.board_g431.static_ram);
+
+    let table = file.section_by_name(".vector_table").unwrap();
+    assert_eq!(table.address(), 0x0800_0000);
+    let words: Vec<u32> = table.data().unwrap().chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    assert_eq!(words[0], 0x2000_0000 + 22 * 1024, "initial stack pointer at the end of RAM");
+    let reset = file.symbols().find(|symbol| symbol.name() == Ok("Reset")).unwrap().address();
+    assert_eq!(u64::from(words[1]) | 1, reset | 1, "the reset vector points to Reset");
+    assert_eq!(file.entry() | 1, reset | 1);
+}
+
+#[test]
+fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
+    let image = build("control-path", "thumbv7em-none-eabi", "proof");
+    let bytes = std::fs::read(&image).unwrap();
+    let file = object::File::parse(&*bytes).unwrap();
+    let names: Vec<&str> = file.symbols().filter_map(|symbol| symbol.name().ok()).collect();
+    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_lost", "entry_time"] {
+        assert!(names.contains(&entry), "{entry} is not in the image");
+    }
+    let soft = |name: &&&str| {
+        name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d") || name.ends_with("ldivmod") || name.contains("panic")
+    };
+    assert_eq!(names.iter().filter(soft).collect::<Vec<_>>(), Vec::<&&str>::new());
+    let text = file.section_by_name(".text").unwrap().size();
+    println!("control path: {text} bytes of code");
+    assert!((10_000..60_000).contains(&text), "{text} bytes of code: is the control path really in it?");
+}
+
+#[test]
+fn the_proof_would_notice_a_panic() {
+    // The same leaf with a panic in it must not link: otherwise the proof proves nothing.
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("panics.rs");
+    let body = "#![no_std]\n#![no_main]\nunsafe extern \"C\" { safe fn a_panic_is_reachable_from_the_control_path() -> !; }\n\
+                #[panic_handler] fn panic(_: &core::panic::PanicInfo<'_>) -> ! { a_panic_is_reachable_from_the_control_path() }\n\
+                #[unsafe(no_mangle)] extern \"C\" fn entry(data: &[u8; 4], at: usize) -> u8 { data[at] }\n";
+    std::fs::write(&source, body).unwrap();
+    let target = "thumbv7em-none-eabi";
+    assert!(Command::new("rustup").args(["target", "add", target]).output().unwrap().status.success());
+    let linked = Command::new("rustc")
+        .args(["--edition=2024", "--target", target, "-C", "opt-level=3", "-C", "panic=abort", "-C", "link-arg=--entry=entry", "-o"])
+        .arg(folder.path().join("panics"))
+        .arg(&source)
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&linked.stderr);
+    assert!(!linked.status.success() && message.contains("a_panic_is_reachable_from_the_control_path"), "{message}");
+}

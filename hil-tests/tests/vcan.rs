@@ -1,0 +1,256 @@
+//! The scenarios over a real vcan, every node a process of its own.
+//!
+//! `over_vcan` is the test: it builds the program, gets a kernel with vcan (this one, or a user-mode guest: `scripts/with-vcan`) and runs the others, which are
+//! marked as ignored only because they need that kernel. It fails where they did not run.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use hil_tests::rig::shared_bus;
+use protocol::Fault;
+use protocol::states::DriveState;
+use workbench::compensation::AxisCompensation;
+use workbench::link::{Interfaces, Link};
+use workbench::master::Master;
+
+const SCENARIOS: &str = "3 passed; 0 failed";
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("vcan");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn program() -> PathBuf {
+    std::env::var_os("QUADRANT_PROGRAM").expect("over_vcan says where the program is").into()
+}
+
+#[test]
+fn over_vcan() {
+    let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().to_path_buf();
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--locked", "--package", "workbench", "--bin", "quadrant", "--target-dir"])
+        .arg(&target)
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let stats = folder().join("kernel-stats.txt");
+    let ran = Command::new(root().join("scripts/with-vcan"))
+        .arg(std::env::current_exe().unwrap())
+        .args(["--ignored", "--test-threads=1", "--nocapture"])
+        .current_dir(root())
+        .env("QUADRANT_PROGRAM", target.join("release/quadrant"))
+        .env("VCAN_STATS", &stats)
+        .env("VCAN_TIMEOUT", "600")
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let (out, err) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
+    println!("{out}{err}");
+    assert!(ran.status.success(), "vcan scenarios failed ({})", ran.status);
+    assert!(out.contains(SCENARIOS), "not all vcan scenarios ran: {out}");
+    assert!(std::fs::read_to_string(stats).unwrap().contains("transmitted frames"));
+
+    let decoded = Command::new(root().join("scripts/decode-candump"))
+        .arg(folder().join("first.candump.log"))
+        .arg(root().join("protocol/quadrant.dbc"))
+        .env("CARGO_TARGET_DIR", &target)
+        .output()
+        .unwrap();
+    let out = String::from_utf8_lossy(&decoded.stdout);
+    println!("{out}{}", String::from_utf8_lossy(&decoded.stderr));
+    assert!(decoded.status.success() && out.contains("unknown 0"), "{out}");
+}
+
+/// Node processes of both axes; they end with the value.
+struct Nodes(Vec<Child>);
+
+impl Nodes {
+    fn start(faults: Option<&str>) -> Self {
+        let node = |arguments: &[&str]| {
+            let mut command = Command::new(program());
+            command.args(arguments).args(["--can", "vcan0"]);
+            if let Some(plan) = faults {
+                command.args(["--faults", plan]);
+            }
+            command.spawn().unwrap()
+        };
+        let nodes = Self(vec![
+            node(&["plant", "--node", "0x11"]),
+            node(&["servo", "--node", "1", "--plant-node", "0x11"]),
+            node(&["plant", "--node", "0x12"]),
+            node(&["servo", "--node", "2", "--plant-node", "0x12"]),
+        ]);
+        // They say nothing before they are asked; give them time to open their sockets.
+        std::thread::sleep(Duration::from_millis(500));
+        nodes
+    }
+
+    fn kill(&mut self, node: usize) {
+        self.0[node].kill().unwrap();
+        self.0[node].wait().unwrap();
+    }
+}
+
+impl Drop for Nodes {
+    fn drop(&mut self) {
+        for node in &mut self.0 {
+            let _ = node.kill();
+            let _ = node.wait();
+        }
+    }
+}
+
+fn machine_file() -> PathBuf {
+    let text = plant_sim::Machine::reference_text().replace("like = \"X\"", "like = \"X\"\ninterface = \"vcan0\"");
+    let text = text.replacen("name = \"X\"", "name = \"X\"\ninterface = \"vcan0\"", 1);
+    let path = folder().join("shared-bus.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// Runs a circle and gives its log, frame by frame without times.
+fn circle(name: &str, can: Option<&str>) -> Vec<String> {
+    let log = folder().join(format!("{name}.candump.log"));
+    let mut command = Command::new(program());
+    command.args(["circle", "--radius-mm", "5", "--feed-mm-min", "2000", "--machine"]).arg(machine_file());
+    command.arg("--candump").arg(&log);
+    if let Some(interface) = can {
+        command.args(["--can", interface]);
+    }
+    let ran = command.output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let text = std::fs::read_to_string(log).unwrap();
+    text.lines().map(|line| line.rsplit(' ').next().unwrap().to_owned()).collect()
+}
+
+/// Frames of each identifier, from the reset of all nodes on: before it, processes boot when they like.
+fn by_identifier(frames: &[String]) -> BTreeMap<String, Vec<String>> {
+    let reset = frames.iter().position(|frame| frame == "000#8200").expect("the workbench resets all nodes");
+    let mut sequences: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for frame in &frames[reset..] {
+        let (identifier, data) = frame.split_once('#').unwrap();
+        sequences.entry(identifier.into()).or_default().push(data.into());
+    }
+    sequences
+}
+
+fn kernel_frames() -> u64 {
+    let text = std::fs::read_to_string("/proc/net/can/stats").expect("this kernel has CAN");
+    let line = text.lines().find(|line| line.contains("(TXF)")).unwrap();
+    line.split_whitespace().next().unwrap().parse().unwrap()
+}
+
+#[test]
+#[ignore = "run by over_vcan, in a kernel that has vcan"]
+fn separate_processes_say_byte_for_byte_what_one_process_says_and_say_it_again() {
+    let in_process = by_identifier(&circle("in-process", None));
+    let before = kernel_frames();
+    let first = {
+        let _nodes = Nodes::start(None);
+        circle("first", Some("vcan0"))
+    };
+    let counted = kernel_frames() - before;
+    let second = {
+        let _nodes = Nodes::start(None);
+        circle("second", Some("vcan0"))
+    };
+    // Four processes announce themselves before the workbench listens.
+    assert_eq!(counted, first.len() as u64 + 4, "the kernel counts every frame of the log and four boot-ups");
+    println!("vcan: {} frames in the log, {counted} counted by the kernel", first.len());
+    for (name, other) in [("first run over vcan", by_identifier(&first)), ("second run over vcan", by_identifier(&second))] {
+        assert_eq!(in_process.keys().collect::<Vec<_>>(), other.keys().collect::<Vec<_>>(), "{name}: identifiers");
+        for (identifier, frames) in &in_process {
+            let differing = frames.iter().zip(&other[identifier]).position(|(a, b)| a != b);
+            assert_eq!(differing, None, "{name}: identifier {identifier} differs");
+            assert_eq!(frames.len(), other[identifier].len(), "{name}: identifier {identifier} has another number of frames");
+        }
+    }
+}
+
+fn path(cycle: u32) -> Vec<f64> {
+    let x = 0.010 * (std::f64::consts::TAU * f64::from(cycle) / 2400.0).sin();
+    vec![x, x]
+}
+
+fn enabled() -> Master<Interfaces> {
+    let machine = shared_bus();
+    let mut master = Master::start(Interfaces::open(&machine, "vcan0").unwrap(), &machine).unwrap();
+    master.configure(&machine, &[AxisCompensation::default(); 2]).unwrap();
+    master.enable().unwrap();
+    master
+}
+
+#[test]
+#[ignore = "run by over_vcan, in a kernel that has vcan"]
+fn one_frame_in_twenty_may_go_wrong_over_vcan() {
+    for plan in ["7,50,0,0,0", "7,0,50,0,0", "7,0,0,50,0", "7,0,0,0,50", "7,50,50,50,50"] {
+        let _nodes = Nodes::start(Some(plan));
+        let mut master = enabled();
+        let mut faults = 0;
+        let begun = Instant::now();
+        for cycle in 0..3000 {
+            master.cycle(&path(cycle)).unwrap();
+            if (0..2).any(|axis| master.state(axis) == Some(DriveState::Fault)) {
+                faults += 1;
+                master.reset_fault().unwrap();
+                while master.enable().is_err() {
+                    master.reset_fault().unwrap();
+                }
+            }
+        }
+        println!("faults {plan}: {faults} latched, {} cycles waited for in vain, {:?}", master.missed(), begun.elapsed());
+        assert_eq!(master.missed(), 0, "{plan}: a lost frame closes its cycle, so nobody waits");
+    }
+}
+
+#[test]
+#[ignore = "run by over_vcan, in a kernel that has vcan"]
+fn dead_processes_and_a_silent_workbench_are_noticed_over_vcan() {
+    // Servo of X dies: its plant notices that torque is missing.
+    let mut nodes = Nodes::start(None);
+    let mut master = enabled();
+    (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
+    nodes.kill(1);
+    (500..510).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
+    assert_eq!(master.fault(0), Some(Fault::TorqueMissing), "plant of X");
+    assert_eq!(master.fault(1), None, "Y goes on");
+    drop(nodes);
+
+    // Plant of X dies: its servo notices that feedback is missing.
+    let mut nodes = Nodes::start(None);
+    let mut master = enabled();
+    (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
+    nodes.kill(0);
+    (500..510).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
+    assert_eq!(master.fault(0), Some(Fault::FeedbackMissing), "servo of X");
+    drop(nodes);
+
+    // The workbench falls silent: by the wall clock, everybody notices.
+    let _nodes = Nodes::start(None);
+    let mut master = enabled();
+    (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
+    let silent = Instant::now();
+    let mut link = master.into_link();
+    let mut reported = Vec::new();
+    while silent.elapsed() < Duration::from_secs(3) && reported.len() < 2 {
+        if let Some(frame) = link.receive(0, Duration::from_millis(50)).unwrap() {
+            let text = format!("{:?} {:?}", embedded_can::Frame::id(&frame), frame.payload());
+            // EMCY of a servo, error code 8700h, fault SyncMissing.
+            let is_sync = frame.payload().first_chunk() == Some(&[0x00, 0x87]) && frame.payload().get(3) == Some(&Fault::SyncMissing.code());
+            if is_sync {
+                reported.push((silent.elapsed(), text));
+            }
+        }
+    }
+    println!("SYNC gone: {reported:?}");
+    assert!(reported.len() >= 2, "{reported:?}");
+    assert!(reported[0].0 >= Duration::from_millis(900) && reported[1].0 < Duration::from_millis(1500), "{reported:?}");
+}
