@@ -89,7 +89,8 @@ impl FaultyPort {
     fn cyclic_kind(&self, frame: &CanFrame) -> Option<FrameKind> {
         let Id::Standard(id) = frame.id() else { return None };
         let kind = self.ids.classify(id)?;
-        let cyclic = |spec: &&protocol::table::FrameSpec| spec.kind == kind && matches!(spec.rate, Rate::EveryCycles(_));
+        let cyclic =
+            |spec: &&protocol::table::FrameSpec| spec.kind == kind && matches!(spec.rate, Rate::EveryCycles(_));
         FRAMES.iter().find(cyclic).map(|_| kind)
     }
 
@@ -101,7 +102,9 @@ impl FaultyPort {
             return Fate::Delivered;
         }
         let Id::Standard(id) = frame.id() else { return Fate::Delivered };
-        let hash = mix(self.plan.seed ^ mix(u64::from(id.as_raw()) << 40 | u64::from(self.cycle) << 8 | u64::from(self.receiver)));
+        let hash =
+            mix(self.plan.seed
+                ^ mix(u64::from(id.as_raw()) << 40 | u64::from(self.cycle) << 8 | u64::from(self.receiver)));
         let mut left = hash % 1000;
         let how = u8::try_from(hash >> 32 & 0xFF).unwrap_or(0);
         let fates = [

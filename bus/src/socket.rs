@@ -84,7 +84,10 @@ impl CanPort {
                 Err(error) => return Err(error),
             }
         }
-        Err(io::Error::new(ErrorKind::TimedOut, "the transmit queue stays full: is another node on the bus to acknowledge frames?"))
+        Err(io::Error::new(
+            ErrorKind::TimedOut,
+            "the transmit queue stays full: is another node on the bus to acknowledge frames?",
+        ))
     }
 }
 
@@ -100,7 +103,9 @@ fn is_full(error: &io::Error) -> bool {
 
 fn explained(interface: &str, error: &io::Error) -> io::Error {
     let what_to_do = match error.raw_os_error() {
-        Some(libc::ENODEV) => "there is no such interface; `ip link add dev vcan0 type vcan && ip link set up vcan0` makes a virtual one",
+        Some(libc::ENODEV) => {
+            "there is no such interface; `ip link add dev vcan0 type vcan && ip link set up vcan0` makes a virtual one"
+        }
         Some(libc::EAFNOSUPPORT) => "this kernel has no CAN; `sudo modprobe vcan`, or run under scripts/with-vcan",
         _ => "check the interface with `ip -details link show`",
     };

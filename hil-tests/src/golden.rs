@@ -67,7 +67,11 @@ pub fn check(table: &str, measured: &[Measured]) {
             None => writeln!(wrong, "new row: {} = {}", new.name, new.value),
             Some(row) if (new.value - row.value).abs() <= row.tolerance => Ok(()),
             Some(row) => {
-                writeln!(wrong, "{}: {} ± {} {} wanted, {} measured", row.name, row.value, row.tolerance, new.unit, new.value)
+                writeln!(
+                    wrong,
+                    "{}: {} ± {} {} wanted, {} measured",
+                    row.name, row.value, row.tolerance, new.unit, new.value
+                )
             }
         }
         .expect("a String takes everything");
@@ -79,12 +83,14 @@ pub fn check(table: &str, measured: &[Measured]) {
 }
 
 fn blessed(text: &str, rows: &[Row], measured: &[Measured]) -> String {
-    let head: String = text.lines().take_while(|line| !line.starts_with('|')).fold(String::new(), |head, line| head + line + "\n");
+    let head: String =
+        text.lines().take_while(|line| !line.starts_with('|')).fold(String::new(), |head, line| head + line + "\n");
     let mut out = head + "| figure | value | tolerance | unit | note |\n|---|---|---|---|---|\n";
     for new in measured {
         let known = rows.iter().find(|row| row.name == new.name);
         let (tolerance, note) = known.map_or_else(|| (0.02 * new.value.abs(), ""), |row| (row.tolerance, &row.note));
-        writeln!(out, "| {} | {:.3} | {tolerance:.3} | {} | {note} |", new.name, new.value, new.unit).expect("a String takes everything");
+        writeln!(out, "| {} | {:.3} | {tolerance:.3} | {} | {note} |", new.name, new.value, new.unit)
+            .expect("a String takes everything");
     }
     out
 }

@@ -13,7 +13,8 @@ fn root() -> PathBuf {
 /// Builds a leaf for a Cortex-M target, in a target folder of its own so that it does not wait for the tests' lock; gives the image.
 fn build(package: &str, target: &str, profile: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("cortex-m");
-    let added = Command::new("rustup").args(["target", "add", target]).output().expect("rustup is part of the toolchain");
+    let added =
+        Command::new("rustup").args(["target", "add", target]).output().expect("rustup is part of the toolchain");
     assert!(added.status.success(), "rustup target add {target}: {}", String::from_utf8_lossy(&added.stderr));
     let built = Command::new(env!("CARGO"))
         .args(["build", "--locked", "--package", package, "--target", target, "--profile", profile, "--target-dir"])
@@ -73,7 +74,8 @@ fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
 
     let table = file.section_by_name(".vector_table").unwrap();
     assert_eq!(table.address(), 0x0800_0000);
-    let words: Vec<u32> = table.data().unwrap().chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    let words: Vec<u32> =
+        table.data().unwrap().chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
     assert_eq!(words[0], 0x2000_0000 + 22 * 1024, "initial stack pointer at the end of RAM");
     let reset = file.symbols().find(|symbol| symbol.name() == Ok("Reset")).unwrap().address();
     assert_eq!(u64::from(words[1]) | 1, reset | 1, "the reset vector points to Reset");
@@ -90,7 +92,10 @@ fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
         assert!(names.contains(&entry), "{entry} is not in the image");
     }
     let soft = |name: &&&str| {
-        name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d") || name.ends_with("ldivmod") || name.contains("panic")
+        name.starts_with("__aeabi_f")
+            || name.starts_with("__aeabi_d")
+            || name.ends_with("ldivmod")
+            || name.contains("panic")
     };
     assert_eq!(names.iter().filter(soft).collect::<Vec<_>>(), Vec::<&&str>::new());
     let text = file.section_by_name(".text").unwrap().size();
@@ -110,7 +115,18 @@ fn the_proof_would_notice_a_panic() {
     let target = "thumbv7em-none-eabi";
     assert!(Command::new("rustup").args(["target", "add", target]).output().unwrap().status.success());
     let linked = Command::new("rustc")
-        .args(["--edition=2024", "--target", target, "-C", "opt-level=3", "-C", "panic=abort", "-C", "link-arg=--entry=entry", "-o"])
+        .args([
+            "--edition=2024",
+            "--target",
+            target,
+            "-C",
+            "opt-level=3",
+            "-C",
+            "panic=abort",
+            "-C",
+            "link-arg=--entry=entry",
+            "-o",
+        ])
         .arg(folder.path().join("panics"))
         .arg(&source)
         .output()

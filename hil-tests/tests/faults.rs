@@ -76,16 +76,37 @@ fn one_frame_in_twenty_may_be_lost_doubled_late_or_corrupted() {
         ("doubled", FaultPlan { doubled_per_mille: 50, ..five }),
         ("late", FaultPlan { late_per_mille: 50, ..five }),
         ("corrupted", FaultPlan { corrupted_per_mille: 50, ..five }),
-        ("all four", FaultPlan { lost_per_mille: 50, doubled_per_mille: 50, late_per_mille: 50, corrupted_per_mille: 50, ..five }),
+        (
+            "all four",
+            FaultPlan {
+                lost_per_mille: 50,
+                doubled_per_mille: 50,
+                late_per_mille: 50,
+                corrupted_per_mille: 50,
+                ..five
+            },
+        ),
     ];
     let feedback_allowed = default_of(Parameter::FeedbackMissesAllowed);
     let setpoint_allowed = default_of(Parameter::SetpointMissesAllowed) + default_of(Parameter::StopCycles);
     let mut rows: Vec<Measured> = Vec::new();
     for (name, plan) in plans {
         let (mut master, seen) = survive(plan);
-        assert!(seen.longest_feedback <= feedback_allowed, "{name}: torque on feedback {} cycles old", seen.longest_feedback);
-        assert!(seen.longest_setpoint <= setpoint_allowed, "{name}: torque on setpoint {} cycles old", seen.longest_setpoint);
-        assert!(seen.longest_torque <= TORQUE_MISSES_ALLOWED, "{name}: force on torque {} cycles old", seen.longest_torque);
+        assert!(
+            seen.longest_feedback <= feedback_allowed,
+            "{name}: torque on feedback {} cycles old",
+            seen.longest_feedback
+        );
+        assert!(
+            seen.longest_setpoint <= setpoint_allowed,
+            "{name}: torque on setpoint {} cycles old",
+            seen.longest_setpoint
+        );
+        assert!(
+            seen.longest_torque <= TORQUE_MISSES_ALLOWED,
+            "{name}: force on torque {} cycles old",
+            seen.longest_torque
+        );
         assert!(seen.warnings > 0, "{name}: nothing was reported");
         assert!(master.link_mut().bus_mut(0).injected() > 1000, "{name}: hardly any fault was injected");
         for (what, value, unit) in [
@@ -192,12 +213,16 @@ fn without_sync_both_nodes_go_to_zero_by_the_wall_clock() {
     for ms in 1..=2000_u32 {
         // The workbench is silent; 1 ms of virtual time passes.
         let _ = master.link_mut().bus_mut(0).receive(1000);
-        if zero_ms.is_none() && servo.borrow().torque().to_micro_nm_lossy() == 0 && plant.borrow().commanded_n() == 0.0 {
+        if zero_ms.is_none() && servo.borrow().torque().to_micro_nm_lossy() == 0 && plant.borrow().commanded_n() == 0.0
+        {
             zero_ms = Some(ms);
         }
     }
     assert_eq!(servo.borrow().drive().fault(), Some(Fault::SyncMissing));
-    golden::check("sync-gone", &[row("torque zero at servo and plant after SYNC is gone", f64::from(zero_ms.unwrap()), "ms")]);
+    golden::check(
+        "sync-gone",
+        &[row("torque zero at servo and plant after SYNC is gone", f64::from(zero_ms.unwrap()), "ms")],
+    );
 }
 
 #[test]

@@ -44,11 +44,15 @@ fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up
         let actual = &machine.axes[0].actual;
         let wanted_um = gap_um + 2.0e6 * actual.sliding.coulomb_n / actual.mechanics.screw_stiffness_n_per_m;
         for step_um in figures.step_um {
-            assert!((step_um / wanted_um - 1.0).abs() < 0.02, "gap {gap_um} µm: step {step_um} µm, wanted {wanted_um} µm");
+            assert!(
+                (step_um / wanted_um - 1.0).abs() < 0.02,
+                "gap {gap_um} µm: step {step_um} µm, wanted {wanted_um} µm"
+            );
         }
         rows.push(row(format!("Fig. 4, gap {gap_um} µm outside, step X"), figures.step_um[0], "µm"));
         if gap_um == 100.0 {
-            let trace = Trace { name: "gap 100 µm outside".into(), points: &points[..points.len() / 3], radius_m: 0.1 };
+            let trace =
+                Trace { name: "gap 100 µm outside".into(), points: &points[..points.len() / 3], radius_m: 0.1 };
             keep("fig-1a-step.svg", &plots::polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]).unwrap());
         }
     }
@@ -70,7 +74,10 @@ fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
     assert!(crossing.len() > 50, "{} samples", crossing.len());
     let (low, high) = crossing.iter().fold((f64::MAX, f64::MIN), |(low, high), (x, _)| (low.min(*x), high.max(*x)));
     let moved_um = 1.0e6 * (high - low);
-    golden::check("paper-fig-4-flat", &[row("way of the table while the motor crosses half the gap of 100 µm", moved_um, "µm")]);
+    golden::check(
+        "paper-fig-4-flat",
+        &[row("way of the table while the motor crosses half the gap of 100 µm", moved_um, "µm")],
+    );
     assert!(moved_um < 0.5, "{moved_um} µm");
 }
 
@@ -88,8 +95,12 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
         rows.push(row(format!("Fig. 5, gap {gap_um} µm inside, burst"), burst, "µm"));
         bursts.push(burst);
         if gap_um == 400.0 {
-            let trace = Trace { name: "gap 400 µm inside".into(), points: &points[..points.len() / 3], radius_m: 0.01 };
-            keep("fig-5b-gap-inside.svg", &plots::polar("Fig. 5(b): gap inside, R 10 mm, F 500 mm/min", &[trace]).unwrap());
+            let trace =
+                Trace { name: "gap 400 µm inside".into(), points: &points[..points.len() / 3], radius_m: 0.01 };
+            keep(
+                "fig-5b-gap-inside.svg",
+                &plots::polar("Fig. 5(b): gap inside, R 10 mm, F 500 mm/min", &[trace]).unwrap(),
+            );
         }
     }
     assert!(bursts.windows(2).all(|pair| pair[0] < pair[1]));
@@ -108,10 +119,15 @@ fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     let still = |row: &(f64, AxisCycle), next: &(f64, AxisCycle)| {
         (next.1.truth.unwrap().table_m - row.1.truth.unwrap().table_m).abs() < 1.0e-12
     };
-    let standing: Vec<&(f64, AxisCycle)> = rows.windows(2).filter(|pair| still(&pair[0], &pair[1])).map(|pair| &pair[0]).collect();
+    let standing: Vec<&(f64, AxisCycle)> =
+        rows.windows(2).filter(|pair| still(&pair[0], &pair[1])).map(|pair| &pair[0]).collect();
     let (first, last) = (standing.first().unwrap(), standing.last().unwrap());
     let stagnation_ms = 1.0e3 * (last.0 - first.0);
-    assert_eq!(standing.len() as f64, (stagnation_ms / 1.0e3 / machine.period_s).round() + 1.0, "it stands once, without a break");
+    assert_eq!(
+        standing.len() as f64,
+        (stagnation_ms / 1.0e3 / machine.period_s).round() + 1.0,
+        "it stands once, without a break"
+    );
     let force = |row: &(f64, AxisCycle)| row.1.truth.unwrap().force_n;
     let change_n = force(last) - force(first);
     let friction_n = machine.axes[0].actual.sliding.coulomb_n;
@@ -137,6 +153,9 @@ fn fig_1_and_8_friction_inside_the_loop_gives_bursts_on_the_polar_plot() {
     keep("fig-1b-burst.svg", &plots::polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces).unwrap());
     golden::check(
         "paper-fig-1",
-        &[row("Fig. 1(b), burst of the reference machine", figures(&points), "µm"), row("Fig. 8(b), burst with dry friction", figures(&dry), "µm")],
+        &[
+            row("Fig. 1(b), burst of the reference machine", figures(&points), "µm"),
+            row("Fig. 8(b), burst with dry friction", figures(&dry), "µm"),
+        ],
     );
 }

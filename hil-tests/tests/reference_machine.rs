@@ -39,7 +39,10 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
         let of = |compensation: &[AxisCompensation]| run(&circle(radius, feed), compensation).peak_max_um;
         let (before, pulse, force) = (of(&none), of(&tuned.compensation), of(&coulomb));
         assert!((before / prototype - 1.0).abs() < 0.25, "R {radius} F {feed}: {before} µm, prototype {prototype} µm");
-        assert!((pulse / prototype_pulse - 1.0).abs() < 0.25, "R {radius} F {feed}: {pulse} µm, prototype {prototype_pulse} µm");
+        assert!(
+            (pulse / prototype_pulse - 1.0).abs() < 0.25,
+            "R {radius} F {feed}: {pulse} µm, prototype {prototype_pulse} µm"
+        );
         let name = |what: &str| format!("R {radius} F {feed}, {what}");
         rows.push(row(name("none"), before, "µm"));
         rows.push(row(name("pulse tuned at R 100 F 2000"), pulse, "µm"));

@@ -165,12 +165,18 @@ fn separate_processes_say_byte_for_byte_what_one_process_says_and_say_it_again()
     // Four processes announce themselves before the workbench listens.
     assert_eq!(counted, first.len() as u64 + 4, "the kernel counts every frame of the log and four boot-ups");
     println!("vcan: {} frames in the log, {counted} counted by the kernel", first.len());
-    for (name, other) in [("first run over vcan", by_identifier(&first)), ("second run over vcan", by_identifier(&second))] {
+    for (name, other) in
+        [("first run over vcan", by_identifier(&first)), ("second run over vcan", by_identifier(&second))]
+    {
         assert_eq!(in_process.keys().collect::<Vec<_>>(), other.keys().collect::<Vec<_>>(), "{name}: identifiers");
         for (identifier, frames) in &in_process {
             let differing = frames.iter().zip(&other[identifier]).position(|(a, b)| a != b);
             assert_eq!(differing, None, "{name}: identifier {identifier} differs");
-            assert_eq!(frames.len(), other[identifier].len(), "{name}: identifier {identifier} has another number of frames");
+            assert_eq!(
+                frames.len(),
+                other[identifier].len(),
+                "{name}: identifier {identifier} has another number of frames"
+            );
         }
     }
 }
@@ -206,7 +212,11 @@ fn one_frame_in_twenty_may_go_wrong_over_vcan() {
                 }
             }
         }
-        println!("faults {plan}: {faults} latched, {} cycles waited for in vain, {:?}", master.missed(), begun.elapsed());
+        println!(
+            "faults {plan}: {faults} latched, {} cycles waited for in vain, {:?}",
+            master.missed(),
+            begun.elapsed()
+        );
         assert_eq!(master.missed(), 0, "{plan}: a lost frame closes its cycle, so nobody waits");
     }
 }
@@ -244,7 +254,8 @@ fn dead_processes_and_a_silent_workbench_are_noticed_over_vcan() {
         if let Some(frame) = link.receive(0, Duration::from_millis(50)).unwrap() {
             let text = format!("{:?} {:?}", embedded_can::Frame::id(&frame), frame.payload());
             // EMCY of a servo, error code 8700h, fault SyncMissing.
-            let is_sync = frame.payload().first_chunk() == Some(&[0x00, 0x87]) && frame.payload().get(3) == Some(&Fault::SyncMissing.code());
+            let is_sync = frame.payload().first_chunk() == Some(&[0x00, 0x87])
+                && frame.payload().get(3) == Some(&Fault::SyncMissing.code());
             if is_sync {
                 reported.push((silent.elapsed(), text));
             }

@@ -176,7 +176,8 @@ impl Difference {
     pub fn on(&self, motion: &Kinematics, position: &[f64]) -> Option<(f64, f64)> {
         let target = motion.difference.as_deref()?;
         let bench = Bench::new(motion, position, target);
-        let declared: Vec<Column> = self.terms.iter().copied().filter(|term| !self.found.contains(&term.name())).collect();
+        let declared: Vec<Column> =
+            self.terms.iter().copied().filter(|term| !self.found.contains(&term.name())).collect();
         Some((bench.rms_um(&declared, &self.declared), bench.rms_um(&self.terms, &self.coefficients)))
     }
 }
@@ -212,7 +213,8 @@ fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
     let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
     let sse = |gap: f64| bench.fit(&[terms, &[Column::Play { gap }]].concat()).sse;
     let grid = crate::effects::geometric(counts, 1.0e-3_f64.max(100.0 * counts), 24);
-    let best = grid.into_iter().map(|gap| (sse(gap), gap)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(counts, |(_, gap)| gap);
+    let best =
+        grid.into_iter().map(|gap| (sse(gap), gap)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(counts, |(_, gap)| gap);
     let (mut gap, mut step, mut least) = (best, 0.15 * best, sse(best));
     for _ in 0..8 {
         let tries = [gap - step, gap + step].map(|gap| (sse(gap), gap));

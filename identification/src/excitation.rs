@@ -27,7 +27,9 @@ pub fn warnings(dataset: &Dataset, motion: &Kinematics) -> Vec<String> {
         list.push(format!("there is hardly any motion below {unit}: a Stribeck fall cannot be seen; record slow runs"));
     }
     if reversals(motion) < 4 {
-        list.push("there are fewer than four reversals: presliding and backlash cannot be judged; record reversals".into());
+        list.push(
+            "there are fewer than four reversals: presliding and backlash cannot be judged; record reversals".into(),
+        );
     }
     list
 }

@@ -50,7 +50,8 @@ mod tests {
         for hz in [10.0, 50.0, 100.0, 200.0] {
             let wave: Vec<f64> = (0..4000).map(|i| (TAU * hz * 1.0e-3 * f64::from(i)).cos()).collect();
             let out = filter.apply(&wave);
-            let gain = (1500..2500).map(|i| out[i] * wave[i]).sum::<f64>() / (1500..2500).map(|i| wave[i].powi(2)).sum::<f64>();
+            let gain = (1500..2500).map(|i| out[i] * wave[i]).sum::<f64>()
+                / (1500..2500).map(|i| wave[i].powi(2)).sum::<f64>();
             // Bilinear transform: tan(π f / fs).
             let ratio = (TAU / 2.0 * hz * 1.0e-3).tan() / (TAU / 2.0 * 0.1).tan();
             let wanted = 1.0 / (1.0 + ratio.powi(8));

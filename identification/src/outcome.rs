@@ -238,7 +238,10 @@ fn assemble(
     let train = [declared.judge(dataset, motion, declares_presliding), extended.judge(dataset, motion, true)];
     let validation_motion = Kinematics::new(dataset, &dataset.validate);
     let validation_motion = validation_motion.as_ref().unwrap_or(motion);
-    let validation = [declared.judge(dataset, validation_motion, declares_presliding), extended.judge(dataset, validation_motion, true)];
+    let validation = [
+        declared.judge(dataset, validation_motion, declares_presliding),
+        extended.judge(dataset, validation_motion, true),
+    ];
     let found = found(dataset, selected, extended, difference);
     let residual = structure(motion, &train, selected);
     let percent_left = train[1].force_percent * residual.share_after.sqrt();
@@ -293,7 +296,8 @@ fn whole(dataset: &Dataset, declared: &Fitted, extended: &Fitted, declares_presl
     let record = dataset.whole()?;
     let motion = Kinematics::new(dataset, &record)?;
     let judge = |fitted: &Fitted, presliding: bool| {
-        let bristle = fitted.uses_presliding(presliding).map(|deflection| reversal::with_presliding(&motion, deflection));
+        let bristle =
+            fitted.uses_presliding(presliding).map(|deflection| reversal::with_presliding(&motion, deflection));
         let bench = Bench { dataset, motion: bristle.as_ref().unwrap_or(&motion) };
         let coefficients = bench.fit(&fitted.model).coefficients;
         fitted.judge_with(dataset, &motion, presliding, &coefficients)
@@ -330,7 +334,11 @@ fn reversal_suspicion(extended: &Fitted, difference: Option<&Difference>) -> boo
 fn looks_like(residual: &ResidualReport, selected: &Selection, suspicious: bool) -> String {
     let mut parts: Vec<String> = selected.nameless.iter().map(|name| format!("a {name}")).collect();
     if residual.share_after >= WHITE_SHARE && !residual.looks_like.is_empty() {
-        parts.push(format!("structure over {} ({:.0} % of the residual)", residual.looks_like, 100.0 * residual.share_after));
+        parts.push(format!(
+            "structure over {} ({:.0} % of the residual)",
+            residual.looks_like,
+            100.0 * residual.share_after
+        ));
     }
     if suspicious {
         parts.push("structure at reversals that is neither stick nor a bristle".into());
@@ -424,7 +432,8 @@ fn parameters(
         }
     }
     let length = dataset.kind.position_unit();
-    let plain = |name: &str, value: f64, unit: &str| Named { name: name.into(), value, half_width: None, unit: unit.into() };
+    let plain =
+        |name: &str, value: f64, unit: &str| Named { name: name.into(), value, half_width: None, unit: unit.into() };
     if extended.model.delay_s != 0.0 {
         named.push(plain("delay", extended.model.delay_s, "s"));
     }

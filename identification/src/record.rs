@@ -258,7 +258,8 @@ impl Dataset {
     pub fn whole(&self) -> Option<Record> {
         self.held_back.then(|| {
             let join = |a: &[f64], b: &[f64]| [a, b].concat();
-            let both = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| a.as_deref().zip(b.as_deref()).map(|(a, b)| join(a, b));
+            let both =
+                |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| a.as_deref().zip(b.as_deref()).map(|(a, b)| join(a, b));
             Record {
                 position: join(&self.train.position, &self.validate.position),
                 load: both(&self.train.load, &self.validate.load),
@@ -275,7 +276,8 @@ fn read_form(path: &Path) -> Outcome<DatasetForm> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| IdentificationError::new(format!("{}: {error}; a dataset needs this file", path.display())))?;
     toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
+        let line =
+            error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
         IdentificationError::new(format!("{}:{line}: {}", path.display(), error.message()))
     })
 }
@@ -304,7 +306,8 @@ struct Table {
 impl Table {
     fn read(path: &Path) -> Outcome<Self> {
         let shown = path.display().to_string();
-        let failed = |error: csv::Error| IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"));
+        let failed =
+            |error: csv::Error| IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"));
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(failed)?;
         let header: Vec<String> = reader.headers().map_err(failed)?.iter().map(String::from).collect();
         let mut columns = vec![Vec::new(); header.len()];
@@ -330,7 +333,11 @@ impl Table {
 
     fn required(&self, name: &str) -> Outcome<Vec<f64>> {
         self.column(name).ok_or_else(|| {
-            IdentificationError::new(format!("{}:1: no column {name}; the header has {}", self.path, self.header.join(", ")))
+            IdentificationError::new(format!(
+                "{}:1: no column {name}; the header has {}",
+                self.path,
+                self.header.join(", ")
+            ))
         })
     }
 

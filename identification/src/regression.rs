@@ -87,7 +87,12 @@ impl Blocks {
         let total = sum(&self.grams, self.scale.len());
         let coefficients = self.solve(&total);
         let last = self.scale.len() - 1;
-        Fit { sse: left(&total, &coefficients), coefficients: coefficients.as_slice().to_vec(), held_out: Vec::new(), total: total[(last, last)] }
+        Fit {
+            sse: left(&total, &coefficients),
+            coefficients: coefficients.as_slice().to_vec(),
+            held_out: Vec::new(),
+            total: total[(last, last)],
+        }
     }
 
     /// The fit with its held-out errors.

@@ -63,9 +63,9 @@ fn hat(knots: &[f64], at: usize, value: f64) -> f64 {
     let rise = at.checked_sub(1).map_or(if value <= knots[at] { 1.0 } else { f64::INFINITY }, |left| {
         (value - knots[left]) / (knots[at] - knots[left])
     });
-    let fall = knots.get(at + 1).map_or(if value >= knots[at] { 1.0 } else { f64::INFINITY }, |right| {
-        (right - value) / (right - knots[at])
-    });
+    let fall = knots
+        .get(at + 1)
+        .map_or(if value >= knots[at] { 1.0 } else { f64::INFINITY }, |right| (right - value) / (right - knots[at]));
     rise.min(fall).clamp(0.0, 1.0)
 }
 

@@ -119,8 +119,10 @@ impl Bench<'_> {
     /// Prediction that is not low-passed.
     #[must_use]
     pub fn predict(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let columns = model.terms.iter().flat_map(|term| term.effect.columns(self.motion, self.dataset, term.parameter));
-        let columns: Vec<Vec<f64>> = columns.map(|column| shifted(column, model.delay_s / self.motion.period_s)).collect();
+        let columns =
+            model.terms.iter().flat_map(|term| term.effect.columns(self.motion, self.dataset, term.parameter));
+        let columns: Vec<Vec<f64>> =
+            columns.map(|column| shifted(column, model.delay_s / self.motion.period_s)).collect();
         weighted(&columns, coefficients, self.motion.len())
     }
 

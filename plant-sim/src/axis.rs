@@ -8,7 +8,7 @@ use crate::effects::Effects;
 use crate::friction::{Friction, Law, Sliding};
 use crate::mechanics::{Drive, Mechanics, Motion};
 
-/// Sub-steps per control cycle of 1 ms: `tests/convergence.rs` shows what each doubling changes.
+/// Sub-step of the integration: halving it changes a free run of 8 mm by less than 10⁻⁵ of it (`tests/mechanics.rs`).
 pub const SUB_STEP_S: f64 = 1.0e-3 / 16.0;
 
 /// Everything that an axis really is.
@@ -148,9 +148,7 @@ impl Axis {
         let effects = &self.parameters.effects;
         let middle = self.motion.motor_m + 0.5 * dt_s * self.motion.motor_m_per_s;
         let drive = Drive {
-            motor_n: mean_n
-                + disturbance_n
-                + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
+            motor_n: mean_n + disturbance_n + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
             table_n: -effects.offset_n,
             friction_factor: effects.friction_factor(self.motion.table_m, self.time_s),
         };

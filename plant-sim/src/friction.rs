@@ -39,7 +39,11 @@ impl Sliding {
     #[must_use]
     pub fn level_n(&self, v: f64) -> f64 {
         let ratio = v / self.stribeck_velocity_m_per_s;
-        let fall = if self.static_n == self.coulomb_n { 0.0 } else { (self.static_n - self.coulomb_n) * (-ratio * ratio).exp() };
+        let fall = if self.static_n == self.coulomb_n {
+            0.0
+        } else {
+            (self.static_n - self.coulomb_n) * (-ratio * ratio).exp()
+        };
         (self.coulomb_n + fall) * (1.0 + self.coulomb_asymmetry * sign(v))
     }
 

@@ -26,7 +26,11 @@ pub struct MachineError {
 
 impl fmt::Display for MachineError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.line == 0 { write!(f, "{}: {}", self.file, self.text) } else { write!(f, "{}:{}: {}", self.file, self.line, self.text) }
+        if self.line == 0 {
+            write!(f, "{}: {}", self.file, self.text)
+        } else {
+            write!(f, "{}:{}: {}", self.file, self.line, self.text)
+        }
     }
 }
 
@@ -231,7 +235,8 @@ impl Machine {
     /// Never: the built-in file is checked by a test.
     #[must_use]
     pub fn reference() -> Self {
-        Self::parse("built-in reference machine", include_str!("reference.toml")).expect("the built-in machine is valid")
+        Self::parse("built-in reference machine", include_str!("reference.toml"))
+            .expect("the built-in machine is valid")
     }
 
     /// Text of the built-in reference machine, as a file to start from.
@@ -320,9 +325,14 @@ impl Source<'_> {
     /// An error at the line of a key within a part of the file.
     fn error(&self, part: &Range<usize>, key: &str, text: impl Into<String>) -> MachineError {
         let lines = self.text.get(part.clone()).unwrap_or("").lines().enumerate();
-        let starts = |line: &str| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
+        let starts =
+            |line: &str| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
         let within = lines.into_iter().find(|(_, line)| starts(line)).map_or(0, |(line, _)| line);
-        MachineError { file: self.file.into(), line: self.line(part.start) + within, text: format!("{key}: {}", text.into()) }
+        MachineError {
+            file: self.file.into(),
+            line: self.line(part.start) + within,
+            text: format!("{key}: {}", text.into()),
+        }
     }
 
     fn range(&self, part: &Range<usize>, key: &str, value: f64, min: f64, max: f64) -> Result<(), MachineError> {
@@ -339,10 +349,16 @@ impl Source<'_> {
                 vec![("nominal_rate", nominal_rate, 1_000_000), ("data_rate", data_rate, 8_000_000)]
             }
         };
-        rates.into_iter().try_for_each(|(key, rate, max)| self.range(part, key, f64::from(rate), 10_000.0, f64::from(max)))
+        rates
+            .into_iter()
+            .try_for_each(|(key, rate, max)| self.range(part, key, f64::from(rate), 10_000.0, f64::from(max)))
     }
 
-    fn axis(&self, axis: &toml::Spanned<AxisForm>, all: &[toml::Spanned<AxisForm>]) -> Result<MachineAxis, MachineError> {
+    fn axis(
+        &self,
+        axis: &toml::Spanned<AxisForm>,
+        all: &[toml::Spanned<AxisForm>],
+    ) -> Result<MachineAxis, MachineError> {
         let part = &axis.span();
         let own = axis.get_ref();
         let model = match &own.like {
@@ -403,7 +419,11 @@ impl Source<'_> {
     fn span_of(&self, like: &Option<String>, own: &Range<usize>, all: &[toml::Spanned<AxisForm>]) -> Range<usize> {
         let model = all.iter().find(|axis| Some(&axis.get_ref().name) == like.as_ref());
         let start = model.map_or(own.start, |axis| axis.span().start);
-        let end = self.text.get(start + 1..).and_then(|rest| rest.find("[[axis]]")).map_or(self.text.len(), |at| start + 1 + at);
+        let end = self
+            .text
+            .get(start + 1..)
+            .and_then(|rest| rest.find("[[axis]]"))
+            .map_or(self.text.len(), |at| start + 1 + at);
         start..end
     }
 
@@ -441,7 +461,13 @@ impl Source<'_> {
         self.range(part, "delay_s", effects.delay_s, 0.0, 1.0e-3)?;
         self.range(part, "offset_n", effects.offset_n, -1.0e6, 1.0e6)?;
         self.range(part, "torque_saturation_per_n", effects.torque_saturation_per_n, 0.0, 1.0)?;
-        self.range(part, "position_dependent_friction_per_m", effects.position_dependent_friction_per_m, -100.0, 100.0)?;
+        self.range(
+            part,
+            "position_dependent_friction_per_m",
+            effects.position_dependent_friction_per_m,
+            -100.0,
+            100.0,
+        )?;
         if let Some(ripple) = effects.torque_ripple {
             self.range(part, "torque_ripple", ripple.amplitude_n, 0.0, 1.0e6)?;
             self.range(part, "torque_ripple", ripple.order_per_rev, 1.0e-3, 1.0e4)?;
@@ -459,7 +485,12 @@ impl Source<'_> {
     }
 
     /// The sub-step has to resolve the fastest vibration: ω · dt below one half.
-    fn check_sub_step(&self, part: &Range<usize>, mechanics: &MechanicsForm, friction: &Law) -> Result<(), MachineError> {
+    fn check_sub_step(
+        &self,
+        part: &Range<usize>,
+        mechanics: &MechanicsForm,
+        friction: &Law,
+    ) -> Result<(), MachineError> {
         let (m1, m2) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
         let bristles = match friction {
             Law::Coulomb => 0.0,
@@ -472,7 +503,10 @@ impl Source<'_> {
             return Err(self.error(
                 part,
                 "screw_stiffness_n_per_m",
-                format!("with these masses the simulation resolves at most {screw:.3e} N/m, got {:.3e}", mechanics.screw_stiffness_n_per_m),
+                format!(
+                    "with these masses the simulation resolves at most {screw:.3e} N/m, got {:.3e}",
+                    mechanics.screw_stiffness_n_per_m
+                ),
             ));
         }
         if bristles > stiffest(m2) {
@@ -486,12 +520,22 @@ impl Source<'_> {
     }
 
     /// Increments over the travel have to fit the feedback frame.
-    fn check_increments(&self, part: &Range<usize>, mechanics: &MechanicsForm, encoders: &EncodersForm, limits: &Limits) -> Result<(), MachineError> {
+    fn check_increments(
+        &self,
+        part: &Range<usize>,
+        mechanics: &MechanicsForm,
+        encoders: &EncodersForm,
+        limits: &Limits,
+    ) -> Result<(), MachineError> {
         let increments = limits.travel_m / mechanics.lead_m_per_rev * f64::from(encoders.motor_counts_per_rev);
         if increments < f64::from(i32::MAX) {
             return Ok(());
         }
-        Err(self.error(part, "motor_counts_per_rev", format!("{increments:.3e} increments over the travel do not fit the 32 bits of the feedback")))
+        Err(self.error(
+            part,
+            "motor_counts_per_rev",
+            format!("{increments:.3e} increments over the travel do not fit the 32 bits of the feedback"),
+        ))
     }
 
     fn check_maxwell(&self, part: &Range<usize>, stiffness: &[f64], share: &[f64]) -> Result<(), MachineError> {
@@ -583,13 +627,17 @@ mod tests {
 
     #[test]
     fn errors_name_key_and_line() {
-        let line = |needle: &str| Machine::reference_text().lines().position(|line| line.starts_with(needle)).unwrap() + 1;
+        let line =
+            |needle: &str| Machine::reference_text().lines().position(|line| line.starts_with(needle)).unwrap() + 1;
         let at = line("table_mass_kg");
         assert_eq!(
             error_of("table_mass_kg = 300.0", "table_mass_kg = -3.0"),
             format!("m.toml:{at}: table_mass_kg: must be 0.001 to 1000000 in the unit of its name, got -3")
         );
-        assert!(error_of("table_mass_kg = 300.0", "table_mass = 300.0").starts_with(&format!("m.toml:{at}: unknown field `table_mass`")));
+        assert!(
+            error_of("table_mass_kg = 300.0", "table_mass = 300.0")
+                .starts_with(&format!("m.toml:{at}: unknown field `table_mass`"))
+        );
         assert!(error_of("\"offset\"", "\"ofset\"").contains("unknown effect \"ofset\""));
         assert!(error_of("like = \"X\"", "like = \"Z\"").contains("there is no axis \"Z\""));
         assert!(error_of("coulomb_n = 400.0", "coulomb_n = \"400\"").contains("coulomb_n = \"400\""));

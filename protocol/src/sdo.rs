@@ -282,7 +282,10 @@ mod tests {
         assert_eq!(Request::Upload(at).encode(), [0x40, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
         assert_eq!(Request::Download(at, Expedited::u8(7)).encode(), [0x2F, 0x65, 0x60, 0x02, 7, 0, 0, 0]);
         assert_eq!(Request::Download(at, Expedited::u16(0x1234)).encode(), [0x2B, 0x65, 0x60, 0x02, 0x34, 0x12, 0, 0]);
-        assert_eq!(Response::Uploaded(at, Expedited::i32(-2)).encode(), [0x43, 0x65, 0x60, 0x02, 0xFE, 0xFF, 0xFF, 0xFF]);
+        assert_eq!(
+            Response::Uploaded(at, Expedited::i32(-2)).encode(),
+            [0x43, 0x65, 0x60, 0x02, 0xFE, 0xFF, 0xFF, 0xFF]
+        );
         assert_eq!(Response::Downloaded(at).encode(), [0x60, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
     }
 

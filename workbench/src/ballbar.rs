@@ -27,8 +27,12 @@ pub struct Point {
 }
 
 /// The four reversals in the order they are passed: angle travelled, axis, name.
-pub const REVERSALS: [(f64, usize, &str); 4] =
-    [(FRAC_PI_2, 0, "X at its far end"), (2.0 * FRAC_PI_2, 1, "Y at its far end"), (3.0 * FRAC_PI_2, 0, "X at its near end"), (0.0, 1, "Y at its near end")];
+pub const REVERSALS: [(f64, usize, &str); 4] = [
+    (FRAC_PI_2, 0, "X at its far end"),
+    (2.0 * FRAC_PI_2, 1, "Y at its far end"),
+    (3.0 * FRAC_PI_2, 0, "X at its near end"),
+    (0.0, 1, "Y at its near end"),
+];
 
 /// Figures of one circle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -176,7 +180,9 @@ fn ellipse_um(points: &[Point], deviation: &[f64], window: f64) -> f64 {
     let mut sums = [0.0; 6];
     for (point, deviation) in points.iter().zip(deviation).filter(|(point, _)| quiet(point.angle_rad)) {
         let (sin, cos) = (2.0 * point.angle_rad).sin_cos();
-        for (sum, value) in sums.iter_mut().zip([1.0, *deviation, cos * deviation, sin * deviation, cos * cos, sin * sin]) {
+        for (sum, value) in
+            sums.iter_mut().zip([1.0, *deviation, cos * deviation, sin * deviation, cos * cos, sin * sin])
+        {
             *sum += value;
         }
     }
@@ -231,7 +237,10 @@ mod tests {
         let figures = figures(&path(bump), 0.1, 0.0, MEASURE_FROM_RAD);
         assert!((figures.peak_um[0] - 12.0).abs() < 0.01, "{:?}", figures.peak_um);
         assert!(figures.peak_um[1..].iter().all(|peak| *peak < 0.01));
-        assert!((figures.circular_deviation_g_um - 12.0).abs() < 0.5 && (figures.radial_deviation_fmax_um - 12.0).abs() < 0.01);
+        assert!(
+            (figures.circular_deviation_g_um - 12.0).abs() < 0.5
+                && (figures.radial_deviation_fmax_um - 12.0).abs() < 0.01
+        );
     }
 
     #[test]

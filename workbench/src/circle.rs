@@ -148,28 +148,38 @@ pub fn write_logs(path: &std::path::Path, logs: &[bus::BusLog]) -> Outcome<()> {
     std::io::Write::flush(&mut file).map_err(failed)
 }
 
-fn compensation_of(arguments: &cli::CircleArguments, machine: &Machine, place: &Place) -> Outcome<Vec<AxisCompensation>> {
+fn compensation_of(
+    arguments: &cli::CircleArguments,
+    machine: &Machine,
+    place: &Place,
+) -> Outcome<Vec<AxisCompensation>> {
     let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let none = vec![AxisCompensation::default(); names.len()];
     let (method, file) = (arguments.compensation, arguments.compensation_file.as_deref());
     match (method, file) {
         (Method::None, None) => Ok(none),
-        (Method::None, Some(_)) => {
-            Err(Failure::new("--compensation-file: needs --compensation pulse or coulomb; without it the file would not be used"))
-        }
+        (Method::None, Some(_)) => Err(Failure::new(
+            "--compensation-file: needs --compensation pulse or coulomb; without it the file would not be used",
+        )),
         (Method::Coulomb, None) => measured_coulomb(machine, place),
-        (Method::Pulse, None) => {
-            Err(Failure::new("--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`"))
-        }
+        (Method::Pulse, None) => Err(Failure::new(
+            "--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`",
+        )),
         (_, Some(path)) => {
             let read = compensation::read(path, &names)?;
             let fits = |c: &AxisCompensation| {
-                matches!((method, c.reversal), (Method::Pulse, Compensation::Pulse(_)) | (Method::Coulomb, Compensation::Coulomb { .. }))
+                matches!(
+                    (method, c.reversal),
+                    (Method::Pulse, Compensation::Pulse(_)) | (Method::Coulomb, Compensation::Coulomb { .. })
+                )
             };
             if read.iter().all(fits) {
                 Ok(read)
             } else {
-                Err(Failure::new(format!("{}: the file holds another method than --compensation asks for", path.display())))
+                Err(Failure::new(format!(
+                    "{}: the file holds another method than --compensation asks for",
+                    path.display()
+                )))
             }
         }
     }
@@ -198,7 +208,10 @@ fn measured_coulomb(machine: &Machine, place: &Place) -> Outcome<Vec<AxisCompens
 /// Prints the figures of a circle.
 pub fn print(report: &CircleReport) {
     let CircleReport { radius_mm, feed_mm_min, compensation, figures, bus_load_percent, .. } = report;
-    println!("circle R {radius_mm} mm, F {feed_mm_min} mm/min, compensation {compensation}; deviation of the {}", report.deviation_of);
+    println!(
+        "circle R {radius_mm} mm, F {feed_mm_min} mm/min, compensation {compensation}; deviation of the {}",
+        report.deviation_of
+    );
     for ((_, _, name), peak) in REVERSALS.iter().zip(figures.peak_um) {
         println!("  burst, {name:<18}{peak:>10.2} µm");
     }
@@ -207,7 +220,10 @@ pub fn print(report: &CircleReport) {
     if let Some(h) = figures.circular_hysteresis_h_um {
         println!("  circular hysteresis H     {h:>10.2} µm");
     }
-    println!("  radial deviation Fmax/Fmin{:>10.2} / {:.2} µm", figures.radial_deviation_fmax_um, figures.radial_deviation_fmin_um);
+    println!(
+        "  radial deviation Fmax/Fmin{:>10.2} / {:.2} µm",
+        figures.radial_deviation_fmax_um, figures.radial_deviation_fmin_um
+    );
     println!("  step X / Y                {:>10.2} / {:.2} µm", figures.step_um[0], figures.step_um[1]);
     println!("  ellipse                   {:>10.2} µm", figures.ellipse_um);
     println!("  bus load, computed        {bus_load_percent:>10.1} %");

@@ -68,7 +68,15 @@ pub fn command(arguments: &cli::Commission) -> Outcome<()> {
     let reduction = 100.0 * (1.0 - after.report.figures.peak_max_um / before.report.figures.peak_max_um);
     println!("circle after: largest burst {:.2} µm, {reduction:.1} % less", after.report.figures.peak_max_um);
 
-    let job = Job { machine: &machine, place: &place, results: &results, before: &before, after: &after, tuned: &tuned, reduction };
+    let job = Job {
+        machine: &machine,
+        place: &place,
+        results: &results,
+        before: &before,
+        after: &after,
+        tuned: &tuned,
+        reduction,
+    };
     job.write(out, &names)?;
     println!("report: {}", out.join("report.html").display());
     Ok(())
@@ -159,10 +167,14 @@ impl Job<'_> {
             before.peak_max_um, after.peak_max_um, self.reduction
         ));
         page.table(&self.overview_table());
-        let title = format!("Circle R {} mm, F {:.0} mm/min", self.before.report.radius_mm, self.before.report.feed_mm_min);
+        let title =
+            format!("Circle R {} mm, F {:.0} mm/min", self.before.report.radius_mm, self.before.report.feed_mm_min);
         let radius_m = 1.0e-3 * self.before.report.radius_mm;
-        let traces = [("before", self.before), ("after", self.after)]
-            .map(|(name, run)| Trace { name: name.into(), points: one_turn(run), radius_m });
+        let traces = [("before", self.before), ("after", self.after)].map(|(name, run)| Trace {
+            name: name.into(),
+            points: one_turn(run),
+            radius_m,
+        });
         page.pictures(&[plots::polar(&title, &traces)?]);
         Ok(())
     }
@@ -235,8 +247,10 @@ pub fn reversal_rows(
     let omega = circle.feed_m_per_s / circle.radius_m;
     session.go_to(&setpoints(circle.at(0.0)[0]))?;
     // To the second reversal of X (three quarters of a turn), and a little on.
-    let end_s = (1..).map(|i| 0.01 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.75 * std::f64::consts::PI).unwrap_or(1.0);
-    let reversal_s = (1..).map(|i| 0.001 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.5 * std::f64::consts::PI).unwrap_or(0.5);
+    let end_s =
+        (1..).map(|i| 0.01 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.75 * std::f64::consts::PI).unwrap_or(1.0);
+    let reversal_s =
+        (1..).map(|i| 0.001 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.5 * std::f64::consts::PI).unwrap_or(0.5);
     let window_s = (0.25 / omega).min(0.6);
     let mut rows = Vec::new();
     session.follow(
@@ -273,8 +287,9 @@ pub fn six_curves(machine: &Machine, name: &str, rows: &[(f64, AxisCycle)]) -> O
     };
     // Over 10 cycles to either side: single encoder counts would be noise.
     let speed = |i: usize| (rows[i + 10].1.motor_m - rows[i - 10].1.motor_m) / (20.0 * period_s);
-    let acceleration =
-        |i: usize| (rows[i + 10].1.motor_m - 2.0 * rows[i].1.motor_m + rows[i - 10].1.motor_m) / (100.0 * period_s * period_s);
+    let acceleration = |i: usize| {
+        (rows[i + 10].1.motor_m - 2.0 * rows[i].1.motor_m + rows[i - 10].1.motor_m) / (100.0 * period_s * period_s)
+    };
     let force = |i: usize| rows[i].1.truth.map_or(rows[i].1.force_n, |truth| truth.force_n);
     let size = (540, 300);
     Ok(vec![
@@ -296,18 +311,18 @@ pub fn six_curves(machine: &Machine, name: &str, rows: &[(f64, AxisCycle)]) -> O
             &[curve("(3) disturbance", &|i| force(i) - inertia * acceleration(i)), curve("(4) drive", &force)],
         )?,
         plots::curves(
-            &format!("Speed of the motor, {name}"),
+            &format!("(5) Speed of the motor, {name}"),
             "time from the reversal, ms",
             "mm/s",
             size,
-            &[curve("(5) speed", &|i| 1.0e3 * speed(i))],
+            &[curve("speed", &|i| 1.0e3 * speed(i))],
         )?,
         plots::curves(
-            &format!("Error, {name}"),
+            &format!("(6) Error, {name}"),
             "time from the reversal, ms",
             "µm",
             size,
-            &[curve("(6) error", &|i| 1.0e6 * (rows[i].1.reference_m - table(&rows[i].1)))],
+            &[curve("error", &|i| 1.0e6 * (rows[i].1.reference_m - table(&rows[i].1)))],
         )?,
     ])
 }

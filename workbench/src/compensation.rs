@@ -72,7 +72,8 @@ pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
     })?;
     let of_axis = |name: &String| {
         let found = form.axis.iter().find(|axis| axis.name == *name);
-        let lacking = || Failure::new(format!("{}: no [[axis]] named \"{name}\"; run tune for this machine", path.display()));
+        let lacking =
+            || Failure::new(format!("{}: no [[axis]] named \"{name}\"; run tune for this machine", path.display()));
         let axis = found.ok_or_else(lacking)?;
         check(path, axis)?;
         Ok(AxisCompensation { reversal: axis.reversal, backlash_m: axis.backlash_m })

@@ -66,7 +66,12 @@ fn loop_gains(set: &mut Download, axis: &MachineAxis, scaling: &Scaling) -> Outc
     let integral = velocity_gain * TAU * gains.velocity_integral_hz * scaling.period_s;
     let acceleration = scaling.torque(inertia) * COUNT_M / (scaling.period_s * scaling.period_s);
     put(set, Parameter::PositionSource, "position_sensor", source)?;
-    put(set, Parameter::PositionGain, "position_gain_per_s", gains.position_gain_per_s * scaling.period_s * two_to(24))?;
+    put(
+        set,
+        Parameter::PositionGain,
+        "position_gain_per_s",
+        gains.position_gain_per_s * scaling.period_s * two_to(24),
+    )?;
     put(set, Parameter::VelocityGain, "velocity_bandwidth_hz", velocity_gain * two_to(12))?;
     put(set, Parameter::IntegralGain, "velocity_integral_hz", integral * two_to(12))?;
     put(set, Parameter::AccelerationGain, "motor_inertia_kg", acceleration * two_to(8))?;
@@ -86,18 +91,15 @@ fn filter(set: &mut Download, axis: &MachineAxis, period_s: f64) -> Outcome<()> 
     let (coefficients, key) = match (axis.gains.torque_low_pass_hz, axis.gains.torque_notch_hz) {
         (None, None) => return Ok(()),
         (Some(_), Some(_)) => {
-            return Err(Failure::new("torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one"));
+            return Err(Failure::new(
+                "torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one",
+            ));
         }
         (Some(hz), None) => (low_pass(hz, period_s), "torque_low_pass_hz"),
         (None, Some(hz)) => (notch(hz, period_s), "torque_notch_hz"),
     };
-    let places = [
-        Parameter::FilterB0,
-        Parameter::FilterB1,
-        Parameter::FilterB2,
-        Parameter::FilterA1,
-        Parameter::FilterA2,
-    ];
+    let places =
+        [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
     places.into_iter().zip(coefficients).try_for_each(|(place, value)| put(set, place, key, value * two_to(29)))
 }
 

@@ -68,7 +68,8 @@ pub fn at(bursts: &[Burst], time_s: f64) -> f64 {
             return 0.0;
         }
         if t < burst.duration_s {
-            let window = smooth(t * burst.frequency_hz / WINDOW) * smooth((burst.duration_s - t) * burst.frequency_hz / WINDOW);
+            let window =
+                smooth(t * burst.frequency_hz / WINDOW) * smooth((burst.duration_s - t) * burst.frequency_hz / WINDOW);
             return burst.amplitude_m * window * (TAU * burst.frequency_hz * t).sin();
         }
         start += burst.duration_s + REST_S;

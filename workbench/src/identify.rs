@@ -53,7 +53,9 @@ pub fn write(path: &Path, text: &str) -> Outcome<()> {
 /// # Errors
 /// Never in practice: the form is plain data.
 pub fn json(result: &Identification) -> Outcome<String> {
-    serde_json::to_string_pretty(&result.report).map(|text| text + "\n").map_err(|error| Failure::new(error.to_string()))
+    serde_json::to_string_pretty(&result.report)
+        .map(|text| text + "\n")
+        .map_err(|error| Failure::new(error.to_string()))
 }
 
 /// Prints the result for people.
@@ -84,7 +86,8 @@ pub fn prediction_csv(result: &Identification) -> String {
 /// The identified models as TOML: effects and parameters of each axis.
 #[must_use]
 pub fn model_toml(axes: &[(String, &Identification)]) -> String {
-    let mut text = String::from("# Identified models: declared effects, what they lacked, parameters with 95 % intervals.\n");
+    let mut text =
+        String::from("# Identified models: declared effects, what they lacked, parameters with 95 % intervals.\n");
     for (name, result) in axes {
         let report = &result.report;
         let list = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");

@@ -72,7 +72,8 @@ impl InProcess {
                 link.buses.len() - 1
             });
             let ids = axis_ids(index)?;
-            let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, run, index));
+            let plant =
+                PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, run, index));
             let plant = Rc::new(RefCell::new(plant));
             let servo = Rc::new(RefCell::new(servo::Servo::new(ids)));
             link.buses[bus].add(Box::new(Rc::clone(&plant)));

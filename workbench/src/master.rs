@@ -94,7 +94,8 @@ impl<L: Link> Master<L> {
         link.start_log();
         let period = Duration::from_secs_f64(machine.period_s);
         let counter = SyncCounter::FIRST;
-        let mut master = Self { link, axes, counter, period, control: ControlWord::DISABLE_VOLTAGE, missed: 0, cycles: 0 };
+        let mut master =
+            Self { link, axes, counter, period, control: ControlWord::DISABLE_VOLTAGE, missed: 0, cycles: 0 };
         master.reset_nodes()?;
         Ok(master)
     }
@@ -283,7 +284,9 @@ impl<L: Link> Master<L> {
         match self.axes.iter().find(|axis| axis.state != Some(DriveState::OperationEnabled)) {
             None => Ok(()),
             Some(axis) => {
-                let why = axis.fault.map_or_else(|| "no fault reported".to_owned(), |fault| format!("{fault:?}: {}", fault.text()));
+                let why = axis
+                    .fault
+                    .map_or_else(|| "no fault reported".to_owned(), |fault| format!("{fault:?}: {}", fault.text()));
                 let state = axis.state.map_or_else(|| "no status seen".to_owned(), |state| format!("{state:?}"));
                 Err(Failure::new(format!("axis {}: the drive is not enabled ({state}; {why})", axis.name)))
             }

@@ -19,7 +19,9 @@ const fn never() -> bool {
 fn ids(servo: u8, plant: u8) -> Outcome<AxisIds> {
     match (NodeId::new(servo), NodeId::new(plant)) {
         (Some(servo), Some(plant)) if servo != plant => Ok(AxisIds { servo, plant }),
-        _ => Err(Failure::new(format!("--node: servo {servo} and plant {plant} must be two different ids from 1 to 127"))),
+        _ => Err(Failure::new(format!(
+            "--node: servo {servo} and plant {plant} must be two different ids from 1 to 127"
+        ))),
     }
 }
 
@@ -59,7 +61,9 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
     let port = open(&arguments.can, &accepted)?;
     let timeout_us = u64::from(arguments.pace.sync_timeout_us());
     let node = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index));
-    run(node.with_sync_timeout_us(timeout_us), &port, arguments.faults).map(|never| match never {}).map_err(|error| gone(&arguments.can, &error))
+    run(node.with_sync_timeout_us(timeout_us), &port, arguments.faults)
+        .map(|never| match never {})
+        .map_err(|error| gone(&arguments.can, &error))
 }
 
 fn open(interface: &str, accepted: &[embedded_can::StandardId]) -> Outcome<CanPort> {

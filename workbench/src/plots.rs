@@ -25,7 +25,10 @@ fn failed<E: std::fmt::Display>(error: E) -> Failure {
 }
 
 /// Draws into a string; plotters writes an XML header that has no place inside a page.
-fn draw(size: (u32, u32), paint: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Outcome<()>) -> Outcome<String> {
+fn draw(
+    size: (u32, u32),
+    paint: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Outcome<()>,
+) -> Outcome<String> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -57,7 +60,8 @@ pub struct Trace<'a> {
 /// # Errors
 /// Where the plot cannot be drawn.
 pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
-    let largest = |trace: &Trace<'_>| trace.points.iter().map(|p| radial_um(p, trace.radius_m).abs()).fold(0.0, f64::max);
+    let largest =
+        |trace: &Trace<'_>| trace.points.iter().map(|p| radial_um(p, trace.radius_m).abs()).fold(0.0, f64::max);
     let step = nice_step(traces.iter().map(largest).fold(1.0, f64::max) / 3.0);
     // The nominal circle at 1, one step of deviation 0.12 of it.
     let per_um = 0.12 / step;
@@ -74,7 +78,9 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
         }
         for axis in 0..4_u8 {
             let (sin, cos) = (TAU / 4.0 * f64::from(axis)).sin_cos();
-            chart.draw_series(LineSeries::new([(0.5 * cos, 0.5 * sin), (1.45 * cos, 1.45 * sin)], PALE)).map_err(failed)?;
+            chart
+                .draw_series(LineSeries::new([(0.5 * cos, 0.5 * sin), (1.45 * cos, 1.45 * sin)], PALE))
+                .map_err(failed)?;
         }
         for (trace, color) in traces.iter().zip(SERIES) {
             let place = |point: &Point| {
@@ -84,7 +90,9 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
             };
             let line = thinned(trace.points, 4000).map(place);
             let series = chart.draw_series(LineSeries::new(line, color.stroke_width(2))).map_err(failed)?;
-            series.label(trace.name.clone()).legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
+            series
+                .label(trace.name.clone())
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
         }
         let note = format!("ring to ring {step} µm");
         let style = ("sans-serif", 13).into_font().color(&INK);
@@ -105,14 +113,23 @@ where
     X: plotters::coord::ranged1d::Ranged<ValueType = f64>,
     Y: plotters::coord::ranged1d::Ranged<ValueType = f64>,
 {
-    let labels = chart.configure_series_labels().position(SeriesLabelPosition::UpperRight).border_style(PALE).background_style(WHITE.mix(0.85)).draw();
+    let labels = chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .border_style(PALE)
+        .background_style(WHITE.mix(0.85))
+        .draw();
     labels.map_err(failed)
 }
 
 /// 1, 2 or 5 times a power of ten, at least `value`.
 fn nice_step(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.max(1.0e-9).log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= value * (1.0 - 1.0e-9)).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|m| m * power)
+        .find(|step| *step >= value * (1.0 - 1.0e-9))
+        .unwrap_or(10.0 * power)
 }
 
 fn thinned<T>(items: &[T], most: usize) -> impl Iterator<Item = &T> {
@@ -146,7 +163,13 @@ pub fn curves(title: &str, x: &str, y: &str, size: (u32, u32), list: &[Curve]) -
             .build_cartesian_2d(x_low..x_high, y_low..y_high)
             .map_err(failed)?;
         let mut mesh = chart.configure_mesh();
-        mesh.x_desc(x).y_desc(y).light_line_style(WHITE).bold_line_style(PALE.mix(0.5)).label_style(("sans-serif", 12)).draw().map_err(failed)?;
+        mesh.x_desc(x)
+            .y_desc(y)
+            .light_line_style(WHITE)
+            .bold_line_style(PALE.mix(0.5))
+            .label_style(("sans-serif", 12))
+            .draw()
+            .map_err(failed)?;
         for (curve, color) in list.iter().zip(SERIES) {
             let points = thinned(&curve.points, 3000).copied();
             let series = if curve.dots {
@@ -154,7 +177,9 @@ pub fn curves(title: &str, x: &str, y: &str, size: (u32, u32), list: &[Curve]) -
             } else {
                 chart.draw_series(LineSeries::new(points, color.stroke_width(2))).map_err(failed)?
             };
-            series.label(curve.name.clone()).legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
+            series
+                .label(curve.name.clone())
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
         }
         if list.len() > 1 { legend(&mut chart) } else { Ok(()) }
     })

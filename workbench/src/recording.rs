@@ -26,7 +26,8 @@ pub struct AxisRecord {
 /// # Errors
 /// Where a drive faults.
 pub fn record(session: &mut Session<'_>, machine: &Machine, validation: bool) -> Outcome<Vec<AxisRecord>> {
-    let bursts: Vec<Vec<Burst>> = machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, validation)).collect();
+    let bursts: Vec<Vec<Burst>> =
+        machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, validation)).collect();
     let duration_s = bursts.iter().map(|bursts| excitation::duration_s(bursts)).fold(0.0, f64::max);
     session.go_to(&vec![0.0; machine.axes.len()])?;
     let mut records = vec![AxisRecord::default(); machine.axes.len()];

@@ -101,9 +101,13 @@ pub fn identification(page: &mut Page, title: &str, result: &Identification) -> 
     page.table(&error_table(result));
     page.pictures(&residual_pictures(result)?);
     page.pictures(&[time_picture(result)?]);
-    page.paragraph("Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):");
+    page.paragraph(
+        "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):",
+    );
     page.table(&candidate_table(report));
-    page.paragraph("Parameters of the extended model, with 95 % intervals (jackknife over blocks; none for nonlinear ones):");
+    page.paragraph(
+        "Parameters of the extended model, with 95 % intervals (jackknife over blocks; none for nonlinear ones):",
+    );
     page.table(&parameter_table(report));
     for warning in &report.warnings {
         page.paragraph(&format!("Note: {warning}."));
@@ -116,9 +120,7 @@ pub fn identification(page: &mut Page, title: &str, result: &Identification) -> 
 pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
     let report = &result.report;
     let unit = result.effort_unit;
-    let mut rows = vec![
-        ["record", "force error before, %", "after, %"].map(String::from).to_vec(),
-    ];
+    let mut rows = vec![["record", "force error before, %", "after, %"].map(String::from).to_vec()];
     rows[0].extend([format!("about reversals before, {unit}"), format!("after, {unit}")]);
     let has_difference = report.train.position_difference_error_um_before.is_some();
     if has_difference {
@@ -148,8 +150,11 @@ pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
 }
 
 fn candidate_table(report: &Report) -> Vec<Vec<String>> {
-    let mut rows =
-        vec![["effect", "judged on", "share removed, %", "evidence t", "validation error alone, %", "physical"].map(String::from).to_vec()];
+    let mut rows = vec![
+        ["effect", "judged on", "share removed, %", "evidence t", "validation error alone, %", "physical"]
+            .map(String::from)
+            .to_vec(),
+    ];
     rows.extend(report.candidates.iter().map(|candidate| {
         let mark = if candidate.accepted { "✓ " } else { "" };
         vec![
@@ -167,8 +172,16 @@ fn candidate_table(report: &Report) -> Vec<Vec<String>> {
 fn parameter_table(report: &Report) -> Vec<Vec<String>> {
     let mut rows = vec![["parameter", "value", "low", "high", "unit"].map(String::from).to_vec()];
     rows.extend(report.parameters.iter().map(|(name, parameter)| {
-        let number = |value: f64| if value.abs() >= 0.01 && value.abs() < 1.0e6 { format!("{value:.4}") } else { format!("{value:.4e}") };
-        vec![name.clone(), number(parameter.value), number(parameter.low), number(parameter.high), parameter.unit.clone()]
+        let number = |value: f64| {
+            if value.abs() >= 0.01 && value.abs() < 1.0e6 { format!("{value:.4}") } else { format!("{value:.4e}") }
+        };
+        vec![
+            name.clone(),
+            number(parameter.value),
+            number(parameter.low),
+            number(parameter.high),
+            parameter.unit.clone(),
+        ]
     }));
     rows
 }
@@ -184,7 +197,10 @@ fn residual_pictures(result: &Identification) -> Outcome<Vec<String>> {
         let list = [dots(2, "declared"), dots(3, "extended")];
         plots::curves(&format!("Residual against {name} (validation)"), label, result.effort_unit, (540, 360), &list)
     };
-    Ok(vec![against(0, "velocity", &format!("velocity, {unit}/s"))?, against(1, "position", &format!("position, {unit}"))?])
+    Ok(vec![
+        against(0, "velocity", &format!("velocity, {unit}/s"))?,
+        against(1, "position", &format!("position, {unit}"))?,
+    ])
 }
 
 fn time_picture(result: &Identification) -> Outcome<String> {
@@ -194,6 +210,7 @@ fn time_picture(result: &Identification) -> Outcome<String> {
         points: curves.time_s.iter().copied().zip(values.iter().copied()).collect(),
         dots: false,
     };
-    let list = [over("declared", &curves.declared), over("extended", &curves.extended), over("recorded", &curves.effort)];
+    let list =
+        [over("declared", &curves.declared), over("extended", &curves.extended), over("recorded", &curves.effort)];
     plots::curves("Effort on the validation record", "time, s", result.effort_unit, (1080, 340), &list)
 }

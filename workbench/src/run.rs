@@ -194,7 +194,11 @@ fn point(angle_rad: f64, axes: &[AxisCycle]) -> Point {
 /// What does not fit, and the limit.
 pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
     let [x, y, ..] = &machine.axes[..] else {
-        return Err(Failure::new(format!("machine {}: a circle needs two axes, this machine has {}", machine.name, machine.axes.len())));
+        return Err(Failure::new(format!(
+            "machine {}: a circle needs two axes, this machine has {}",
+            machine.name,
+            machine.axes.len()
+        )));
     };
     for axis in [x, y] {
         let limits = &axis.limits;
@@ -205,7 +209,10 @@ pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
             ("--feed-mm-min with --radius-mm", acceleration, limits.acceleration_m_per_s2, "m/s² of acceleration"),
         ] {
             if wanted > limit {
-                return Err(Failure::new(format!("{what}: axis {} allows {limit} {unit}, the circle needs {wanted:.3}", axis.name)));
+                return Err(Failure::new(format!(
+                    "{what}: axis {} allows {limit} {unit}, the circle needs {wanted:.3}",
+                    axis.name
+                )));
             }
         }
     }

@@ -54,7 +54,8 @@ pub fn pulse(machine: &Machine, place: &Place, circle: &Circle, start_delay_s: f
         let start = starts[axis].ok_or_else(|| {
             Failure::new(format!("axis {}: no burst to compensate on this circle", machine.axes[axis].name))
         })?;
-        let search = Search { bench: &bench, axis, others: compensation.clone(), start_delay_s, failure: RefCell::new(None) };
+        let search =
+            Search { bench: &bench, axis, others: compensation.clone(), start_delay_s, failure: RefCell::new(None) };
         compensation[axis].reversal = Compensation::Pulse(search.run(start)?);
     }
     let tuned = bench.borrow_mut().points(&compensation)?;

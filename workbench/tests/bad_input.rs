@@ -45,7 +45,12 @@ fn malformed_machine_files_name_file_line_and_key() {
         ("bit rate beyond CAN", "bit_rate = 1_000_000", "bit_rate = 2_000_000", &["bit_rate", "2000000"]),
         ("axis like nobody", "like = \"X\"", "like = \"Q\"", &["like", "\"Q\""]),
         ("unknown sensor", "position_sensor = \"load\"", "position_sensor = \"table\"", &["table"]),
-        ("stiffness beyond the sub-step", "screw_stiffness_n_per_m = 1.2e8", "screw_stiffness_n_per_m = 1.2e11", &["screw_stiffness_n_per_m"]),
+        (
+            "stiffness beyond the sub-step",
+            "screw_stiffness_n_per_m = 1.2e8",
+            "screw_stiffness_n_per_m = 1.2e11",
+            &["screw_stiffness_n_per_m"],
+        ),
         ("not a number", "velocity_filter = 0.6", "velocity_filter = nan", &["velocity_filter", "NaN"]),
     ];
     for (name, replace, by, parts) in cases {
@@ -80,20 +85,44 @@ fn impossible_options_say_what_was_wanted() {
         ("unknown compensation", with(&["--compensation", "magic"]), &["magic", "pulse"]),
         ("pulse without file", with(&["--compensation", "pulse"]), &["--compensation-file", "quadrant tune"]),
         ("file without method", with(&["--compensation-file", "x.toml"]), &["--compensation"]),
-        ("negative time constant", [&with(&["--compensation", "pulse", "--compensation-file"])[..], &[&pulse]].concat(), &["time_constant_s"]),
-        ("unknown method in file", [&with(&["--compensation", "pulse", "--compensation-file"])[..], &[&garbled]].concat(), &["garbled.toml:3", "magic"]),
+        (
+            "negative time constant",
+            [&with(&["--compensation", "pulse", "--compensation-file"])[..], &[&pulse]].concat(),
+            &["time_constant_s"],
+        ),
+        (
+            "unknown method in file",
+            [&with(&["--compensation", "pulse", "--compensation-file"])[..], &[&garbled]].concat(),
+            &["garbled.toml:3", "magic"],
+        ),
         ("no such machine file", with(&["--machine", "/nowhere/m.toml"]), &["/nowhere/m.toml", "cannot read"]),
         ("one axis for a circle", [&with(&["--machine"])[..], &[&one_axis]].concat(), &["two axes"]),
         ("no such interface", with(&["--can", "nocan9"]), &["nocan9"]),
-        ("node id beyond CANopen", vec!["servo", "--node", "200", "--plant-node", "0x11", "--can", "vcan0"], &["1 to 127"]),
-        ("same node twice", vec!["servo", "--node", "17", "--plant-node", "0x11", "--can", "vcan0"], &["two different"]),
-        ("plant that the machine has not", vec!["plant", "--node", "0x1F", "--can", "vcan0"], &["0x1f", "0x11 to 0x12"]),
+        (
+            "node id beyond CANopen",
+            vec!["servo", "--node", "200", "--plant-node", "0x11", "--can", "vcan0"],
+            &["1 to 127"],
+        ),
+        (
+            "same node twice",
+            vec!["servo", "--node", "17", "--plant-node", "0x11", "--can", "vcan0"],
+            &["two different"],
+        ),
+        (
+            "plant that the machine has not",
+            vec!["plant", "--node", "0x1F", "--can", "vcan0"],
+            &["0x1f", "0x11 to 0x12"],
+        ),
     ];
     for (name, arguments, parts) in cases {
         refused(name, &arguments, parts);
     }
     refused("unknown command", &["dance"], &["dance"]);
-    refused("start delay beyond reason", &["tune", "--method", "pulse", "--out", "x", "--start-delay-ms", "5000"], &["--start-delay-ms"]);
+    refused(
+        "start delay beyond reason",
+        &["tune", "--method", "pulse", "--out", "x", "--start-delay-ms", "5000"],
+        &["--start-delay-ms"],
+    );
 }
 
 const DATASET: &str = "name = \"t\"\nsample_period_s = 0.001\n[axis]\nkind = \"linear\"\n[declared]\neffects = [\"inertia\", \"coulomb\"]\n";
@@ -103,7 +132,8 @@ fn record(rows: usize, replace: Option<(usize, &str)>) -> String {
     let mut text = String::from("time_s,position_m,force_n\n");
     for row in 0..rows {
         let t = 0.001 * row as f64;
-        let line = format!("{t:.3},{:.6},{:.3}\n", 0.05 * (3.0 * t).sin(), 100.0 * (3.0 * t).cos() - 20.0 * (3.0 * t).sin());
+        let line =
+            format!("{t:.3},{:.6},{:.3}\n", 0.05 * (3.0 * t).sin(), 100.0 * (3.0 * t).cos() - 20.0 * (3.0 * t).sin());
         text.push_str(match replace {
             Some((at, by)) if at == row => by,
             _ => &line,
@@ -116,21 +146,38 @@ fn record(rows: usize, replace: Option<(usize, &str)>) -> String {
 fn broken_records_name_file_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().display().to_string();
-    let constant: String = record(4000, None).lines().map(|l| if l.starts_with("time") { format!("{l}\n") } else { format!("{},5\n", l.rsplit_once(',').unwrap().0) }).collect();
-    let still: String = (0..4000).fold("time_s,position_m,force_n\n".to_owned(), |text, row| text + &format!("{},0.1,{}\n", 0.001 * f64::from(row), row % 7));
+    let constant: String = record(4000, None)
+        .lines()
+        .map(
+            |l| if l.starts_with("time") { format!("{l}\n") } else { format!("{},5\n", l.rsplit_once(',').unwrap().0) },
+        )
+        .collect();
+    let still: String = (0..4000).fold("time_s,position_m,force_n\n".to_owned(), |text, row| {
+        text + &format!("{},0.1,{}\n", 0.001 * f64::from(row), row % 7)
+    });
     let micro: String = record(4000, None).replace("position_m", "position_um");
     let cases: [(&str, String, &str, &[&str]); 12] = [
         ("NaN", record(4000, Some((1000, "1.000,NaN,3\n"))), DATASET, &["train.csv:1002", "position_m", "NaN"]),
         ("text", record(4000, Some((1000, "1.000,0.1,strong\n"))), DATASET, &["train.csv:1002", "force_n", "strong"]),
         ("row too short", record(4000, Some((1000, "1.000,0.1\n"))), DATASET, &["train.csv"]),
-        ("time goes back", record(4000, Some((1000, "0.5,0.1,3\n"))), DATASET, &["train.csv:1002", "time_s does not increase"]),
+        (
+            "time goes back",
+            record(4000, Some((1000, "0.5,0.1,3\n"))),
+            DATASET,
+            &["train.csv:1002", "time_s does not increase"],
+        ),
         ("a gap in time", record(4000, Some((3999, "9.0,0.1,3\n"))), DATASET, &["train.csv:4001", "missing", "split"]),
         ("one row", record(1, None), DATASET, &["1 rows", "at least"]),
         ("empty file", String::new(), DATASET, &["time_s"]),
         ("constant effort", constant, DATASET, &["force_n is constant"]),
         ("no motion", still, DATASET, &["hardly moves"]),
         ("wrong unit in the header", micro, DATASET, &["no column position_m", "position_um"]),
-        ("unknown declared effect", record(4000, None), "[declared]\neffects = [\"gravity\"]\n", &["gravity", "known:"]),
+        (
+            "unknown declared effect",
+            record(4000, None),
+            "[declared]\neffects = [\"gravity\"]\n",
+            &["gravity", "known:"],
+        ),
         ("dataset.toml is not TOML", record(4000, None), "[axis\n", &["dataset.toml:1"]),
     ];
     for (name, csv, toml, parts) in cases {
@@ -142,7 +189,11 @@ fn broken_records_name_file_line_and_column() {
     file(folder.path(), "train.csv", &record(4000, None));
     file(folder.path(), "dataset.toml", DATASET);
     let lone = file(folder.path(), "other.csv", &record(4000, None).replace("force_n", "current_a"));
-    refused("other effort in the validation record", &["identify", &path, "--validate", &lone], &["current_a", "force_n"]);
+    refused(
+        "other effort in the validation record",
+        &["identify", &path, "--validate", &lone],
+        &["current_a", "force_n"],
+    );
     std::fs::remove_file(folder.path().join("dataset.toml")).unwrap();
     refused("no dataset.toml", &["identify", &path], &["dataset.toml"]);
 }

@@ -47,7 +47,15 @@ extern "C" fn entry_boot(servo: &mut Servo, out: &mut Outbox) {
 /// Any frame that a bus can carry.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_frame(servo: &mut Servo, id: u32, flags: u8, data: &[u8; 8], length: u8, now_us: u64, out: &mut Outbox) {
+extern "C" fn entry_frame(
+    servo: &mut Servo,
+    id: u32,
+    flags: u8,
+    data: &[u8; 8],
+    length: u8,
+    now_us: u64,
+    out: &mut Outbox,
+) {
     let data = data.get(..usize::from(length)).unwrap_or(data);
     let frame = match (flags & 1, flags & 2) {
         (0, 0) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new(id, data)),

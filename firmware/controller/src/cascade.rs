@@ -10,6 +10,7 @@
 //! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the torque that is really
 //! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it further.
 
+use fixed::FixedI64;
 use fixed::types::{I2F30, I20F12};
 
 use crate::units::{Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain};
@@ -93,8 +94,10 @@ pub struct Proposal {
 }
 
 fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
+    // 20.12 times 2.30 bits: 22.42 bits, exact; to nearest, as in `PositionGain::times`.
     let step = new.minus(before).0.wide_mul(share);
-    before.plus(Velocity(I20F12::saturating_from_num(step)))
+    let half = FixedI64::from_bits(1 << 29);
+    before.plus(Velocity(I20F12::saturating_from_num(step.saturating_add(half))))
 }
 
 #[cfg(test)]

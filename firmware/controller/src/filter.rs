@@ -57,7 +57,11 @@ impl FilterState {
         let products = config.0.into_iter().zip([x0, x1, x2, y1, y2]);
         // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the same.
         let sum = products.fold(self.rest, |sum, (c, v)| sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v))));
-        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS)).unwrap_or(if sum < 0 { i32::MIN } else { i32::MAX });
+        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS)).unwrap_or(if sum < 0 {
+            i32::MIN
+        } else {
+            i32::MAX
+        });
         let y0 = whole.max(limit.saturating_neg()).min(limit);
         self.rest = sum & REST_MASK;
         self.past = [x0, x1, y0, y1];

@@ -5,6 +5,8 @@
 //! machine with CNC", §4.2. The exponential is a geometric series: one multiplication a cycle by
 //! `decay = exp(−T_cycle / T_comp)`, computed on the host.
 
+use fixed::FixedI64;
+use fixed::types::extra::U42;
 use fixed::types::{I2F30, I20F12};
 
 use crate::direction::Direction;
@@ -34,10 +36,11 @@ pub enum PulseState {
         /// Its direction.
         direction: Direction,
     },
-    /// The pulse decays. Kept as magnitude and direction: rounding down then ends it on both sides.
+    /// The pulse decays. What decays is the envelope, 1…0 in 2.30 bits: a decaying height in 20.12 bits would lose an area that the velocity loop
+    /// integrates.
     Active {
-        /// Its present height, never negative.
-        height: Velocity,
+        /// exp(−t / T_comp), never negative.
+        envelope: I2F30,
         /// Its direction.
         direction: Direction,
     },
@@ -51,25 +54,26 @@ impl PulseState {
         }
         match *self {
             Self::Idle => Velocity::ZERO,
-            Self::Waiting { cycles: 0, direction } => {
-                // A negative height is a pulse the other way; the state keeps magnitudes only.
-                let direction = if config.amplitude < Velocity::ZERO { direction.opposite() } else { direction };
-                self.emit(config, Velocity(config.amplitude.0.saturating_abs()), direction)
-            }
+            Self::Waiting { cycles: 0, direction } => self.emit(config, I2F30::ONE, direction),
             Self::Waiting { cycles, direction } => {
                 *self = Self::Waiting { cycles: cycles.saturating_sub(1), direction };
                 Velocity::ZERO
             }
-            Self::Active { height, direction } => self.emit(config, height, direction),
+            Self::Active { envelope, direction } => self.emit(config, envelope, direction),
         }
     }
 
-    fn emit(&mut self, config: &PulseConfig, height: Velocity, direction: Direction) -> Velocity {
-        let next = Velocity(I20F12::saturating_from_num(height.0.wide_mul(config.decay)));
-        *self = if next == Velocity::ZERO { Self::Idle } else { Self::Active { height: next, direction } };
+    fn emit(&mut self, config: &PulseConfig, envelope: I2F30, direction: Direction) -> Velocity {
+        // 2.30 times 2.30 bits: 4.60 bits, exact; rounded down, so that it ends.
+        let next = I2F30::saturating_from_num(envelope.wide_mul(config.decay));
+        let height = Velocity(I20F12::saturating_from_num(config.amplitude.0.wide_mul(envelope).saturating_add(HALF)));
+        *self = if next == I2F30::ZERO { Self::Idle } else { Self::Active { envelope: next, direction } };
         signed(height, direction)
     }
 }
+
+/// Half of the last bit of a velocity, in the 22.42 bits of the product.
+const HALF: FixedI64<U42> = FixedI64::from_bits(1 << 29);
 
 fn signed(amplitude: Velocity, direction: Direction) -> Velocity {
     match direction {
@@ -121,7 +125,7 @@ mod tests {
     fn the_pulse_ends() {
         let mut state = PulseState::default();
         state.step(&config(0), Some(Direction::Negative));
-        for _ in 0..2000 {
+        for _ in 0..4000 {
             state.step(&config(0), None);
         }
         assert_eq!(state, PulseState::Idle);

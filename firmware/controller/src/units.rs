@@ -11,7 +11,7 @@
 //! Every sum saturates. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they cannot overflow, and
 //! saturate only when they are brought back to 32 bits.
 
-use fixed::types::{I8F24, I20F12, I24F8, I40F24, I56F8};
+use fixed::types::{I8F24, I20F12, I24F8, I32F32, I40F24, I56F8};
 
 /// Position at the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -185,12 +185,16 @@ impl Torque {
     }
 }
 
+/// Half of 2⁻¹².
+const HALF: I32F32 = I32F32::from_bits(1 << 19);
+
 impl PositionGain {
     /// Gain · error, saturated.
     #[must_use]
     pub fn times(self, error: PositionError) -> Velocity {
-        // 8.24 times 24.8 bits: 32.32 bits, exact.
-        Velocity(I20F12::saturating_from_num(self.0.wide_mul(error.0)))
+        // 8.24 times 24.8 bits: 32.32 bits, exact; brought to 12 fractional bits by rounding to nearest, since rounding down would be a bias that the
+        // velocity loop integrates.
+        Velocity(I20F12::saturating_from_num(self.0.wide_mul(error.0).saturating_add(HALF)))
     }
 }
 

@@ -14,8 +14,8 @@ use bus::{FaultPlan, FaultyPort, Received};
 use embassy_executor::raw::Executor;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::StandardId;
-use protocol::cob::{AxisIds, FrameKind};
 use protocol::CanFrame;
+use protocol::cob::{AxisIds, FrameKind};
 use servo::Servo;
 use static_cell::StaticCell;
 

@@ -126,10 +126,7 @@ fn unpack(bytes: &[u8]) -> Option<CanFrame> {
     let (length, data) = rest.split_first()?;
     let head = u32::from_le_bytes(*head);
     let low = head & 0x1FFF_FFFF;
-    let id: Id = if head >> 31 == 1 {
-        ExtendedId::new(low)?.into()
-    } else {
-        StandardId::new(u16::try_from(low).ok()?)?.into()
-    };
+    let id: Id =
+        if head >> 31 == 1 { ExtendedId::new(low)?.into() } else { StandardId::new(u16::try_from(low).ok()?)?.into() };
     if head >> 30 & 1 == 1 { CanFrame::new_remote(id, usize::from(*length)) } else { CanFrame::new(id, data) }
 }

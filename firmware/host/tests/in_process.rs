@@ -42,9 +42,7 @@ fn the_executor_adds_nothing_and_loses_nothing() {
 
     let (node_end, our_end) = InProcessPort::pair().unwrap();
     let stop = || STOP.load(Ordering::Relaxed);
-    let node = std::thread::spawn(move || {
-        quadrant_host::run(Servo::new(ids()), Port::InProcess(node_end), None, stop)
-    });
+    let node = std::thread::spawn(move || quadrant_host::run(Servo::new(ids()), Port::InProcess(node_end), None, stop));
     let mut got = Vec::new();
     let patience = Instant::now() + Duration::from_secs(20);
     for frame in traffic() {

@@ -81,10 +81,8 @@ impl Track {
         let at = Measured { motor, load: Position::from_counts(load_counts) };
         let cycles = self.predicted_cycles.saturating_add(1);
         // After predicted cycles `self.at` has moved on with the old velocity, so one more step of it is what we expect.
-        let expected = Measured {
-            motor: self.at.motor.after(self.motor_velocity),
-            load: self.at.load.after(self.load_velocity),
-        };
+        let expected =
+            Measured { motor: self.at.motor.after(self.motor_velocity), load: self.at.load.after(self.load_velocity) };
         let allowed = times(limit, cycles);
         let plausible = motor.error_from(expected.motor).magnitude() <= allowed
             && at.load.error_from(expected.load).magnitude() <= allowed;

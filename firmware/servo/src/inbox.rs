@@ -141,7 +141,11 @@ impl Inbox {
     pub fn setpoint(&mut self, setpoint: Setpoint) -> Taken {
         let now = self.counter;
         if now == Some(setpoint.counter) {
-            return if self.setpoint.waits() && !self.closed { fill(&mut self.setpoint, setpoint) } else { Taken::Doubled };
+            return if self.setpoint.waits() && !self.closed {
+                fill(&mut self.setpoint, setpoint)
+            } else {
+                Taken::Doubled
+            };
         }
         if now.is_none_or(|now| now.next() == setpoint.counter) {
             return match self.next_setpoint {

@@ -92,7 +92,12 @@ impl ParameterSet {
         if way == WayPerIncrement::default() {
             return Err(SetError::EncoderWithoutWay);
         }
-        Ok(Settings { config: self.config()?, limits: self.limits(), way, rated_torque_mnm: self.get(Parameter::RatedTorque) })
+        Ok(Settings {
+            config: self.config()?,
+            limits: self.limits(),
+            way,
+            rated_torque_mnm: self.get(Parameter::RatedTorque),
+        })
     }
 
     fn config(&self) -> Result<Config, SetError> {
@@ -142,13 +147,8 @@ impl ParameterSet {
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {
-        let coefficients = [
-            Parameter::FilterB0,
-            Parameter::FilterB1,
-            Parameter::FilterB2,
-            Parameter::FilterA1,
-            Parameter::FilterA2,
-        ];
+        let coefficients =
+            [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
         FilterConfig::new(coefficients.map(|place| self.get(place))).map_err(|_| SetError::FilterHeadroom)
     }
 

@@ -104,10 +104,7 @@ impl SdoServer {
     }
 
     fn upload_exists(&self, address: Address) -> bool {
-        matches!(
-            self.upload(address, &Readings::default()),
-            Response::Uploaded(..)
-        )
+        matches!(self.upload(address, &Readings::default()), Response::Uploaded(..))
     }
 
     fn commit(&mut self, data: Expedited, active: &Settings, may_change_encoders: bool) -> (Option<Response>, Effect) {

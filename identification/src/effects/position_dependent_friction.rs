@@ -37,6 +37,8 @@ impl Effect for PositionDependentFriction {
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         let name = ["position_dependent_friction_linear", "position_dependent_friction_quadratic"];
         let known = name.iter().enumerate().take(naming.coefficients.len());
-        known.map(|(place, name)| naming.coefficient(name, place, naming.effort_unit(" over half the travel"))).collect()
+        known
+            .map(|(place, name)| naming.coefficient(name, place, naming.effort_unit(" over half the travel")))
+            .collect()
     }
 }

@@ -73,17 +73,17 @@ fn strongest(motion: &Kinematics, setting: &Setting<'_>, from: f64, step: f64) -
     let samples: Vec<(f64, f64, f64)> = (0..motion.len())
         .step_by(STRIDE)
         .filter(|at| motion.moving[*at])
-        .map(|at| (motion.position_lp[at], motion.velocity_lp[at].abs(), setting.residual.get(at).copied().unwrap_or(0.0)))
+        .map(|at| {
+            (motion.position_lp[at], motion.velocity_lp[at].abs(), setting.residual.get(at).copied().unwrap_or(0.0))
+        })
         .collect();
     let mut speeds: Vec<f64> = samples.iter().map(|(_, v, _)| *v).collect();
     speeds.sort_by(f64::total_cmp);
     let Some(median) = speeds.get(speeds.len() / 2) else { return Vec::new() };
     let to = (60.0 / median).min(4000.0 * 1.0e-3 / setting.dataset.kind.moving_velocity());
     let count = ((to - from) / step).clamp(0.0, 20_000.0) as usize;
-    let mut scored: Vec<(f64, f64)> = (0..count)
-        .map(|i| from + step * i as f64)
-        .map(|k| (projection(&samples, k), k))
-        .collect();
+    let mut scored: Vec<(f64, f64)> =
+        (0..count).map(|i| from + step * i as f64).map(|k| (projection(&samples, k), k)).collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut best: Vec<f64> = Vec::new();
     for (_, k) in scored {
