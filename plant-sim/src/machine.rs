@@ -365,7 +365,7 @@ impl Source<'_> {
             None => own.clone(),
             Some(like) => self.modelled(part, own, like, all)?,
         };
-        let part = &self.span_of(&own.like, part, all);
+        let part = &self.span_of(own.like.as_ref(), part, all);
         let missing = |key: &str| self.error(part, "name", format!("axis {} lacks [axis.{key}]", own.name));
         let mechanics = model.mechanics.ok_or_else(|| missing("mechanics"))?;
         let encoders = model.encoders.ok_or_else(|| missing("encoders"))?;
@@ -416,8 +416,8 @@ impl Source<'_> {
     }
 
     /// Part of the file in which to look for a key: from the axis (or its model) to the next `[[axis]]`.
-    fn span_of(&self, like: &Option<String>, own: &Range<usize>, all: &[toml::Spanned<AxisForm>]) -> Range<usize> {
-        let model = all.iter().find(|axis| Some(&axis.get_ref().name) == like.as_ref());
+    fn span_of(&self, like: Option<&String>, own: &Range<usize>, all: &[toml::Spanned<AxisForm>]) -> Range<usize> {
+        let model = all.iter().find(|axis| Some(&axis.get_ref().name) == like);
         let start = model.map_or(own.start, |axis| axis.span().start);
         let end = self
             .text

@@ -24,7 +24,7 @@ fn count(value: u8) -> SyncCounter {
 
 fn hex(frame: &CanFrame) -> String {
     let embedded_can::Id::Standard(id) = frame.id() else { panic!("extended") };
-    let data: String = frame.payload().iter().map(|byte| format!("{byte:02X}")).collect();
+    let data = frame.payload().iter().fold(String::new(), |text, byte| text + &format!("{byte:02X}"));
     format!("{:03X}#{data}", id.as_raw())
 }
 

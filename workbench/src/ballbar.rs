@@ -117,7 +117,8 @@ fn burst(points: &[Point], deviation: &[f64], median_um: f64, at: f64, window: f
             largest.resize(turn + 1, 0.0);
         }
         let size = (deviation - median_um).abs();
-        if !(size <= largest[turn]) {
+        // `max` would drop a NaN.
+        if size.is_nan() || size > largest[turn] {
             largest[turn] = size;
         }
     }

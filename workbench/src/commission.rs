@@ -247,10 +247,11 @@ pub fn reversal_rows(
     let omega = circle.feed_m_per_s / circle.radius_m;
     session.go_to(&setpoints(circle.at(0.0)[0]))?;
     // To the second reversal of X (three quarters of a turn), and a little on.
-    let end_s =
-        (1..).map(|i| 0.01 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.75 * std::f64::consts::PI).unwrap_or(1.0);
-    let reversal_s =
-        (1..).map(|i| 0.001 * f64::from(i)).find(|t| circle.angle_rad(*t) > 1.5 * std::f64::consts::PI).unwrap_or(0.5);
+    let reaches = |turns: f64| {
+        let mut milliseconds = (0_u32..1_000_000).map(|i| 1.0e-3 * f64::from(i));
+        milliseconds.find(|t| circle.angle_rad(*t) > turns * std::f64::consts::TAU).unwrap_or(0.0)
+    };
+    let (reversal_s, end_s) = (reaches(0.75), reaches(0.875));
     let window_s = (0.25 / omega).min(0.6);
     let mut rows = Vec::new();
     session.follow(

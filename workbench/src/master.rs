@@ -21,7 +21,7 @@ use crate::error::{Failure, Outcome};
 use crate::link::{Link, axis_ids};
 
 /// How long an answer may take before the node counts as absent.
-const ANSWER: Duration = Duration::from_millis(1000);
+const ANSWER: Duration = Duration::from_secs(1);
 /// How long all torques of a cycle may take in lock-step.
 const CYCLE: Duration = Duration::from_millis(200);
 

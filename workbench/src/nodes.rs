@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use embedded_can::Frame;
+
 use bus::{CanPort, FaultPlan, FaultyPort, Received, Station};
 use plant_sim::{Machine, PlantNode};
 use protocol::cob::{AxisIds, FrameKind, NodeId};
@@ -74,8 +76,10 @@ fn gone(interface: &str, error: &std::io::Error) -> Failure {
     Failure::new(format!("CAN interface {interface}: {error}"))
 }
 
-/// The node notices time this often.
+/// The node notices time this often when the bus is quiet…
 const TICK: Duration = Duration::from_millis(5);
+/// … and after so many frames when it is not.
+const FRAMES_PER_TICK: u32 = 32;
 
 fn run(mut node: PlantNode, port: &CanPort, faults: Option<FaultPlan>) -> std::io::Result<std::convert::Infallible> {
     let ids = node.ids();
@@ -84,19 +88,27 @@ fn run(mut node: PlantNode, port: &CanPort, faults: Option<FaultPlan>) -> std::i
     let now_us = || u64::try_from(begun.elapsed().as_micros()).unwrap_or(u64::MAX);
     let (mut received, mut out) = (Vec::new(), Vec::new());
     Station::boot(&mut node, &mut out);
-    let mut ticked_us = 0;
+    // Reading the clock may be a system call: once per SYNC, and when the bus is quiet.
+    let (mut now, mut since_tick) = (0, 0_u32);
+    let sync = ids.identifier(FrameKind::Sync);
     loop {
         out.drain(..).try_for_each(|frame| port.send(&frame))?;
-        if let Some(frame) = port.receive(TICK)? {
+        let frame = port.receive(TICK)?;
+        let is_quiet = frame.is_none();
+        if let Some(frame) = frame {
+            if frame.id() == embedded_can::Id::Standard(sync) {
+                now = now_us();
+            }
             match &mut faults {
                 None => received.push(Received::Frame(frame)),
                 Some(faults) => faults.receive(frame, &mut received),
             }
         }
-        let now = now_us();
         received.drain(..).for_each(|received| node.take(received, now, &mut out));
-        if now >= ticked_us + 5000 {
-            ticked_us = now;
+        since_tick += 1;
+        if is_quiet || since_tick >= FRAMES_PER_TICK {
+            since_tick = 0;
+            now = now_us();
             node.tick(now, &mut out);
         }
     }

@@ -41,21 +41,18 @@ pub struct BitTiming {
 impl BitTiming {
     /// Quanta per bit.
     #[must_use]
-    #[expect(clippy::cast_lossless, reason = "From is not const")]
     pub const fn quanta(self) -> u32 {
         1 + self.segment_1 as u32 + self.segment_2 as u32
     }
 
     /// Whether a clock gives exactly this bit rate.
     #[must_use]
-    #[expect(clippy::cast_lossless, reason = "From is not const")]
     pub const fn gives(self, clock_hz: u32, bit_rate: u32) -> bool {
         self.prescaler as u32 * self.quanta() * bit_rate == clock_hz
     }
 
     /// Sample point, per mille of the bit.
     #[must_use]
-    #[expect(clippy::cast_lossless, reason = "From is not const")]
     pub const fn sample_point_per_mille(self) -> u32 {
         1000 * (1 + self.segment_1 as u32) / self.quanta()
     }

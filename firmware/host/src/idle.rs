@@ -72,6 +72,7 @@ pub fn wake_when_readable(descriptor: &impl AsRawFd, waker: &Waker) {
 /// # Errors
 /// Where the kernel refuses to wait.
 pub fn run(executor: &'static Executor, done: impl Fn() -> bool) -> io::Result<()> {
+    let (mut next, mut wakes) = (None, 0_u32);
     loop {
         PENDING.store(false, Ordering::Release);
         #[expect(unsafe_code, reason = "polling is the executor's interface")]
@@ -82,17 +83,25 @@ pub fn run(executor: &'static Executor, done: impl Fn() -> bool) -> io::Result<(
         if done() {
             return Ok(());
         }
-        let next = CLOCK.expire();
+        // Reading the clock may be a system call: not after every frame. An alarm is late by a few frames at most.
+        if wakes == 0 {
+            next = CLOCK.expire();
+        }
         let timeout = if PENDING.load(Ordering::Acquire) { Some(Duration::ZERO) } else { next };
-        wake_ready(timeout)?;
+        let by_frame = wake_ready(timeout)?;
+        wakes = if by_frame { (wakes + 1) % WAKES_PER_CLOCK } else { 0 };
     }
 }
 
-/// Waits and wakes; with several descriptors ready, the ones that are not are woken once for nothing.
-fn wake_ready(timeout: Option<Duration>) -> io::Result<()> {
+/// Wakes by frames between two looks at the clock.
+const WAKES_PER_CLOCK: u32 = 8;
+
+/// Waits and wakes; tells whether a descriptor was ready. With several descriptors ready, the ones that are not are woken once for nothing.
+fn wake_ready(timeout: Option<Duration>) -> io::Result<bool> {
     let descriptors: Vec<RawFd> = WAITING.with_borrow(|waiting| waiting.iter().map(|(fd, _)| *fd).collect());
-    if bus::socket::wait_readable(&descriptors, timeout)? {
+    let ready = bus::socket::wait_readable(&descriptors, timeout)?;
+    if ready {
         WAITING.with_borrow_mut(|waiting| waiting.drain(..).for_each(|(_, waker)| waker.wake()));
     }
-    Ok(())
+    Ok(ready)
 }

@@ -29,6 +29,8 @@ struct Node {
     faults: Option<FaultyPort>,
     failure: Option<io::Error>,
     stop: bool,
+    /// Time of the last tick, µs: good enough for a SYNC timeout, and cheaper than reading the clock for every frame.
+    now_us: u64,
 }
 
 type Shared = Rc<RefCell<Node>>;
@@ -58,7 +60,7 @@ pub fn run(servo: Servo, port: Port, faults: Option<FaultPlan>, stop: fn() -> bo
     for frame in servo.boot() {
         port.send(&frame)?;
     }
-    let shared: Shared = Rc::new(RefCell::new(Node { servo, faults, failure: None, stop: false }));
+    let shared: Shared = Rc::new(RefCell::new(Node { servo, faults, failure: None, stop: false, now_us: 0 }));
     let port = Rc::new(port);
     let executor: &'static Executor = EXECUTOR.init(Executor::new(std::ptr::null_mut()));
     let spawner = executor.spawner();
@@ -90,7 +92,9 @@ async fn watch(node: Shared, port: Rc<Port>, stop: fn() -> bool) {
     loop {
         Timer::after(TICK).await;
         let mut node = node.borrow_mut();
-        let out = node.servo.on_time(Instant::now().as_micros());
+        node.now_us = Instant::now().as_micros();
+        let now_us = node.now_us;
+        let out = node.servo.on_time(now_us);
         node.send(&out, &port);
         node.stop |= stop();
     }
@@ -103,9 +107,8 @@ impl Node {
             Some(faults) => faults.receive(frame, received),
         }
         for received in received.drain(..) {
-            let now_us = Instant::now().as_micros();
             let out = match received {
-                Received::Frame(frame) => self.servo.on_frame(&frame, now_us),
+                Received::Frame(frame) => self.servo.on_frame(&frame, self.now_us),
                 Received::Lost(kind) => self.servo.on_lost(kind),
             };
             self.send(&out, port);
