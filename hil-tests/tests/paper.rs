@@ -29,7 +29,7 @@ fn run(machine: &Machine, circle: &Circle) -> Vec<Point> {
 fn keep(name: &str, svg: &str) {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("paper");
     std::fs::create_dir_all(&folder).unwrap();
-    let text = svg.replacen("<svg", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg", 1);
+    let text = plots::standalone(svg);
     std::fs::write(folder.join(name), text).unwrap();
 }
 

@@ -132,7 +132,7 @@ pub fn command(arguments: &cli::CircleArguments) -> Outcome<()> {
         let title = format!("R {} mm, F {} mm/min", arguments.radius_mm, arguments.feed_mm_min);
         let trace = Trace { name: run.report.compensation.clone(), points: &run.points, radius_m: circle.radius_m };
         let svg = plots::polar(&title, &[trace])?;
-        write(path, &svg.replacen("<svg", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg", 1))?;
+        write(path, &plots::standalone(&svg))?;
     }
     arguments.candump.as_deref().map_or(Ok(()), |path| write_logs(path, &run.logs))
 }

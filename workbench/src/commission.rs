@@ -131,7 +131,20 @@ impl Job<'_> {
         write(&out.join("compensation.toml"), &compensation::text(names, &self.tuned.compensation)?)?;
         write(&out.join("summary.json"), &self.summary()?)?;
         circle::write_logs(&out.join("circle-after.candump.log"), &self.after.logs)?;
+        write(&out.join("circle.svg"), &plots::standalone(&self.polar()?))?;
         write(&out.join("report.html"), &self.page()?)
+    }
+
+    fn polar(&self) -> Outcome<String> {
+        let title =
+            format!("Circle R {} mm, F {:.0} mm/min", self.before.report.radius_mm, self.before.report.feed_mm_min);
+        let radius_m = 1.0e-3 * self.before.report.radius_mm;
+        let traces = [("before", self.before), ("after", self.after)].map(|(name, run)| Trace {
+            name: name.into(),
+            points: one_turn(run),
+            radius_m,
+        });
+        plots::polar(&title, &traces)
     }
 
     fn summary(&self) -> Outcome<String> {
@@ -167,15 +180,7 @@ impl Job<'_> {
             before.peak_max_um, after.peak_max_um, self.reduction
         ));
         page.table(&self.overview_table());
-        let title =
-            format!("Circle R {} mm, F {:.0} mm/min", self.before.report.radius_mm, self.before.report.feed_mm_min);
-        let radius_m = 1.0e-3 * self.before.report.radius_mm;
-        let traces = [("before", self.before), ("after", self.after)].map(|(name, run)| Trace {
-            name: name.into(),
-            points: one_turn(run),
-            radius_m,
-        });
-        page.pictures(&[plots::polar(&title, &traces)?]);
+        page.pictures(&[self.polar()?]);
         Ok(())
     }
 

@@ -45,6 +45,12 @@ fn draw(
     ))
 }
 
+/// The text of an SVG file of its own.
+#[must_use]
+pub fn standalone(svg: &str) -> String {
+    svg.replacen("<svg", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg", 1)
+}
+
 /// A path for the polar plot.
 pub struct Trace<'a> {
     /// Legend.
@@ -65,7 +71,7 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
     let step = nice_step(traces.iter().map(largest).fold(1.0, f64::max) / 3.0);
     // The nominal circle at 1, one step of deviation 0.12 of it.
     let per_um = 0.12 / step;
-    draw((620, 660), |root| {
+    draw((620, 647), |root| {
         let mut chart = ChartBuilder::on(root)
             .caption(title, ("sans-serif", 18))
             .margin(10)
