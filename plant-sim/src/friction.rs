@@ -3,11 +3,11 @@
 //! Every law answers one question of the integrator: given the velocity that the table would have without friction, how large is the
 //! friction force over this sub-step? Laws with internal states advance them in the same call. Friction is positive against motion.
 //!
-//! - [`Coulomb`](Friction::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands exactly still while the other
+//! - [`Coulomb`](Law::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands exactly still while the other
 //!   forces stay below the breakaway force (Moreau's time stepping: friction is solved for, not looked up).
-//! - [`LuGre`](Friction::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż + Fv v` (Canudas de Wit, Olsson,
+//! - [`LuGre`](Law::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż + Fv v` (Canudas de Wit, Olsson,
 //!   Åström, Lischinsky 1995, eq. 2 to 4).
-//! - [`MaxwellSlip`](Friction::MaxwellSlip): parallel elasto-slide elements, for hysteresis with non-local memory (Iwan 1966).
+//! - [`MaxwellSlip`](Law::MaxwellSlip): parallel elasto-slide elements, for hysteresis with non-local memory (Iwan 1966).
 
 use serde::{Deserialize, Serialize};
 
