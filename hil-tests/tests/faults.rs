@@ -187,6 +187,18 @@ fn whatever_dies_the_torque_is_zero_within_the_stated_cycles_until_a_fault_reset
 }
 
 #[test]
+fn the_workbench_does_not_go_on_with_a_servo_that_is_gone() {
+    let machine = one_axis();
+    let mut master = enabled(&machine).unwrap();
+    (0..100).for_each(|cycle| master.cycle(&[path(cycle)]).unwrap());
+    master.link_mut().bus_mut(0).connect(SERVO, false);
+    (0..20).for_each(|cycle| master.cycle(&[path(100 + cycle)]).unwrap());
+    assert!(master.has_lost_a_servo());
+    let why = master.expect_enabled().unwrap_err().to_string();
+    assert!(why.contains("axis X") && why.contains("sent no torque"), "{why}");
+}
+
+#[test]
 fn a_fault_reset_brings_the_axis_back_and_nothing_else_does() {
     let machine = one_axis();
     let mut master = enabled(&machine).unwrap();

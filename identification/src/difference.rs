@@ -271,7 +271,9 @@ fn judge(
         Column::WindUp => {
             let motor_mass = -own[1] / own[0];
             let inertia = crate::selection::declared_inertia(bench.motion);
-            (own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
+            let effort = bench.motion.effort_lp.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+            let visible = own[0] * effort >= counts;
+            (visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
         }
         Column::Pitch { k } => (own[0].hypot(own[1]) >= counts, k),
         Column::Constant => (false, 0.0),

@@ -17,7 +17,8 @@ use crate::selection::{self, Bench, Model, Scored, Selection};
 pub struct Candidate {
     /// Effect.
     pub effect: String,
-    /// Error on the validation record if this effect alone is added to the declared model, percent (force) or µm (position difference).
+    /// Error if this effect alone is added to the declared model, percent: of the force on the validation record, or, for effects judged on motor − load,
+    /// what is left of that difference on held-out blocks.
     pub validation_error_percent: Option<f64>,
     /// Evidence: mean over standard error of its gain on held-out blocks, in the round in which it stood best.
     pub evidence: f64,
@@ -111,7 +112,7 @@ pub struct Report {
 pub struct Curves {
     /// Validation record: time, s.
     pub time_s: Vec<f64>,
-    /// Recorded effort.
+    /// Recorded effort; where a known lag stands between the recorded and the acting effort, the acting one, which is what the predictions are of.
     pub effort: Vec<f64>,
     /// Prediction of the declared model, not low-passed.
     pub declared: Vec<f64>,
@@ -154,6 +155,13 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     if moving < crate::record::FEWEST_ROWS / 2 {
         return Err(IdentificationError::new(format!(
             "{}: only {moving} moving samples are left for the fit; record longer runs",
+            dataset.name
+        )));
+    }
+    let validation = kinematics(dataset, &dataset.validate)?;
+    if validation.moving.iter().filter(|moving| **moving).count() < crate::filter::TRIM {
+        return Err(IdentificationError::new(format!(
+            "{}: hardly any moving samples are left in the validation record; record longer runs for it",
             dataset.name
         )));
     }
@@ -366,7 +374,7 @@ fn candidates(
     }
     list.extend(extended.presliding.map(|p| Candidate {
         effect: "presliding".into(),
-        validation_error_percent: None,
+        validation_error_percent: Some(with_bristle(dataset, motion, validation, p.deflection)),
         evidence: p.t,
         share: 1.0 - (p.dahl / p.rigid.max(f64::MIN_POSITIVE)).powi(2),
         judged_on: "effort about reversals",
@@ -375,7 +383,8 @@ fn candidates(
     }));
     list.extend(difference.into_iter().flat_map(|d| &d.scored).filter(|s| s.round == 0).map(|scored| Candidate {
         effect: scored.effect.into(),
-        validation_error_percent: None,
+        // Of the position difference: what is left of its rms on held-out blocks.
+        validation_error_percent: Some(100.0 * (1.0 - scored.gain.share).max(0.0).sqrt()),
         evidence: scored.gain.t,
         share: scored.gain.share,
         judged_on: "motor - load position",
@@ -387,6 +396,15 @@ fn candidates(
     }
     list.sort_by(|a, b| b.accepted.cmp(&a.accepted).then(b.share.total_cmp(&a.share)));
     list
+}
+
+/// Force error on the validation record of the declared model with a bristle in place of the sign.
+fn with_bristle(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, deflection: f64) -> f64 {
+    let model = selection::declared_model(dataset);
+    let (train, validate) =
+        (reversal::with_presliding(motion, deflection), reversal::with_presliding(validation, deflection));
+    let coefficients = Bench { dataset, motion: &train }.fit(&model).coefficients;
+    Bench { dataset, motion: &validate }.force_error_percent(&model, &coefficients)
 }
 
 fn force_candidate(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, scored: &Scored) -> Candidate {
@@ -454,11 +472,21 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
     let moving = (0..motion.len()).filter(|at| motion.moving[*at]).map(|at| {
         [motion.velocity_lp[at], motion.position_lp[at], validation[0].residual[at], validation[1].residual[at]]
     });
+    // One row per row of the record: predictions go back from the uniform base to the time stamps of the file.
+    let origin = dataset.validate.rows.first().map_or(0.0, |row| row.0) - motion.time_s.first().copied().unwrap_or(0.0);
+    let at: Vec<f64> = dataset.validate.rows.iter().map(|(t, _)| t - origin).collect();
+    let even = at.len() == motion.len();
+    let on_rows =
+        |values: &[f64]| if even { values.to_vec() } else { crate::record::interpolate(&motion.time_s, values, &at) };
     Curves {
-        time_s: motion.time_s.clone(),
-        effort: dataset.validate.effort.clone(),
-        declared: validation[0].prediction.clone(),
-        extended: validation[1].prediction.clone(),
+        time_s: dataset.validate.rows.iter().map(|(t, _)| *t).collect(),
+        effort: if dataset.effort_lag_s > 0.0 {
+            on_rows(&motion.effort)
+        } else {
+            dataset.validate.rows.iter().map(|(_, e)| *e).collect()
+        },
+        declared: on_rows(&validation[0].prediction),
+        extended: on_rows(&validation[1].prediction),
         moving: moving.collect(),
     }
 }

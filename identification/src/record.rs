@@ -100,8 +100,10 @@ pub struct Record {
     pub reference: Option<Vec<f64>>,
     /// Effort.
     pub effort: Vec<f64>,
-    /// Time stamps of the rows as they stand in the file.
+    /// Time of each sample since the first row of the file, s.
     pub time_s: Vec<f64>,
+    /// The rows of the file that this record was made from: time stamp and effort as they stand there.
+    pub rows: Vec<(f64, f64)>,
 }
 
 impl Record {
@@ -129,7 +131,17 @@ impl Record {
             reference: self.reference.as_deref().map(cut),
             effort: cut(&self.effort),
             time_s: cut(&self.time_s),
+            rows: self.rows_between(range.start, range.end),
         }
+    }
+
+    /// Rows of the file that fall into a range of samples.
+    fn rows_between(&self, from: usize, to: usize) -> Vec<(f64, f64)> {
+        let origin = self.rows.first().map_or(0.0, |row| row.0);
+        let half = 0.5 * self.period_s;
+        let low = self.time_s.get(from).map_or(f64::INFINITY, |t| t - half);
+        let high = self.time_s.get(to).map_or(f64::INFINITY, |t| t - half);
+        self.rows.iter().copied().filter(|(t, _)| (low..high).contains(&(t - origin))).collect()
     }
 
     /// The time stamp, with the uniform base where the part has been resampled.
@@ -231,6 +243,7 @@ impl Dataset {
         for (what, record) in [("training", &train), ("validation", &validation)] {
             check_motion(folder, what, record, axis.kind)?;
         }
+        check_form(folder, &form)?;
         let resolution = match axis.kind {
             AxisKind::Linear => axis.encoder_resolution_m,
             AxisKind::Rotary => axis.encoder_resolution_rad,
@@ -266,6 +279,7 @@ impl Dataset {
                 reference: both(&self.train.reference, &self.validate.reference),
                 effort: join(&self.train.effort, &self.validate.effort),
                 time_s: join(&self.train.time_s, &self.validate.time_s),
+                rows: [&self.train.rows[..], &self.validate.rows[..]].concat(),
                 ..self.train.clone()
             }
         })
@@ -282,8 +296,32 @@ fn read_form(path: &Path) -> Outcome<DatasetForm> {
     })
 }
 
+fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
+    let axis = form.axis.clone().unwrap_or_default();
+    let positive = [
+        ("sample_period_s", form.sample_period_s, 1.0e-6, 1.0),
+        ("effort_lag_s", form.effort_lag_s, 0.0, 0.1),
+        ("lead_m_per_rev", axis.lead_m_per_rev, 1.0e-5, 1.0),
+        ("encoder_resolution_m", axis.encoder_resolution_m, 0.0, 1.0e-2),
+        ("encoder_resolution_rad", axis.encoder_resolution_rad, 0.0, 1.0),
+        ("load_encoder_resolution_m", axis.load_encoder_resolution_m, 0.0, 1.0e-2),
+    ];
+    for (key, value, low, high) in positive {
+        if let Some(value) = value.filter(|value| !(low..=high).contains(value)) {
+            return Err(IdentificationError::new(format!(
+                "{}: {key} must be {low} to {high} in the unit of its name, got {value}",
+                folder.join("dataset.toml").display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 fn check_declared(folder: &Path, declared: Option<Vec<String>>) -> Outcome<Vec<String>> {
     let declared = declared.unwrap_or_else(|| ["inertia", "viscous", "coulomb", "offset"].map(String::from).to_vec());
+    let mut declared: Vec<String> = declared.iter().map(|name| name.trim().to_owned()).collect();
+    let mut seen = std::collections::BTreeSet::new();
+    declared.retain(|name| seen.insert(name.clone()));
     match declared.iter().find(|name| !crate::effects::is_known(name)) {
         Some(name) => Err(IdentificationError::new(format!(
             "{}: unknown declared effect \"{name}\"; known: {}",
@@ -378,6 +416,7 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
         position: table.required(&format!("position_{unit}"))?,
         load: table.column(&format!("load_position_{unit}")),
         reference: table.column(&format!("reference_{unit}")),
+        rows: time_s.iter().copied().zip(effort.iter().copied()).collect(),
         effort,
         time_s,
     };
@@ -482,24 +521,28 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
     let start = raw.time_s[0];
     let even = raw.time_s.iter().enumerate().all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
     if even {
-        return Record { start_s: start, period_s, ..raw };
+        let time_s = raw.time_s.iter().map(|t| t - start).collect();
+        return Record { start_s: 0.0, period_s, time_s, ..raw };
     }
     let duration = raw.time_s[raw.time_s.len() - 1] - start;
     let rows = (duration / period_s).floor() as usize + 1;
     let at: Vec<f64> = (0..rows).map(|i| start + period_s * i as f64).collect();
     let on_base = |values: &[f64]| interpolate(&raw.time_s, values, &at);
     Record {
-        start_s: start,
+        start_s: 0.0,
         period_s,
         position: on_base(&raw.position),
         load: raw.load.as_deref().map(on_base),
         reference: raw.reference.as_deref().map(on_base),
         effort: on_base(&raw.effort),
-        time_s: at,
+        time_s: at.iter().map(|t| t - start).collect(),
+        rows: raw.rows,
     }
 }
 
-fn interpolate(time_s: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+/// Values on a uniform base, seen at other times.
+#[must_use]
+pub(crate) fn interpolate(time_s: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
     let mut right = 1;
     at.iter()
         .map(|t| {

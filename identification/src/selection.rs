@@ -241,8 +241,7 @@ pub fn select(bench: &Bench<'_>, low: &Bench<'_>, start: Model, progress: &mut d
 
 fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> bool {
     let present = model.terms.iter().any(|term| term.effect.name() == effect.name());
-    let usual = matches!(effect.name(), "inertia" | "viscous" | "coulomb" | "offset");
-    !dataset.declared.iter().any(|name| name == effect.name()) && !usual && (!present || effect.repeats())
+    !dataset.declared.iter().any(|name| name == effect.name()) && (!present || effect.repeats())
 }
 
 fn is_accepted(scored: &Scored) -> bool {

@@ -22,7 +22,7 @@ impl From<IdentificationError> for Failure {
 pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     let dataset = Dataset::read(&arguments.dataset, arguments.validate.as_deref(), arguments.declared.clone())?;
     let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
-    print(&result);
+    // Files first: whoever reads the output may stop early.
     let json = json(&result)?;
     if let Some(path) = &arguments.json {
         write(path, &json)?;
@@ -35,6 +35,9 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
         let mut page = Page::new(&format!("Identification of {}", dataset.name));
         report::identification(&mut page, "Result", &result)?;
         write(&folder.join("report.html"), &page.finish())?;
+    }
+    print(&result);
+    if let Some(folder) = &arguments.out {
         println!("report: {}", folder.join("report.html").display());
     }
     Ok(())

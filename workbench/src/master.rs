@@ -25,6 +25,13 @@ const ANSWER: Duration = Duration::from_secs(1);
 /// How long all torques of a cycle may take in lock-step.
 const CYCLE: Duration = Duration::from_millis(200);
 
+/// Frames that may pass while an answer is waited for: more than a full 1 Mbit/s bus carries in a second.
+const FRAMES_PER_ANSWER: u32 = 20_000;
+/// Frames that may pass in a cycle.
+const FRAMES_PER_CYCLE: u32 = 4000;
+/// A servo that is silent for longer is gone.
+const SILENT_CYCLES: u32 = 10;
+
 /// What an axis did in one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisCycle {
@@ -51,6 +58,7 @@ struct AxisLink {
     load: Option<(LoadIncrements24, i64)>,
     torque_n: f64,
     torque_seen: bool,
+    silent_cycles: u32,
     state: Option<DriveState>,
     fault: Option<Fault>,
 }
@@ -86,6 +94,7 @@ impl<L: Link> Master<L> {
                 load: None,
                 torque_n: 0.0,
                 torque_seen: false,
+                silent_cycles: 0,
                 state: None,
                 fault: None,
             })
@@ -158,8 +167,11 @@ impl<L: Link> Master<L> {
             missing.push((axis.ids, axis.name.clone(), FrameKind::PlantHeartbeat));
             missing.push((axis.ids, axis.name.clone(), FrameKind::ServoHeartbeat));
         }
+        let mut frames = 0;
         while let Some((ids, name, kind)) = missing.first() {
-            let Some(frame) = self.link.receive(bus, ANSWER)? else {
+            frames += 1;
+            let received = if frames > FRAMES_PER_ANSWER { None } else { self.link.receive(bus, ANSWER)? };
+            let Some(frame) = received else {
                 let (node, what) = match kind {
                     FrameKind::PlantHeartbeat => (ids.plant.get(), "plant"),
                     _ => (ids.servo.get(), "servo"),
@@ -186,8 +198,11 @@ impl<L: Link> Master<L> {
     fn ask(&mut self, index: usize, request: Request) -> Outcome<Response> {
         self.send(index, Message::SdoRequest(request))?;
         let (bus, ids) = (self.axes[index].bus, self.axes[index].ids);
+        let mut frames = 0;
         loop {
-            let Some(frame) = self.link.receive(bus, ANSWER)? else {
+            frames += 1;
+            let received = if frames > FRAMES_PER_ANSWER { None } else { self.link.receive(bus, ANSWER)? };
+            let Some(frame) = received else {
                 let (name, node) = (&self.axes[index].name, ids.servo.get());
                 return Err(Failure::new(format!(
                     "axis {name}: the servo (node {node}) does not answer; is `quadrant servo --node {node} --plant-node {}` running on this interface?",
@@ -281,6 +296,13 @@ impl<L: Link> Master<L> {
     /// # Errors
     /// Axis, state and fault.
     pub fn expect_enabled(&self) -> Outcome<()> {
+        if let Some(axis) = self.axes.iter().find(|axis| axis.silent_cycles > SILENT_CYCLES) {
+            let (name, node) = (&axis.name, axis.ids.servo.get());
+            return Err(Failure::new(format!(
+                "axis {name}: the servo (node {node}) sent no torque for {} cycles; is it still running and on this interface?",
+                axis.silent_cycles
+            )));
+        }
         match self.axes.iter().find(|axis| axis.state != Some(DriveState::OperationEnabled)) {
             None => Ok(()),
             Some(axis) => {
@@ -291,6 +313,12 @@ impl<L: Link> Master<L> {
                 Err(Failure::new(format!("axis {}: the drive is not enabled ({state}; {why})", axis.name)))
             }
         }
+    }
+
+    /// Whether some servo has been silent for so long that going on makes no sense.
+    #[must_use]
+    pub fn has_lost_a_servo(&self) -> bool {
+        self.axes.iter().any(|axis| axis.silent_cycles > SILENT_CYCLES)
     }
 
     /// Disables the drives.
@@ -359,7 +387,9 @@ impl<L: Link> Master<L> {
             self.collect(bus, counter)?;
         }
         for index in 0..self.axes.len() {
-            self.axes[index].now.truth = self.link.truth(index);
+            let axis = &mut self.axes[index];
+            axis.now.truth = self.link.truth(index);
+            axis.silent_cycles = if axis.torque_seen { 0 } else { axis.silent_cycles + 1 };
         }
         self.counter = counter.next();
         self.cycles += 1;
@@ -367,8 +397,12 @@ impl<L: Link> Master<L> {
     }
 
     fn collect(&mut self, bus: usize, counter: SyncCounter) -> Outcome<()> {
+        // Other people's traffic must not prolong the waiting: so many frames, or so much time without any, end the cycle.
+        let mut frames = 0;
         while self.axes.iter().any(|axis| axis.bus == bus && !axis.torque_seen) {
-            let Some(frame) = self.link.receive(bus, CYCLE)? else {
+            frames += 1;
+            let received = if frames > FRAMES_PER_CYCLE { None } else { self.link.receive(bus, CYCLE)? };
+            let Some(frame) = received else {
                 self.missed += 1;
                 return Ok(());
             };

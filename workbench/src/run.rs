@@ -119,6 +119,9 @@ impl<'a> Session<'a> {
             }
             each(index * period_s, &now);
             index += 1.0;
+            if self.master.has_lost_a_servo() {
+                break;
+            }
         }
         self.master.expect_enabled()
     }

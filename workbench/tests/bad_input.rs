@@ -18,7 +18,7 @@ fn refused(name: &str, arguments: &[&str], parts: &[&str]) {
     }
     assert!(!err.contains("panicked"), "{name}: {err}");
     let own = err.lines().filter(|line| line.starts_with("quadrant:")).count();
-    assert!(own == 1 && err.lines().count() == 1 || err.starts_with("error:"), "{name}: one line, got: {err}");
+    assert!(own == 1 && err.lines().count() == 1, "{name}: one line, got: {err}");
 }
 
 fn file(folder: &Path, name: &str, text: &str) -> String {
