@@ -9,9 +9,8 @@ const ENTRIES: [&str; 5] = ["entry_new", "entry_boot", "entry_frame", "entry_los
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let keep = |entry: &str| format!("EXTERN({entry})\nASSERT(DEFINED({entry}), \"entry {entry} is missing\")\n");
-    let script: String = std::iter::once("ENTRY(entry_frame)\n".to_owned())
-        .chain(ENTRIES.into_iter().map(|entry| keep(entry)))
-        .collect();
+    let script: String =
+        std::iter::once("ENTRY(entry_frame)\n".to_owned()).chain(ENTRIES.into_iter().map(keep)).collect();
     fs::write(out.join("control-path-entries.x"), script).expect("OUT_DIR is writable");
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rustc-link-search={}", out.display());

@@ -130,7 +130,7 @@ fn relay_node(node: &str) {
     // The same filters as the real nodes.
     let accepted: Vec<StandardId> = match role {
         "p" => [FrameKind::Nmt, FrameKind::Sync, FrameKind::Torque].map(id).to_vec(),
-        _ => quadrant_filters(ids),
+        _ => quadrant_host::accepted(ids).to_vec(),
     };
     let port = CanPort::open("vcan0", &accepted).expect("vcan0 is there");
     let (mut feedbacks, mut answers) = (0_u32, Vec::new());
@@ -153,19 +153,6 @@ fn relay_node(node: &str) {
             port.send(&frame).expect("vcan0 takes every frame");
         }
     }
-}
-
-fn quadrant_filters(ids: AxisIds) -> Vec<StandardId> {
-    let kinds = [
-        FrameKind::Nmt,
-        FrameKind::Sync,
-        FrameKind::Feedback,
-        FrameKind::Setpoint,
-        FrameKind::SdoRequest,
-        FrameKind::PlantHeartbeat,
-        FrameKind::PlantEmergency,
-    ];
-    kinds.map(|kind| ids.identifier(kind)).to_vec()
 }
 
 fn relay() -> f64 {

@@ -131,8 +131,17 @@ impl Job<'_> {
         write(&out.join("compensation.toml"), &compensation::text(names, &self.tuned.compensation)?)?;
         write(&out.join("summary.json"), &self.summary()?)?;
         circle::write_logs(&out.join("circle-after.candump.log"), &self.after.logs)?;
+        write(&out.join("quadrant.dbc"), &self.dbc()?)?;
         write(&out.join("circle.svg"), &plots::standalone(&self.polar()?))?;
         write(&out.join("report.html"), &self.page()?)
+    }
+
+    /// The DBC of this machine's nodes, for the candump logs beside it.
+    fn dbc(&self) -> Outcome<String> {
+        let axes = (0..self.machine.axes.len()).map(crate::link::axis_ids).collect::<Outcome<Vec<_>>>()?;
+        let mut text = String::new();
+        protocol::dbc::write(&mut text, &axes).map_err(|error| Failure::new(error.to_string()))?;
+        Ok(text)
     }
 
     fn polar(&self) -> Outcome<String> {

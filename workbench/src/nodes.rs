@@ -57,6 +57,7 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
             0x10 + machine.axes.len()
         )));
     };
+    refuse_overload(&machine, arguments.pace)?;
     let servo = arguments.node - 0x10;
     let ids = ids(servo, arguments.node)?;
     let accepted = [FrameKind::Nmt, FrameKind::Sync, FrameKind::Torque].map(|kind| ids.identifier(kind));
@@ -66,6 +67,21 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
     run(node.with_sync_timeout_us(timeout_us), &port, arguments.faults)
         .map(|never| match never {})
         .map_err(|error| gone(&arguments.can, &error))
+}
+
+/// On a clock, a bus that cannot carry the cycle misses deadlines; vcan would not show it, so the computed load decides.
+fn refuse_overload(machine: &Machine, pace: cli::Pace) -> Outcome<()> {
+    let load = machine.bus_load_per_mille();
+    if pace == cli::Pace::Clock && load > protocol::load::CLOCK_PACED_LIMIT_PER_MILLE {
+        return Err(Failure::new(format!(
+            "machine {}: {}.{} % computed bus load, a clock-paced run takes at most {} %; give each axis its own interface, a longer period_s or CAN FD",
+            machine.name,
+            load / 10,
+            load % 10,
+            protocol::load::CLOCK_PACED_LIMIT_PER_MILLE / 10
+        )));
+    }
+    Ok(())
 }
 
 fn open(interface: &str, accepted: &[embedded_can::StandardId]) -> Outcome<CanPort> {

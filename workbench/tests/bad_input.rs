@@ -117,6 +117,12 @@ fn impossible_options_say_what_was_wanted() {
     for (name, arguments, parts) in cases {
         refused(name, &arguments, parts);
     }
+    let shared = plant_sim::Machine::reference_text()
+        .replacen("name = \"X\"", "name = \"X\"\ninterface = \"can0\"", 1)
+        .replace("like = \"X\"", "like = \"X\"\ninterface = \"can0\"");
+    let shared = file(folder.path(), "shared.toml", &shared);
+    let clocked = ["plant", "--machine", &shared, "--can", "vcan0", "--pace", "clock"];
+    refused("two axes on one clock-paced bus", &clocked, &["88.4 %", "80 %"]);
     refused("unknown command", &["dance"], &["dance"]);
     refused(
         "start delay beyond reason",
