@@ -4,10 +4,10 @@
 //! faults however its processes are scheduled. Only cyclic frames are touched; NMT, SDO and EMCY pass.
 //!
 //! *Lost*: a token instead of the frame. *Doubled*: the frame twice. *Late*: a token now, the frame after the next SYNC. *Corrupted* is what
-//! gets past CAN's CRC in practice: a wrong length, a remote or extended frame, a stale counter, an implausible jump. Small flips of the payload
+//! gets past CAN's CRC in practice: a wrong length, a remote frame, a stale counter, an implausible jump. Small flips of the payload
 //! cannot be detected by anybody; their effect is bounded by the limits of the drive instead.
 
-use embedded_can::{ExtendedId, Frame, Id, StandardId};
+use embedded_can::{Frame, Id};
 use protocol::CanFrame;
 use protocol::cob::{AxisIds, FrameKind};
 use protocol::table::{FRAMES, Rate};
@@ -168,12 +168,6 @@ fn corrupted(frame: &CanFrame, kind: FrameKind, how: u8) -> CanFrame {
 
 fn shortened(frame: &CanFrame, payload: &[u8]) -> CanFrame {
     CanFrame::new(frame.id(), &payload[..payload.len() / 2]).unwrap_or(*frame)
-}
-
-/// An extended frame that has the same low bits as a standard one; nodes must not take it for theirs.
-#[must_use]
-pub fn extended_twin(id: StandardId, data: &[u8]) -> Option<CanFrame> {
-    CanFrame::new(ExtendedId::new(u32::from(id.as_raw()))?, data)
 }
 
 #[cfg(test)]

@@ -140,7 +140,7 @@ pub fn difference(dataset: &Dataset, motion: &Kinematics) -> Option<Difference> 
     };
     for round in 0..3 {
         let base = bench.fit(&terms);
-        let mut candidates: Vec<(Scored, Column, Fit)> = candidates(&bench, &terms, dataset, &base)
+        let mut candidates: Vec<(Scored, Column)> = candidates(&bench, &terms, dataset, &base)
             .into_iter()
             .map(|column| judge(&bench, &terms, &base, all, column, dataset, round))
             .collect();
@@ -260,7 +260,7 @@ fn judge(
     column: Column,
     dataset: &Dataset,
     round: usize,
-) -> (Scored, Column, Fit) {
+) -> (Scored, Column) {
     let fit = bench.fit(&[terms, &[column]].concat());
     let gain = Gain::of(base, &fit);
     let own = &fit.coefficients[base.coefficients.len()..];
@@ -281,7 +281,7 @@ fn judge(
     let removed_of_all = gain.share * total / all.max(f64::MIN_POSITIVE);
     let accepted = physical && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
     let scored = Scored { effect: column.name(), parameter, gain, physical, accepted, nameless: false, round };
-    (scored, column, fit)
+    (scored, column)
 }
 
 #[cfg(test)]

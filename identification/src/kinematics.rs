@@ -67,10 +67,9 @@ impl Kinematics {
         let velocity_lp = filter.apply(&friction.velocity);
         let limit = dataset.kind.moving_velocity();
         let (moving, slow) = masks(&motor_lp, limit, period_s);
-        let time_s = (0..record.len()).map(|row| record.time_at(row)).collect();
         Some(Self {
             period_s,
-            time_s,
+            time_s: record.time_s.clone(),
             position_lp: filter.apply(&motor.position),
             direction: velocity_lp.iter().map(|v| v.signum()).collect(),
             friction_position: friction.position.clone(),

@@ -88,8 +88,6 @@ pub enum EffortHold {
 /// A record on a uniform time base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Time of the first row since the start of the record, s.
-    pub start_s: f64,
     /// Sample period, s.
     pub period_s: f64,
     /// Motor position.
@@ -124,7 +122,6 @@ impl Record {
     pub fn part(&self, range: std::ops::Range<usize>) -> Self {
         let cut = |values: &[f64]| values[range.clone()].to_vec();
         Self {
-            start_s: self.start_s + self.period_s * range.start as f64,
             period_s: self.period_s,
             position: cut(&self.position),
             load: self.load.as_deref().map(cut),
@@ -142,12 +139,6 @@ impl Record {
         let low = self.time_s.get(from).map_or(f64::INFINITY, |t| t - half);
         let high = self.time_s.get(to).map_or(f64::INFINITY, |t| t - half);
         self.rows.iter().copied().filter(|(t, _)| (low..high).contains(&(t - origin))).collect()
-    }
-
-    /// The time stamp, with the uniform base where the part has been resampled.
-    #[must_use]
-    pub fn time_at(&self, row: usize) -> f64 {
-        self.time_s.get(row).copied().unwrap_or(self.start_s + self.period_s * row as f64)
     }
 }
 
@@ -411,7 +402,6 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
     check_time(&table.path, &time_s)?;
     let (effort, which) = table.effort()?;
     let raw = Record {
-        start_s: 0.0,
         period_s: 0.0,
         position: table.required(&format!("position_{unit}"))?,
         load: table.column(&format!("load_position_{unit}")),
@@ -522,14 +512,13 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
     let even = raw.time_s.iter().enumerate().all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
     if even {
         let time_s = raw.time_s.iter().map(|t| t - start).collect();
-        return Record { start_s: 0.0, period_s, time_s, ..raw };
+        return Record { period_s, time_s, ..raw };
     }
     let duration = raw.time_s[raw.time_s.len() - 1] - start;
     let rows = (duration / period_s).floor() as usize + 1;
     let at: Vec<f64> = (0..rows).map(|i| start + period_s * i as f64).collect();
     let on_base = |values: &[f64]| interpolate(&raw.time_s, values, &at);
     Record {
-        start_s: 0.0,
         period_s,
         position: on_base(&raw.position),
         load: raw.load.as_deref().map(on_base),

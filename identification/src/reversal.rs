@@ -65,7 +65,7 @@ pub fn presliding(bench: &Bench<'_>, model: &Model, coefficients: &[f64]) -> Opt
         return None;
     }
     let (level, observed) = level_and_observed(bench, model, coefficients)?;
-    let resolution = encoder_resolution(bench);
+    let resolution = encoder_resolution(bench.dataset);
     let rigid = rigid_error(motion, &level, &observed, resolution);
     let unit = bench.dataset.kind.moving_velocity();
     let error = |deflection: f64| dahl_error(motion, &level, &observed, deflection);
@@ -75,7 +75,7 @@ pub fn presliding(bench: &Bench<'_>, model: &Model, coefficients: &[f64]) -> Opt
     let bristle = error(deflection);
     let t = block_t(motion, &rigid, &bristle);
     let (rigid, dahl) = (rms(&rigid, motion), rms(&bristle, motion));
-    let accepted = dahl <= RATIO * rigid && t >= T && deflection >= FEWEST_COUNTS * resolution;
+    let accepted = dahl <= RATIO * rigid && t >= T && deflection >= self::resolution(bench.dataset);
     Some(Presliding { rigid, dahl, deflection, t, accepted })
 }
 
@@ -85,13 +85,14 @@ pub fn error_rms(bench: &Bench<'_>, model: &Model, coefficients: &[f64], deflect
     let (level, observed) = level_and_observed(bench, model, coefficients)?;
     let error = match deflection {
         Some(deflection) => dahl_error(bench.motion, &level, &observed, deflection),
-        None => rigid_error(bench.motion, &level, &observed, encoder_resolution(bench)),
+        None => rigid_error(bench.motion, &level, &observed, encoder_resolution(bench.dataset)),
     };
     Some(rms(&error, bench.motion))
 }
 
-fn encoder_resolution(bench: &Bench<'_>) -> f64 {
-    if bench.motion.difference.is_some() { bench.dataset.load_resolution } else { bench.dataset.resolution }
+/// Resolution of the encoder where friction acts: the load scale if there is one.
+fn encoder_resolution(dataset: &Dataset) -> f64 {
+    if dataset.train.load.is_some() { dataset.load_resolution } else { dataset.resolution }
 }
 
 /// Level G(v) of the sign columns, and effort − all other columns, low-passed.
@@ -185,7 +186,7 @@ pub fn with_presliding(motion: &Kinematics, deflection: f64) -> Kinematics {
 /// Smallest δ that a dataset can show.
 #[must_use]
 pub fn resolution(dataset: &Dataset) -> f64 {
-    FEWEST_COUNTS * if dataset.train.load.is_some() { dataset.load_resolution } else { dataset.resolution }
+    FEWEST_COUNTS * encoder_resolution(dataset)
 }
 
 #[cfg(test)]

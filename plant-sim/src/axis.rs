@@ -36,6 +36,14 @@ pub struct AxisParameters {
     pub force_noise_n: f64,
 }
 
+impl AxisParameters {
+    /// Force at the table of a motor torque of 1 µN·m, N.
+    #[must_use]
+    pub fn newton_per_micro_nm(&self) -> f64 {
+        1.0e-6 * std::f64::consts::TAU / self.lead_m_per_rev
+    }
+}
+
 /// Encoder readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {

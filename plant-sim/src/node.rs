@@ -61,7 +61,7 @@ impl PlantNode {
     /// A plant at rest; [`Self::boot`] announces it.
     #[must_use]
     pub fn new(ids: AxisIds, parameters: AxisParameters, period_s: f64, seed: u64) -> Self {
-        let newton_per_micro_nm = 1.0e-6 * std::f64::consts::TAU / parameters.lead_m_per_rev;
+        let newton_per_micro_nm = parameters.newton_per_micro_nm();
         Self {
             ids,
             axis: Axis::new(parameters, seed),

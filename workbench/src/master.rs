@@ -88,7 +88,7 @@ impl<L: Link> Master<L> {
                 bus: link.bus_of(index),
                 name: axis.name.clone(),
                 way_m: axis.actual.lead_m_per_rev / counts,
-                newton_per_micro_nm: 1.0e-6 * std::f64::consts::TAU / axis.actual.lead_m_per_rev,
+                newton_per_micro_nm: axis.actual.newton_per_micro_nm(),
                 next: SetpointFine::default(),
                 now: AxisCycle::default(),
                 load: None,

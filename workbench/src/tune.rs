@@ -147,17 +147,13 @@ impl Search<'_, '_> {
         };
         let solver = NelderMead::new(vec![corner.clone(), moved(0), moved(1)]).with_sd_tolerance(TOLERANCE_UM);
         let solver = solver.map_err(|error| Failure::new(error.to_string()))?;
-        let failed = RefCell::new(None);
         let executor = Executor::new(&self, solver).configure(|state| state.max_iters(MOST_CIRCLES));
         match executor.run() {
             Ok(result) => {
                 let best = result.state().get_best_param().cloned().unwrap_or(corner);
                 Ok(self.pulse(&best))
             }
-            Err(error) => {
-                *failed.borrow_mut() = self.failure.take();
-                Err(failed.into_inner().unwrap_or_else(|| Failure::new(error.to_string())))
-            }
+            Err(error) => Err(self.failure.take().unwrap_or_else(|| Failure::new(error.to_string()))),
         }
     }
 
