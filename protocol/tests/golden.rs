@@ -182,3 +182,13 @@ fn the_dbc_at_the_crate_root_is_the_table() {
         "run with QUADRANT_BLESS=1 and review the change"
     );
 }
+
+#[test]
+fn an_extended_frame_with_the_same_low_bits_is_other_peoples_traffic() {
+    for (message, _) in golden() {
+        let frame = message.encode(axis(0));
+        let id = embedded_can::ExtendedId::new(u32::from(axis(0).identifier(message.kind()).as_raw())).unwrap();
+        let twin = CanFrame::new(id, frame.payload()).unwrap();
+        assert_eq!(decode(axis(0), &twin), Ok(Decoded::Foreign), "{message:?}");
+    }
+}
