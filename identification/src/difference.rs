@@ -1,14 +1,16 @@
 //! The difference of motor and load position: backlash, compliance and pitch error, where there is a load scale.
 //!
-//! Candidates: the play operator (a gap that the motor crosses before the load follows), wind-up by the transmitted force
+//! Candidates: a gap (the load coasts, or waits, while the motor crosses it: [`crate::load`]), wind-up by the transmitted force
 //! (`F − M1·a` over K), and a function periodic in position. Judged on held-out blocks like the force, but accepted only where the amplitude is
 //! beyond the encoders' counts.
 
 use std::f64::consts::TAU;
 
 use crate::kinematics::Kinematics;
+use crate::load::Behind;
 use crate::record::Dataset;
 use crate::regression::{Blocks, Fit, Gain};
+use crate::search::{descend, smallest};
 use crate::selection::Scored;
 
 /// Smallest share of the held-out variance.
@@ -18,6 +20,8 @@ const SHARE_OF_ALL: f64 = 0.01;
 /// Smallest amplitude, in counts of the coarser encoder.
 const FEWEST_COUNTS: f64 = 2.0;
 const T: f64 = 2.0;
+/// Smallest rms that an effect removes, in counts of the coarser encoder: every screw has some stiffness.
+const SMALLEST_RMS_COUNTS: f64 = 1.0;
 
 /// What the difference says.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +47,7 @@ pub struct Difference {
 enum Column {
     Constant,
     WindUp,
-    Play { gap: f64 },
+    Play(Behind),
     Pitch { k: f64 },
 }
 
@@ -52,7 +56,7 @@ impl Column {
         match self {
             Self::Constant => "constant",
             Self::WindUp => "compliance",
-            Self::Play { .. } => "backlash",
+            Self::Play(_) => "backlash",
             Self::Pitch { .. } => "pitch_error",
         }
     }
@@ -61,27 +65,13 @@ impl Column {
         match self {
             Self::Constant => vec![vec![1.0; motion.len()]],
             Self::WindUp => vec![motion.effort_lp.clone(), motion.filter.apply(&motion.acceleration)],
-            Self::Play { gap } => vec![play(position, gap)],
+            Self::Play(behind) => vec![behind.follow(position, motion.period_s).lag],
             Self::Pitch { k } => {
                 let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
                 vec![wave(f64::cos), wave(f64::sin)]
             }
         }
     }
-}
-
-/// What the motor is ahead of a load that follows over a gap: −gap/2…gap/2.
-#[must_use]
-pub fn play(position: &[f64], gap: f64) -> Vec<f64> {
-    let half = 0.5 * gap;
-    let mut load = position.first().copied().unwrap_or(0.0);
-    position
-        .iter()
-        .map(|x| {
-            load = load.max(x - half).min(x + half);
-            x - load
-        })
-        .collect()
 }
 
 struct Bench<'a> {
@@ -101,10 +91,14 @@ impl<'a> Bench<'a> {
         terms.iter().flat_map(|term| term.columns(self.motion, self.position)).collect()
     }
 
-    fn fit(&self, terms: &[Column]) -> Fit {
+    fn blocks(&self, terms: &[Column]) -> Blocks {
         let design = self.design(terms);
         let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, self.target, &self.mask, self.motion.period_s).cross_validate()
+        Blocks::new(&columns, self.target, &self.mask, self.motion.period_s)
+    }
+
+    fn fit(&self, terms: &[Column]) -> Fit {
+        self.blocks(terms).cross_validate()
     }
 
     fn rms_um(&self, terms: &[Column], coefficients: &[f64]) -> f64 {
@@ -161,7 +155,7 @@ pub fn difference(dataset: &Dataset, motion: &Kinematics) -> Option<Difference> 
     let fit = bench.fit(&terms);
     outcome.after_um = bench.rms_um(&terms, &fit.coefficients);
     outcome.gap = terms.iter().find_map(|term| match term {
-        Column::Play { gap } => Some(*gap),
+        Column::Play(behind) => Some(behind.gap),
         Column::Constant | Column::WindUp | Column::Pitch { .. } => None,
     });
     outcome.stiffness = stiffness(&terms, &fit.coefficients);
@@ -187,7 +181,7 @@ fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
     for term in terms {
         match term {
             Column::WindUp => return coefficients.get(place).filter(|c| **c > 0.0).map(|c| 1.0 / c),
-            Column::Constant | Column::Play { .. } => place += 1,
+            Column::Constant | Column::Play(_) => place += 1,
             Column::Pitch { .. } => place += 2,
         }
     }
@@ -209,21 +203,41 @@ fn candidates(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset, base: &Fit
     list
 }
 
+/// Shares of the moved mass that stand behind the gap, as tried.
+const SHARES: [f64; 5] = [0.02, 0.3, 0.4, 0.5, 0.65];
+/// Coefficients of restitution that are tried.
+const RESTITUTIONS: [f64; 5] = [0.0, 0.3, 0.5, 0.7, 0.9];
+/// Rounds of the search, one parameter after the other.
+const ROUNDS: usize = 2;
+
 fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
     let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
-    let sse = |gap: f64| bench.fit(&[terms, &[Column::Play { gap }]].concat()).sse;
+    let plain = crate::selection::plain_fit(bench.motion);
+    let behind = |gap: f64, share: f64, restitution: f64| Behind {
+        gap,
+        coulomb: plain.coulomb / (share * plain.inertia),
+        viscous: plain.viscous.max(0.0) / (share * plain.inertia),
+        restitution,
+    };
+    // A gap is as wide as it is: its lag is subtracted, not scaled.
+    let sse = |behind: Behind| {
+        let lag = behind.follow(bench.position, bench.motion.period_s).lag;
+        let target: Vec<f64> = bench.target.iter().zip(lag).map(|(target, lag)| target - lag).collect();
+        Bench { target: &target, mask: bench.mask.clone(), ..*bench }.blocks(terms).fit().sse
+    };
     let grid = crate::effects::geometric(counts, 1.0e-3_f64.max(100.0 * counts), 24);
-    let best =
-        grid.into_iter().map(|gap| (sse(gap), gap)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(counts, |(_, gap)| gap);
-    let (mut gap, mut step, mut least) = (best, 0.15 * best, sse(best));
-    for _ in 0..8 {
-        let tries = [gap - step, gap + step].map(|gap| (sse(gap), gap));
-        match tries.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(sse, _)| *sse < least) {
-            Some((sse, better)) => (least, gap) = (sse, better),
-            None => step *= 0.5,
-        }
+    let mut gap = smallest(grid, &|gap| sse(behind(gap, 0.4, 0.0))).unwrap_or(counts);
+    let (mut share, mut restitution) = (SHARES[2], RESTITUTIONS[0]);
+    let mut step = 0.15;
+    for _ in 0..ROUNDS {
+        gap = descend(gap, step * gap, (counts, f64::MAX), &|gap| sse(behind(gap, share, restitution)));
+        restitution = smallest(RESTITUTIONS.to_vec(), &|r| sse(behind(gap, share, r))).unwrap_or(restitution);
+        share = smallest(SHARES.to_vec(), &|share| sse(behind(gap, share, restitution))).unwrap_or(share);
+        restitution = descend(restitution, 0.1, (0.0, 0.99), &|r| sse(behind(gap, share, r)));
+        share = descend(share, 0.05, (0.01, 0.95), &|share| sse(behind(gap, share, restitution)));
+        step = 0.02;
     }
-    Column::Play { gap }
+    Column::Play(behind(gap, share, restitution))
 }
 
 fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column> {
@@ -267,10 +281,10 @@ fn judge(
     let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
     let total: f64 = base.held_out.iter().sum();
     let (physical, parameter) = match column {
-        Column::Play { gap } => ((0.8..=1.2).contains(&own[0]) && gap >= counts, gap),
+        Column::Play(behind) => ((0.8..=1.2).contains(&own[0]) && behind.gap >= counts, behind.gap),
         Column::WindUp => {
             let motor_mass = -own[1] / own[0];
-            let inertia = crate::selection::declared_inertia(bench.motion);
+            let inertia = crate::selection::plain_fit(bench.motion).inertia;
             let effort = bench.motion.effort_lp.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
             let visible = own[0] * effort >= counts;
             (visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
@@ -279,18 +293,10 @@ fn judge(
         Column::Constant => (false, 0.0),
     };
     let removed_of_all = gain.share * total / all.max(f64::MIN_POSITIVE);
-    let accepted = physical && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
+    let rows = bench.mask.iter().filter(|inside| **inside).count() as f64;
+    let removed_rms = (gain.share.max(0.0) * total / rows.max(1.0)).sqrt();
+    let matters = removed_rms >= SMALLEST_RMS_COUNTS * dataset.resolution.max(dataset.load_resolution);
+    let accepted = physical && matters && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
     let scored = Scored { effect: column.name(), parameter, gain, physical, accepted, nameless: false, round };
     (scored, column)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_load_waits_while_the_motor_crosses_the_gap() {
-        let path: Vec<f64> = [0.0, 1.0, 2.0, 3.0, 2.5, 2.0, 1.0, 0.0].to_vec();
-        assert_eq!(play(&path, 1.0), [0.0, 0.5, 0.5, 0.5, 0.0, -0.5, -0.5, -0.5]);
-    }
 }

@@ -92,6 +92,42 @@ impl Naming<'_> {
     }
 }
 
+/// Where a simulated axis stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Instant {
+    /// Position.
+    pub position: f64,
+    /// Position over the travel of the training record, −1…1.
+    pub scaled: f64,
+    /// Velocity.
+    pub velocity: f64,
+    /// Time since the start of the record, s.
+    pub time_s: f64,
+}
+
+/// What an effect does to a simulated axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Action {
+    /// Part of the friction level, which acts against motion and holds at rest.
+    pub level: f64,
+    /// Force against positive motion, whatever the direction.
+    pub force: f64,
+}
+
+impl Action {
+    /// A part of the friction level.
+    #[must_use]
+    pub const fn level(level: f64) -> Self {
+        Self { level, force: 0.0 }
+    }
+
+    /// A force.
+    #[must_use]
+    pub const fn force(force: f64) -> Self {
+        Self { level: 0.0, force }
+    }
+}
+
 /// An effect of the inverse model.
 pub trait Effect: Sync {
     /// Name, as in the interface.
@@ -102,6 +138,19 @@ pub trait Effect: Sync {
 
     /// Columns at a nonlinear parameter.
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, parameter: f64) -> Vec<Vec<f64>>;
+
+    /// What it does to a simulated axis; `own` are the coefficients of its columns.
+    fn action(&self, at: &Instant, parameter: f64, own: &[f64]) -> Action;
+
+    /// Number of columns at a nonlinear parameter.
+    fn width(&self, _parameter: f64) -> usize {
+        1
+    }
+
+    /// Whether the nonlinear parameter is a quantity (and not a choice, or nothing).
+    fn is_tuned(&self) -> bool {
+        false
+    }
 
     /// Start values of the nonlinear parameter; one dummy value where there is none.
     fn grid(&self, _motion: &Kinematics, _setting: &Setting<'_>) -> Vec<f64> {

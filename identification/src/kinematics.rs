@@ -25,6 +25,8 @@ pub struct Kinematics {
     pub velocity: Vec<f64>,
     /// Motor position, raw, at the time of the velocity.
     pub position: Vec<f64>,
+    /// Motor position at the rows.
+    pub raw_position: Vec<f64>,
     /// Low-passed position.
     pub position_lp: Vec<f64>,
     /// Low-passed velocity where friction acts: at the load scale if there is one, else at the motor.
@@ -39,8 +41,10 @@ pub struct Kinematics {
     pub effort_lp: Vec<f64>,
     /// Motor − load, raw, where both were measured.
     pub difference: Option<Vec<f64>>,
-    /// Moving samples: the ones that are fitted.
+    /// Moving samples: the ones that errors are defined on.
     pub moving: Vec<bool>,
+    /// Moving samples whose effort is known and not at its limit: the ones that are fitted.
+    pub fitted: Vec<bool>,
     /// Samples about reversals and rests.
     pub slow: Vec<bool>,
     /// The low-pass.
@@ -67,9 +71,13 @@ impl Kinematics {
         let velocity_lp = filter.apply(&friction.velocity);
         let limit = dataset.kind.moving_velocity();
         let (moving, slow) = masks(&motor_lp, limit, period_s);
+        let spoilt = spoilt(record, dataset.effort_limit, period_s);
+        let fitted = moving.iter().zip(&spoilt).map(|(moving, spoilt)| *moving && !spoilt).collect();
+        let slow = slow.iter().zip(&spoilt).map(|(slow, spoilt)| *slow && !spoilt).collect();
         Some(Self {
             period_s,
             time_s: record.time_s.clone(),
+            raw_position: record.position.clone(),
             position_lp: filter.apply(&motor.position),
             direction: velocity_lp.iter().map(|v| v.signum()).collect(),
             friction_position: friction.position.clone(),
@@ -77,6 +85,7 @@ impl Kinematics {
             effort_lp: filter.apply(&effort),
             difference: record.load.as_ref().map(|load| record.position.iter().zip(load).map(|(m, l)| m - l).collect()),
             moving,
+            fitted,
             slow,
             acceleration: motor.acceleration,
             velocity: motor.velocity,
@@ -166,6 +175,22 @@ fn acting_effort(effort: &[f64], lag_s: f64, period_s: f64, hold: EffortHold) ->
             }
         })
         .collect()
+}
+
+/// Share of the limit from which an effort counts as limited.
+const LIMITED: f64 = 0.999;
+
+/// Samples about a hole in the record or about an effort at its limit: what acted there is not known.
+fn spoilt(record: &Record, limit: Option<f64>, period_s: f64) -> Vec<bool> {
+    let limited = |effort: &f64| limit.is_some_and(|limit| effort.abs() >= LIMITED * limit);
+    let bad = record.effort.iter().zip(&record.interpolated).map(|(effort, hole)| *hole || limited(effort));
+    let margin = (SLOW_MARGIN_S / period_s).round() as usize;
+    let rows = record.len();
+    let mut spoilt = vec![false; rows];
+    for (row, _) in bad.enumerate().filter(|(_, bad)| *bad) {
+        spoilt[row.saturating_sub(margin)..(row + margin + 1).min(rows)].fill(true);
+    }
+    spoilt
 }
 
 fn masks(velocity_lp: &[f64], limit: f64, period_s: f64) -> (Vec<bool>, Vec<bool>) {

@@ -13,17 +13,22 @@
 //!
 //! Nothing here knows the simulator or its parameters.
 
+pub mod actuator;
+pub mod bench;
 pub mod difference;
 pub mod effects;
 pub mod error;
 pub mod excitation;
 pub mod filter;
+pub mod free_run;
 pub mod kinematics;
+pub mod load;
 pub mod outcome;
 pub mod record;
 pub mod regression;
 pub mod residual;
 pub mod reversal;
+pub mod search;
 pub mod selection;
 
 pub use error::IdentificationError;

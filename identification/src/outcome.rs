@@ -9,8 +9,10 @@ use crate::excitation;
 use crate::kinematics::Kinematics;
 use crate::record::{Dataset, Record};
 use crate::residual::{self, Structure, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE};
-use crate::reversal::{self, Presliding};
-use crate::selection::{self, Bench, Model, Scored, Selection};
+use crate::reversal::{self, Reversal, bristle};
+use crate::actuator::{self, Pair};
+use crate::bench::{Bench, Model, Term};
+use crate::selection::{self, Scored, Selection};
 
 /// A candidate in the ranking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -140,7 +142,7 @@ pub struct Identification {
 struct Fitted {
     model: Model,
     coefficients: Vec<f64>,
-    presliding: Option<Presliding>,
+    reversal: Option<Reversal>,
 }
 
 /// Identifies a dataset. `progress` hears of every step.
@@ -149,7 +151,7 @@ struct Fitted {
 /// Where the record leaves nothing to fit.
 pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Identification, IdentificationError> {
     let motion = kinematics(dataset, &dataset.train)?;
-    let low_cutoff = selection::delay_cutoff_hz(dataset.train.period_s);
+    let low_cutoff = actuator::delay_cutoff_hz(dataset.train.period_s);
     let low = Kinematics::with_cutoff(dataset, &dataset.train, low_cutoff).ok_or_else(|| no_room(dataset))?;
     let moving = motion.moving.iter().filter(|moving| **moving).count();
     if moving < crate::record::FEWEST_ROWS / 2 {
@@ -165,15 +167,17 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
             dataset.name
         )));
     }
-    let bench = Bench { dataset, motion: &motion };
-    let low = Bench { dataset, motion: &low };
+    let bench = Bench::new(dataset, &motion);
+    let low = Bench::new(dataset, &low);
+    let pair = Pair { bench: &bench, low: &low };
     progress("fitting the declared model");
     let mut declared = selection::declared_model(dataset);
-    selection::refine(&bench, &mut declared);
-    let declared = fitted(&bench, declared, dataset.declared.iter().any(|name| name == "presliding"));
+    selection::prepare(pair, &mut declared);
+    let start = declared.clone();
+    let declared = fitted(pair, declared, dataset.declared.iter().any(|name| name == "presliding"));
     progress("scoring candidate effects");
-    let selected = selection::select(&bench, &low, selection::declared_model(dataset), progress);
-    let extended = fitted(&bench, selected.model.clone(), true);
+    let selected = selection::select(pair, start, progress);
+    let extended = fitted(pair, selected.model.clone(), true);
     progress("looking at motor and load");
     let difference = difference::difference(dataset, &motion);
     progress("validating");
@@ -189,18 +193,19 @@ fn no_room(dataset: &Dataset) -> IdentificationError {
 }
 
 /// Fits a model on moving samples and judges presliding with it.
-fn fitted(bench: &Bench<'_>, model: Model, with_presliding: bool) -> Fitted {
+fn fitted(pair: Pair<'_>, model: Model, with_presliding: bool) -> Fitted {
+    let bench = pair.bench;
     let coefficients = bench.fit(&model).coefficients;
-    let presliding = reversal::presliding(bench, &model, &coefficients);
-    let used = presliding.filter(|p| with_presliding && p.accepted);
-    let Some(accepted) = used else { return Fitted { model, coefficients, presliding } };
+    let reversal = reversal::judge(bench, &model, &coefficients);
+    let used = reversal.filter(|r| with_presliding && r.presliding);
+    let Some(accepted) = used else { return Fitted { model, coefficients, reversal } };
     // The sign columns follow the bristle now; everything that depends on them is refined again.
-    let motion = reversal::with_presliding(bench.motion, accepted.deflection);
-    let bench = Bench { dataset: bench.dataset, motion: &motion };
+    let [motion, slow] = [bench, pair.low].map(|bench| bristle::motion(bench.motion, accepted.deflection));
+    let (bench, low) = (Bench::new(bench.dataset, &motion), Bench::new(bench.dataset, &slow));
     let mut model = model;
-    selection::refine(&bench, &mut model);
+    selection::refine(Pair { bench: &bench, low: &low }, &mut model);
     let coefficients = bench.fit(&model).coefficients;
-    Fitted { model, coefficients, presliding }
+    Fitted { model, coefficients, reversal }
 }
 
 struct Judged {
@@ -212,7 +217,7 @@ struct Judged {
 
 impl Fitted {
     fn uses_presliding(&self, allowed: bool) -> Option<f64> {
-        self.presliding.filter(|p| allowed && p.accepted).map(|p| p.deflection)
+        self.reversal.filter(|r| allowed && r.presliding).map(|r| r.deflection)
     }
 
     fn judge(&self, dataset: &Dataset, motion: &Kinematics, presliding: bool) -> Judged {
@@ -221,9 +226,10 @@ impl Fitted {
 
     fn judge_with(&self, dataset: &Dataset, motion: &Kinematics, presliding: bool, coefficients: &[f64]) -> Judged {
         let deflection = self.uses_presliding(presliding);
-        let bristle = deflection.map(|deflection| reversal::with_presliding(motion, deflection));
-        let reversal = reversal::error_rms(&Bench { dataset, motion }, &self.model, coefficients, deflection);
-        let bench = Bench { dataset, motion: bristle.as_ref().unwrap_or(motion) };
+        let bristle = deflection.map(|deflection| bristle::motion(motion, deflection));
+        let reversal = self.reversal.filter(|_| presliding);
+        let reversal = reversal::error_rms(&Bench::new(dataset, motion), &self.model, coefficients, reversal.as_ref());
+        let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(motion));
         let residual = bench.residual(&self.model, coefficients);
         Judged {
             force_percent: bench.force_error_percent(&self.model, coefficients),
@@ -284,6 +290,9 @@ fn found(dataset: &Dataset, selected: &Selection, extended: &Fitted, difference:
     if extended.uses_presliding(true).is_some() && !declared("presliding") {
         found.push("presliding".into());
     }
+    if extended.reversal.is_some_and(|r| r.backlash) && !declared("backlash") {
+        found.push("backlash".into());
+    }
     found.extend(difference.into_iter().flat_map(|d| &d.found).map(|name| (*name).to_owned()));
     found
 }
@@ -305,8 +314,8 @@ fn whole(dataset: &Dataset, declared: &Fitted, extended: &Fitted, declares_presl
     let motion = Kinematics::new(dataset, &record)?;
     let judge = |fitted: &Fitted, presliding: bool| {
         let bristle =
-            fitted.uses_presliding(presliding).map(|deflection| reversal::with_presliding(&motion, deflection));
-        let bench = Bench { dataset, motion: bristle.as_ref().unwrap_or(&motion) };
+            fitted.uses_presliding(presliding).map(|deflection| bristle::motion(&motion, deflection));
+        let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(&motion));
         let coefficients = bench.fit(&fitted.model).coefficients;
         fitted.judge_with(dataset, &motion, presliding, &coefficients)
     };
@@ -336,7 +345,8 @@ fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> 
 /// Something acts at reversals that neither rigid Coulomb friction nor an accepted effect explains.
 fn reversal_suspicion(extended: &Fitted, difference: Option<&Difference>) -> bool {
     let has_gap = difference.is_some_and(|d| d.gap.is_some());
-    extended.presliding.is_some_and(|p| !p.accepted && p.dahl < reversal::SUSPICION * p.rigid) && !has_gap
+    let unexplained = |r: Reversal| !r.presliding && !r.backlash && r.dahl < reversal::SUSPICION * r.rigid;
+    extended.reversal.is_some_and(unexplained) && !has_gap
 }
 
 fn looks_like(residual: &ResidualReport, selected: &Selection, suspicious: bool) -> String {
@@ -372,14 +382,24 @@ fn candidates(
             None => list.push(force_candidate(dataset, motion, validation, scored)),
         }
     }
-    list.extend(extended.presliding.map(|p| Candidate {
+    let removed = |after: f64, before: f64| 1.0 - (after / before.max(f64::MIN_POSITIVE)).powi(2);
+    list.extend(extended.reversal.map(|r| Candidate {
         effect: "presliding".into(),
-        validation_error_percent: Some(with_bristle(dataset, motion, validation, p.deflection)),
-        evidence: p.t,
-        share: 1.0 - (p.dahl / p.rigid.max(f64::MIN_POSITIVE)).powi(2),
+        validation_error_percent: Some(with_bristle(dataset, motion, validation, r.deflection)),
+        evidence: r.t,
+        share: removed(r.dahl, r.rigid),
         judged_on: "effort about reversals",
-        physical: p.deflection >= reversal::resolution(dataset),
-        accepted: p.accepted,
+        physical: r.deflection >= reversal::resolution(dataset),
+        accepted: r.presliding,
+    }));
+    list.extend(extended.reversal.filter(|_| difference.is_none()).map(|r| Candidate {
+        effect: "backlash".into(),
+        validation_error_percent: None,
+        evidence: r.gap_t,
+        share: removed(r.gap_about, r.rigid_about),
+        judged_on: "effort about reversals",
+        physical: r.gap.width >= reversal::resolution(dataset),
+        accepted: r.backlash,
     }));
     list.extend(difference.into_iter().flat_map(|d| &d.scored).filter(|s| s.round == 0).map(|scored| Candidate {
         effect: scored.effect.into(),
@@ -402,19 +422,20 @@ fn candidates(
 fn with_bristle(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, deflection: f64) -> f64 {
     let model = selection::declared_model(dataset);
     let (train, validate) =
-        (reversal::with_presliding(motion, deflection), reversal::with_presliding(validation, deflection));
-    let coefficients = Bench { dataset, motion: &train }.fit(&model).coefficients;
-    Bench { dataset, motion: &validate }.force_error_percent(&model, &coefficients)
+        (bristle::motion(motion, deflection), bristle::motion(validation, deflection));
+    let coefficients = Bench::new(dataset, &train).fit(&model).coefficients;
+    Bench::new(dataset, &validate).force_error_percent(&model, &coefficients)
 }
 
 fn force_candidate(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, scored: &Scored) -> Candidate {
     let mut model = selection::declared_model(dataset);
     match crate::effects::find(scored.effect) {
-        Some(effect) => model.terms.push(selection::Term { effect, parameter: scored.parameter }),
-        None => model.delay_s = scored.parameter,
+        Some(effect) => model.terms.push(Term { effect, parameter: scored.parameter }),
+        None if scored.effect == "delay" => model.delay_s = scored.parameter,
+        None => model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter),
     }
-    let coefficients = Bench { dataset, motion }.fit(&model).coefficients;
-    let error = Bench { dataset, motion: validation }.force_error_percent(&model, &coefficients);
+    let coefficients = Bench::new(dataset, motion).fit(&model).coefficients;
+    let error = Bench::new(dataset, validation).force_error_percent(&model, &coefficients);
     Candidate {
         effect: scored.effect.into(),
         validation_error_percent: Some(error),
@@ -432,8 +453,8 @@ fn parameters(
     extended: &Fitted,
     difference: Option<&Difference>,
 ) -> std::collections::BTreeMap<String, Parameter> {
-    let bristle = extended.uses_presliding(true).map(|deflection| reversal::with_presliding(motion, deflection));
-    let bench = Bench { dataset, motion: bristle.as_ref().unwrap_or(motion) };
+    let bristle = extended.uses_presliding(true).map(|deflection| bristle::motion(motion, deflection));
+    let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(motion));
     let half_widths = bench.half_widths(&extended.model);
     let mut rest = extended.coefficients.iter().copied().zip(half_widths);
     let mut named: Vec<Named> = Vec::new();
@@ -455,7 +476,15 @@ fn parameters(
     if extended.model.delay_s != 0.0 {
         named.push(plain("delay", extended.model.delay_s, "s"));
     }
+    if extended.model.saturates() {
+        let unit = format!("1/{}", dataset.effort.unit());
+        named.push(plain("torque_saturation", extended.model.saturation.per_effort, &unit));
+    }
     named.extend(extended.uses_presliding(true).map(|deflection| plain("presliding_deflection", deflection, length)));
+    if let Some(reversal) = extended.reversal.filter(|r| r.backlash) {
+        named.push(plain("backlash_gap", reversal.gap.width, length));
+        named.push(plain("backlash_load_share", reversal.gap.share, "of the moved mass"));
+    }
     named.extend(difference.and_then(|d| d.gap).map(|gap| plain("backlash_gap", gap, length)));
     let stiffness_unit = format!("{}/{length}", dataset.effort.unit());
     named.extend(difference.and_then(|d| d.stiffness).map(|k| plain("compliance_stiffness", k, &stiffness_unit)));
@@ -499,7 +528,7 @@ pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
     let motion = kinematics(dataset, &dataset.train)?;
     let model = selection::declared_model(dataset);
     let place = model.terms.iter().position(|term| term.effect.name() == "coulomb");
-    let fit = Bench { dataset, motion: &motion }.fit(&model);
+    let fit = Bench::new(dataset, &motion).fit(&model);
     // The declared effects in front of it have one column each.
     place.and_then(|place| fit.coefficients.get(place).copied()).ok_or_else(|| {
         IdentificationError::new(format!("{}: the declared model has no Coulomb friction", dataset.name))

@@ -102,6 +102,8 @@ pub struct Record {
     pub time_s: Vec<f64>,
     /// The rows of the file that this record was made from: time stamp and effort as they stand there.
     pub rows: Vec<(f64, f64)>,
+    /// Samples that stand in a hole of the file and were interpolated; they are not fitted.
+    pub interpolated: Vec<bool>,
 }
 
 impl Record {
@@ -129,6 +131,7 @@ impl Record {
             effort: cut(&self.effort),
             time_s: cut(&self.time_s),
             rows: self.rows_between(range.start, range.end),
+            interpolated: self.interpolated[range.clone()].to_vec(),
         }
     }
 
@@ -150,7 +153,29 @@ struct DatasetForm {
     effort_hold: EffortHold,
     effort_lag_s: Option<f64>,
     axis: Option<AxisForm>,
+    controller: Option<ControllerForm>,
     declared: Option<DeclaredForm>,
+}
+
+/// The controller of the recorded axis, where it is known.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct ControllerForm {
+    /// Position gain, 1/s.
+    pub position_gain_per_s: Option<f64>,
+    /// Velocity gain, N·s/m.
+    pub velocity_gain_n_s_per_m: Option<f64>,
+    /// Velocity gain of a controller with a voltage at its output, V·s/m.
+    pub velocity_gain_v_s_per_m: Option<f64>,
+    /// Integral gain of the velocity loop, 1/s.
+    pub integral_per_s: Option<f64>,
+    /// Share of the new difference quotient in the velocity.
+    pub velocity_filter: Option<f64>,
+    /// Acceleration feedforward, kg.
+    pub acceleration_feedforward_kg: Option<f64>,
+    /// Limit of the force, N.
+    pub force_limit_n: Option<f64>,
+    /// `motor` or `load`.
+    pub position_sensor: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -188,6 +213,10 @@ pub struct Dataset {
     pub resolution: f64,
     /// Resolution of the load scale.
     pub load_resolution: f64,
+    /// Limit of the effort: stated, or seen as a plateau of its largest value.
+    pub effort_limit: Option<f64>,
+    /// Controller, where it is known.
+    pub controller: Option<ControllerForm>,
     /// Declared effects.
     pub declared: Vec<String>,
     /// Training record.
@@ -235,6 +264,7 @@ impl Dataset {
             check_motion(folder, what, record, axis.kind)?;
         }
         check_form(folder, &form)?;
+        let stated_limit = form.controller.as_ref().and_then(|c| c.force_limit_n).filter(|_| effort == Effort::Force);
         let resolution = match axis.kind {
             AxisKind::Linear => axis.encoder_resolution_m,
             AxisKind::Rotary => axis.encoder_resolution_rad,
@@ -250,11 +280,20 @@ impl Dataset {
             load_resolution: axis
                 .load_encoder_resolution_m
                 .unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
+            effort_limit: stated_limit.or_else(|| plateau(&train.effort)),
+            controller: form.controller,
             declared: check_declared(folder, declared.or(form.declared.map(|declared| declared.effects)))?,
             train,
             validate: validation,
             held_back,
         })
+    }
+
+    /// Middle and half of the travel of the training record.
+    #[must_use]
+    pub fn travel(&self) -> (f64, f64) {
+        let (low, high) = range(&self.train.position);
+        (0.5 * (low + high), 0.5 * (high - low))
     }
 
     /// The training record with the held-back part, where they are one file.
@@ -271,6 +310,7 @@ impl Dataset {
                 effort: join(&self.train.effort, &self.validate.effort),
                 time_s: join(&self.train.time_s, &self.validate.time_s),
                 rows: [&self.train.rows[..], &self.validate.rows[..]].concat(),
+                interpolated: [&self.train.interpolated[..], &self.validate.interpolated[..]].concat(),
                 ..self.train.clone()
             }
         })
@@ -408,6 +448,7 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
         reference: table.column(&format!("reference_{unit}")),
         rows: time_s.iter().copied().zip(effort.iter().copied()).collect(),
         effort,
+        interpolated: vec![false; time_s.len()],
         time_s,
     };
     check_effort(&table.path, which, &raw)?;
@@ -493,6 +534,16 @@ fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
+/// So many equal largest efforts in a row are a limit.
+const PLATEAU_ROWS: usize = 5;
+
+/// The largest effort, where it stands for several rows: the drive was at its limit.
+fn plateau(effort: &[f64]) -> Option<f64> {
+    let most = effort.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+    let at_most = |effort: &f64| effort.abs() >= most * (1.0 - 1.0e-9);
+    effort.windows(PLATEAU_ROWS).any(|rows| rows.iter().all(at_most)).then_some(most)
+}
+
 fn median_step(time_s: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
@@ -525,8 +576,25 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
         reference: raw.reference.as_deref().map(on_base),
         effort: on_base(&raw.effort),
         time_s: at.iter().map(|t| t - start).collect(),
+        interpolated: in_holes(&raw.time_s, &at, HOLE_PERIODS * median),
         rows: raw.rows,
     }
+}
+
+/// Rows further apart than so many median steps leave a hole; less is jitter.
+const HOLE_PERIODS: f64 = 10.0;
+
+/// Which times stand between two rows that are further apart than a hole.
+fn in_holes(time_s: &[f64], at: &[f64], hole_s: f64) -> Vec<bool> {
+    let mut right = 1;
+    at.iter()
+        .map(|t| {
+            while right + 1 < time_s.len() && time_s[right] < *t {
+                right += 1;
+            }
+            time_s[right] - time_s[right - 1] > hole_s && *t > time_s[right - 1] && *t < time_s[right]
+        })
+        .collect()
 }
 
 /// Values on a uniform base, seen at other times.

@@ -4,50 +4,25 @@
 //! do so in more blocks than chance (t). Share is what separates: on 14 simulated records with nothing missing the largest false share was 0.016, the
 //! smallest true one accepted 0.16; t alone does not (false candidates reached 14, because gains sit in few blocks). Figures: docs/identification.md.
 
+use crate::actuator::{self, Pair};
+use crate::bench::{Bench, Model, Saturation, Term};
 use crate::effects::{Effect, Fitted, LIBRARY, Setting};
 use crate::kinematics::Kinematics;
 use crate::record::Dataset;
 use crate::regression::{Blocks, Fit, Gain};
+use crate::search::{descend, smallest};
 
 /// Smallest share of the held-out error.
 pub const SHARE: f64 = 0.08;
 /// Smallest size, percent of the effort.
 pub const PERCENT: f64 = 0.15;
-/// Smallest t; a large share needs less of it.
-pub const T: f64 = 2.5;
-/// A share from which [`T_LARGE`] is enough.
-pub const LARGE_SHARE: f64 = 0.12;
-/// Smallest t of a large share.
-pub const T_LARGE: f64 = 1.5;
+/// Shares of the held-out error, and the smallest t from each of them on. The t of an effect that shows in few blocks (slow motion) is small
+/// however large it is there.
+pub const T: [(f64, f64); 3] = [(0.30, 1.0), (0.12, 1.5), (SHARE, 2.5)];
 /// Smallest share of a structure without a name.
 pub const NAMELESS_SHARE: f64 = 0.15;
-/// A delay below this is not worth a name, s.
-pub const SHORTEST_DELAY_S: f64 = 1.0e-4;
-/// Longest delay that is searched, s.
-const LONGEST_DELAY_S: f64 = 6.0e-3;
-/// Cut-off for the search of a delay: quantisation comes back through the controller as effort that follows measured noise, and looks like a delay
-/// at 100 Hz but not here.
-const DELAY_CUTOFF_HZ: f64 = 30.0;
 /// Most effects that are added.
 const MOST: usize = 8;
-
-/// An effect with its nonlinear parameter.
-#[derive(Clone, Copy)]
-pub struct Term {
-    /// Which effect.
-    pub effect: &'static dyn Effect,
-    /// Its nonlinear parameter.
-    pub parameter: f64,
-}
-
-/// An inverse model: terms and delay.
-#[derive(Clone, Default)]
-pub struct Model {
-    /// Terms; the declared ones first.
-    pub terms: Vec<Term>,
-    /// The recorded effort acts this much later than the record says, s.
-    pub delay_s: f64,
-}
 
 /// A candidate and what it is worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,111 +41,6 @@ pub struct Scored {
     pub nameless: bool,
     /// Round of the selection, from 0.
     pub round: usize,
-}
-
-/// A record with low-passed columns that are kept between fits.
-pub struct Bench<'a> {
-    /// The axis.
-    pub dataset: &'a Dataset,
-    /// The motion.
-    pub motion: &'a Kinematics,
-}
-
-impl Bench<'_> {
-    /// Low-passed columns of a term.
-    #[must_use]
-    pub fn columns(&self, term: &Term) -> Vec<Vec<f64>> {
-        let raw = term.effect.columns(self.motion, self.dataset, term.parameter);
-        raw.iter().map(|column| self.motion.filter.apply(column)).collect()
-    }
-
-    fn design(&self, model: &Model) -> Vec<Vec<f64>> {
-        let columns = model.terms.iter().flat_map(|term| self.columns(term));
-        columns.map(|column| shifted(column, model.delay_s / self.motion.period_s)).collect()
-    }
-
-    fn blocks(&self, design: &[Vec<f64>]) -> Blocks {
-        let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, &self.motion.effort_lp, &self.motion.moving, self.motion.period_s)
-    }
-
-    /// Fit of a model with its held-out errors.
-    #[must_use]
-    pub fn fit(&self, model: &Model) -> Fit {
-        self.blocks(&self.design(model)).cross_validate()
-    }
-
-    /// Half widths of the 95 % intervals of the coefficients.
-    #[must_use]
-    pub fn half_widths(&self, model: &Model) -> Vec<f64> {
-        self.blocks(&self.design(model)).half_widths()
-    }
-
-    fn sse(&self, model: &Model) -> f64 {
-        self.blocks(&self.design(model)).fit().sse
-    }
-
-    /// Prediction in the low-passed domain.
-    #[must_use]
-    pub fn predict_lp(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        weighted(&self.design(model), coefficients, self.motion.len())
-    }
-
-    /// Prediction that is not low-passed.
-    #[must_use]
-    pub fn predict(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let columns =
-            model.terms.iter().flat_map(|term| term.effect.columns(self.motion, self.dataset, term.parameter));
-        let columns: Vec<Vec<f64>> =
-            columns.map(|column| shifted(column, model.delay_s / self.motion.period_s)).collect();
-        weighted(&columns, coefficients, self.motion.len())
-    }
-
-    /// Residual in the low-passed domain.
-    #[must_use]
-    pub fn residual(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let predicted = self.predict_lp(model, coefficients);
-        self.motion.effort_lp.iter().zip(predicted).map(|(effort, predicted)| effort - predicted).collect()
-    }
-
-    /// Force error over moving samples, percent.
-    #[must_use]
-    pub fn force_error_percent(&self, model: &Model, coefficients: &[f64]) -> f64 {
-        let residual = self.residual(model, coefficients);
-        let norm = |values: &[f64]| {
-            let moving = values.iter().zip(&self.motion.moving).filter(|(_, moving)| **moving);
-            moving.map(|(value, _)| value * value).sum::<f64>().sqrt()
-        };
-        100.0 * norm(&residual) / norm(&self.motion.effort_lp).max(f64::MIN_POSITIVE)
-    }
-}
-
-fn weighted(columns: &[Vec<f64>], coefficients: &[f64], rows: usize) -> Vec<f64> {
-    let mut sum = vec![0.0; rows];
-    for (column, coefficient) in columns.iter().zip(coefficients) {
-        sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += coefficient * value);
-    }
-    sum
-}
-
-/// A band-limited signal seen `by` samples later; cubic Lagrange interpolation.
-fn shifted(column: Vec<f64>, by: f64) -> Vec<f64> {
-    if by == 0.0 || column.len() < 4 {
-        return column;
-    }
-    let last = column.len() - 3;
-    (0..column.len())
-        .map(|row| {
-            let at = (row as f64 + by).clamp(1.0, last as f64);
-            let base = (at.floor() as usize).clamp(1, last);
-            let u = at - base as f64;
-            let [a, b, c, d] = [column[base - 1], column[base], column[base + 1], column[base + 2]];
-            a * (-u * (u - 1.0) * (u - 2.0) / 6.0)
-                + b * ((u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0)
-                + c * (-(u + 1.0) * u * (u - 2.0) / 2.0)
-                + d * ((u + 1.0) * u * (u - 1.0) / 6.0)
-        })
-        .collect()
 }
 
 /// What the selection did.
@@ -197,26 +67,27 @@ pub fn declared_model(dataset: &Dataset) -> Model {
         "torque_ripple" => dataset.lead_m_per_rev.map_or(100.0, |lead| 1.0 / lead),
         _ => 0.0,
     };
-    Model { terms: known.map(|effect| Term { effect, parameter: start(effect) }).collect(), delay_s: 0.0 }
+    Model { terms: known.map(|effect| Term { effect, parameter: start(effect) }).collect(), ..Model::default() }
 }
 
-/// Forward selection on a record; `low` is the same record with the cut-off of the delay search. `progress` hears of every round.
-pub fn select(bench: &Bench<'_>, low: &Bench<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
-    let declared = start.terms.len();
-    let mut selection = Selection { model: start, ..Selection::default() };
-    refine(bench, &mut selection.model);
+/// Fits what the declared model has beyond linear coefficients.
+pub fn prepare(pair: Pair<'_>, model: &mut Model) {
+    let declared = |name: &str| pair.bench.dataset.declared.iter().any(|declared| declared == name);
+    if declared("delay") {
+        model.delay_s = actuator::best_delay(pair.low, model, 2.5e-4);
+    }
+    if declared("torque_saturation") {
+        *model = actuator::with_saturation(pair.bench, model, None);
+    }
+    refine(pair, model);
+}
+
+/// Forward selection on a record, from the declared model. `progress` hears of every round.
+pub fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
+    let start = Start { terms: start.terms.len(), delay: start.delay_s != 0.0, saturation: start.saturates(), model: start };
+    let mut selection = Selection { model: start.model.clone(), ..Selection::default() };
     for round in 0..MOST {
-        let base = bench.fit(&selection.model);
-        let residual = bench.residual(&selection.model, &base.coefficients);
-        let setting = Setting { dataset: bench.dataset, residual: &residual };
-        let mut candidates: Vec<(Scored, Model)> = LIBRARY
-            .into_iter()
-            .filter(|effect| is_open(*effect, &selection.model, bench.dataset))
-            .map(|effect| candidate(bench, &selection.model, &base, effect, &setting, round))
-            .collect();
-        if !selection.found.contains(&"delay") && !bench.dataset.declared.iter().any(|name| name == "delay") {
-            candidates.push(delay_candidate(bench, low, &selection.model, &base, round));
-        }
+        let mut candidates = candidates(pair, &selection.model, round);
         candidates.sort_by(|a, b| b.0.gain.share.total_cmp(&a.0.gain.share));
         let best = candidates.iter().position(|(scored, _)| is_accepted(scored));
         if let Some(best) = best {
@@ -233,10 +104,30 @@ pub fn select(bench: &Bench<'_>, low: &Bench<'_>, start: Model, progress: &mut d
         if best.is_none() {
             break;
         }
-        refine(bench, &mut selection.model);
+        refine(pair, &mut selection.model);
     }
-    remove(bench, &mut selection, declared);
+    remove(pair.bench, &mut selection, &start);
     selection
+}
+
+/// Everything that a model could have besides, judged.
+fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model)> {
+    let bench = pair.bench;
+    let base = bench.fit(model);
+    let residual = bench.residual(model, &base.coefficients);
+    let setting = Setting { dataset: bench.dataset, residual: &residual };
+    let mut candidates: Vec<(Scored, Model)> = LIBRARY
+        .into_iter()
+        .filter(|effect| is_open(*effect, model, bench.dataset))
+        .map(|effect| candidate(bench, model, &base, effect, &setting, round))
+        .collect();
+    if model.delay_s == 0.0 {
+        candidates.push(actuator::delay_candidate(pair, model, &base, round));
+    }
+    if !model.saturates() {
+        candidates.push(actuator::saturation_candidate(bench, model, &base, round));
+    }
+    candidates
 }
 
 fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> bool {
@@ -250,8 +141,7 @@ fn is_accepted(scored: &Scored) -> bool {
     scored.physical
         && share >= smallest
         && percent >= PERCENT
-        && (t >= T || (share >= LARGE_SHARE && t >= T_LARGE))
-        && (scored.effect != "delay" || scored.parameter >= SHORTEST_DELAY_S)
+        && T.iter().any(|(from, smallest)| share >= *from && t >= *smallest)
 }
 
 fn with(model: &Model, effect: &'static dyn Effect, parameter: f64) -> Model {
@@ -270,10 +160,7 @@ fn candidate(
 ) -> (Scored, Model) {
     let fixed = bench.design(model);
     let sse = |parameter: f64| {
-        let own = bench.columns(&Term { effect, parameter });
-        let own = own.into_iter().map(|column| shifted(column, model.delay_s / bench.motion.period_s));
-        let design: Vec<Vec<f64>> = fixed.iter().cloned().chain(own).collect();
-        bench.blocks(&design).fit().sse
+        bench.blocks(&bench.extended(&fixed, &Term { effect, parameter })).fit().sse
     };
     let known = |k: &f64| is_new(bench, model, effect, *k);
     let grid: Vec<f64> = effect.grid(bench.motion, setting).into_iter().filter(known).collect();
@@ -311,104 +198,88 @@ fn coefficient_of(model: &Model, bench: &Bench<'_>, fit: &Fit, name: &str) -> f6
     f64::INFINITY
 }
 
-fn smallest(values: Vec<f64>, sse: &dyn Fn(f64) -> f64) -> Option<f64> {
-    values.into_iter().map(|value| (sse(value), value)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value)
-}
-
-/// Steps of one size that a descent may take before it halves them.
-const STEPS: usize = 12;
-
-/// Step-halving descent about a start value, within bounds.
-fn descend(start: f64, step: f64, (low, high): (f64, f64), sse: &dyn Fn(f64) -> f64) -> f64 {
-    if step == 0.0 {
-        return start;
-    }
-    let (mut best, mut at, mut step) = (sse(start), start, step);
-    for _ in 0..6 {
-        for _ in 0..STEPS {
-            let tries = [at - step, at + step].into_iter().filter(|value| *value >= low && *value <= high);
-            let tries = tries.map(|value| (sse(value), value));
-            let better = tries.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(sse, _)| *sse < best);
-            match better {
-                Some((sse, value)) => (best, at) = (sse, value),
-                None => break,
-            }
-        }
-        step *= 0.5;
-    }
-    at
-}
-
-fn delay_candidate(bench: &Bench<'_>, low: &Bench<'_>, model: &Model, base: &Fit, round: usize) -> (Scored, Model) {
-    let delayed = |delay_s: f64| Model { delay_s, ..model.clone() };
-    let sse = |delay_s: f64| low.sse(&delayed(delay_s));
-    let grid: Vec<f64> = (-8..=24).map(|i| 2.5e-4 * f64::from(i)).filter(|d| *d <= LONGEST_DELAY_S).collect();
-    let start = smallest(grid, &sse).unwrap_or(0.0);
-    let parameter = descend(start, 1.0e-4, (-LONGEST_DELAY_S, LONGEST_DELAY_S), &sse);
-    let extended = delayed(parameter);
-    let gain = Gain::of(base, &bench.fit(&extended));
-    let gain_low = Gain::of(&low.fit(model), &low.fit(&extended));
-    let gain = Gain { share: gain.share.min(gain_low.share), t: gain.t.min(gain_low.t), ..gain };
-    let scored =
-        Scored { effect: "delay", parameter, gain, physical: parameter > 0.0, accepted: false, nameless: false, round };
-    (scored, extended)
-}
-
-/// The cut-off for the delay search at a sample period.
-#[must_use]
-pub fn delay_cutoff_hz(period_s: f64) -> f64 {
-    DELAY_CUTOFF_HZ.min(crate::filter::cutoff_hz(period_s))
-}
-
 /// Joint refinement of all nonlinear parameters: without it the grid's coarseness leaves residuals that look like other effects.
-pub fn refine(bench: &Bench<'_>, model: &mut Model) {
+pub fn refine(pair: Pair<'_>, model: &mut Model) {
+    let bench = pair.bench;
     for _ in 0..2 {
         for at in 0..model.terms.len() {
             let term = model.terms[at];
             let step = 0.3 * term.effect.refine_step(bench.motion, term.parameter);
-            if step == 0.0 {
-                continue;
+            if step > 0.0 {
+                let sse = |parameter: f64| bench.sse(&model.with_parameter(at, parameter));
+                model.terms[at].parameter = descend(term.parameter, step, term.effect.bounds(bench.motion), &sse);
             }
-            let others = Model { terms: [&model.terms[..at], &model.terms[at + 1..]].concat(), delay_s: model.delay_s };
-            let fixed = bench.design(&others);
-            let parameter = descend(term.parameter, step, term.effect.bounds(bench.motion), &|parameter| {
-                let own = bench.columns(&Term { parameter, ..term }).into_iter();
-                let own = own.map(|column| shifted(column, model.delay_s / bench.motion.period_s));
-                bench.blocks(&fixed.iter().cloned().chain(own).collect::<Vec<_>>()).fit().sse
-            });
-            model.terms[at].parameter = parameter;
+        }
+        if model.delay_s != 0.0 {
+            model.delay_s = actuator::best_delay(pair.low, model, model.delay_s);
+        }
+        if model.saturates() {
+            *model = actuator::with_saturation(bench, model, Some(model.saturation.per_effort));
         }
     }
 }
 
+/// What stood at the start of a selection, and is not removed.
+struct Start {
+    terms: usize,
+    delay: bool,
+    saturation: bool,
+    model: Model,
+}
+
 /// Drops what the later ones have made superfluous.
-fn remove(bench: &Bench<'_>, selection: &mut Selection, declared: usize) {
-    let mut at = declared;
+fn remove(bench: &Bench<'_>, selection: &mut Selection, start: &Start) {
+    let matters = |without: &Model, full: &Model| {
+        let gain = Gain::of(&bench.fit(without), &bench.fit(full));
+        gain.share >= SHARE && gain.percent >= PERCENT
+    };
+    let mut at = start.terms;
     while at < selection.model.terms.len() {
-        let full = bench.fit(&selection.model);
         let mut without = selection.model.clone();
-        let term = without.terms.remove(at);
-        let gain = Gain::of(&bench.fit(&without), &full);
-        if gain.share >= SHARE && gain.percent >= PERCENT {
+        let name = without.terms.remove(at).effect.name();
+        if matters(&without, &selection.model) {
             at += 1;
             continue;
         }
         selection.model = without;
-        let name = term.effect.name();
-        if !selection.model.terms.iter().any(|term| term.effect.name() == name) {
+        if !selection.model.has(name) {
             selection.found.retain(|found| *found != name);
             selection.nameless.retain(|found| *found != name);
         }
     }
+    let undelayed = Model { delay_s: 0.0, ..selection.model.clone() };
+    if !start.delay && selection.model.delay_s != 0.0 && !matters(&undelayed, &selection.model) {
+        selection.found.retain(|found| *found != "delay");
+        selection.model = undelayed;
+    }
+    let ideal = Model { saturation: Saturation::default(), ..selection.model.clone() };
+    if !start.saturation && selection.model.saturates() && !matters(&ideal, &selection.model) {
+        selection.found.retain(|found| *found != "torque_saturation");
+        selection.model = ideal;
+    }
 }
 
-/// Total inertia by plain least squares on inertia, velocity, direction and a constant; for the physical test of a motor mass.
+/// The usual model, without selection.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain {
+    /// Moved mass.
+    pub inertia: f64,
+    /// Viscous friction.
+    pub viscous: f64,
+    /// Coulomb friction.
+    pub coulomb: f64,
+}
+
+/// Plain least squares on inertia, velocity, direction and a constant; for physical tests and start values.
 #[must_use]
-pub fn declared_inertia(motion: &Kinematics) -> f64 {
+pub fn plain_fit(motion: &Kinematics) -> Plain {
     let lp = |column: &[f64]| motion.filter.apply(column);
     let ones = vec![1.0; motion.len()];
     let columns = [lp(&motion.acceleration), lp(&motion.velocity), lp(&motion.direction), ones];
     let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    let fit = Blocks::new(&views, &motion.effort_lp, &motion.moving, motion.period_s).fit();
-    fit.coefficients.first().copied().unwrap_or(f64::INFINITY)
+    let fit = Blocks::new(&views, &motion.effort_lp, &motion.fitted, motion.period_s).fit();
+    match fit.coefficients[..] {
+        [inertia, viscous, coulomb, _] => Plain { inertia, viscous, coulomb },
+        _ => Plain { inertia: f64::INFINITY, viscous: 0.0, coulomb: 0.0 },
+    }
 }

@@ -1,6 +1,6 @@
 //! Coulomb friction: force Fc·sign(v); at standstill, whatever holds.
 
-use super::{Effect, Kinematics, Named, Naming};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// Fc·sign(v).
@@ -17,6 +17,10 @@ impl Effect for Coulomb {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![motion.direction.clone()]
+    }
+
+    fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::level(own[0])
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

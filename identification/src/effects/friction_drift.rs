@@ -1,6 +1,6 @@
 //! Friction that changes with time from the start of the record (warm-up): `(a sign(v) + b v)·exp(−t / τ)`; every record starts cold.
 
-use super::{Effect, Kinematics, Named, Naming, Setting};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// (a sign(v) + b v)·exp(−t/τ).
@@ -19,6 +19,19 @@ impl Effect for FrictionDrift {
         let fall: Vec<f64> = motion.time_s.iter().map(|t| (-t / tau).exp()).collect();
         let on = |what: &[f64]| fall.iter().zip(what).map(|(fall, what)| fall * what).collect();
         vec![on(&motion.direction), on(&motion.velocity_lp)]
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn action(&self, at: &Instant, tau: f64, own: &[f64]) -> Action {
+        let fall = (-at.time_s / tau).exp();
+        Action { level: own[0] * fall, force: own[1] * fall * at.velocity }
     }
 
     fn grid(&self, motion: &Kinematics, _: &Setting<'_>) -> Vec<f64> {

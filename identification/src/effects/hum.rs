@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Effect, Kinematics, Named, Naming, Setting};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// a cos(2π f t) + b sin(2π f t).
@@ -26,6 +26,19 @@ impl Effect for Hum {
         let angle = |t: &f64| TAU * hz * t;
         let t = &motion.time_s;
         vec![t.iter().map(|t| angle(t).cos()).collect(), t.iter().map(|t| angle(t).sin()).collect()]
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn action(&self, at: &Instant, hz: f64, own: &[f64]) -> Action {
+        let (sin, cos) = (TAU * hz * at.time_s).sin_cos();
+        Action::force(own[0] * cos + own[1] * sin)
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! Inertia: force M·a.
 
-use super::{Effect, Kinematics, Named, Naming};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// M·a.
@@ -17,6 +17,10 @@ impl Effect for Inertia {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![motion.acceleration.clone()]
+    }
+
+    fn action(&self, _: &Instant, _: f64, _: &[f64]) -> Action {
+        Action::default()
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

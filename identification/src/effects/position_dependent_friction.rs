@@ -1,17 +1,21 @@
 //! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1 over the travel of the training record.
 
-use super::{Effect, Kinematics, Named, Naming, Setting};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// sign(v)·(a u + b u²).
 pub struct PositionDependentFriction;
 
+/// `a u + b u²`, as far as there are coefficients.
+#[must_use]
+pub fn polynomial(own: &[f64], u: f64) -> f64 {
+    own.iter().rev().fold(0.0, |sum, coefficient| u * (coefficient + sum))
+}
+
 /// Position scaled to the travel of the training record, so that a validation record uses the same scale.
 #[must_use]
 pub fn scaled(motion: &Kinematics, dataset: &Dataset) -> Vec<f64> {
-    let x = &dataset.train.position;
-    let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let (middle, half) = dataset.travel();
     motion.position_lp.iter().map(|x| (x - middle) / half).collect()
 }
 
@@ -28,6 +32,14 @@ impl Effect for PositionDependentFriction {
         let u = scaled(motion, dataset);
         let power = |n: i32| u.iter().zip(&motion.direction).map(|(u, d)| d * u.powi(n)).collect();
         if terms > 1.5 { vec![power(1), power(2)] } else { vec![power(1)] }
+    }
+
+    fn width(&self, terms: f64) -> usize {
+        if terms > 1.5 { 2 } else { 1 }
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::level(polynomial(own, at.scaled))
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! Quadratic drag: `q v |v|`.
 
-use super::{Effect, Fitted, Kinematics, Named, Naming};
+use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// q·v·|v|.
@@ -17,6 +17,10 @@ impl Effect for QuadraticDrag {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![motion.velocity_lp.iter().map(|v| v * v.abs()).collect()]
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(own[0] * at.velocity * at.velocity.abs())
     }
 
     fn is_physical(&self, fitted: &Fitted<'_>) -> bool {

@@ -1,7 +1,7 @@
 //! A force that depends on position alone: no effect of the list, but it must not be absorbed by one.
 
-use super::{Effect, Kinematics, Named, Naming, Setting};
-use crate::effects::position_dependent_friction::scaled;
+use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::effects::position_dependent_friction::{polynomial, scaled};
 use crate::record::Dataset;
 
 /// a u + b u².
@@ -20,6 +20,14 @@ impl Effect for Spring {
         let u = scaled(motion, dataset);
         let power = |n: i32| u.iter().map(|u| u.powi(n)).collect();
         if terms > 1.5 { vec![power(1), power(2)] } else { vec![power(1)] }
+    }
+
+    fn width(&self, terms: f64) -> usize {
+        if terms > 1.5 { 2 } else { 1 }
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(polynomial(own, at.scaled))
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {

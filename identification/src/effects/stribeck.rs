@@ -1,6 +1,6 @@
 //! Stribeck fall: friction above the Coulomb level at low speed, `c·sign(v)·exp(−(v / vs)²)` (Bo and Pavelescu 1982).
 
-use super::{Effect, Fitted, Kinematics, Named, Naming, Setting, geometric};
+use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, geometric};
 use crate::record::Dataset;
 
 /// c·sign(v)·exp(−(v/vs)²).
@@ -21,6 +21,14 @@ impl Effect for Stribeck {
     fn columns(&self, motion: &Kinematics, _: &Dataset, vs: f64) -> Vec<Vec<f64>> {
         let fall = motion.velocity_lp.iter().zip(&motion.direction);
         vec![fall.map(|(v, direction)| direction * (-(v / vs).powi(2)).exp()).collect()]
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn action(&self, at: &Instant, vs: f64, own: &[f64]) -> Action {
+        Action::level(own[0] * (-(at.velocity / vs).powi(2)).exp())
     }
 
     fn grid(&self, _: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Effect, Kinematics, Named, Naming, Setting};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::{AxisKind, Dataset};
 
 /// Cosine and sine of position.
@@ -30,6 +30,19 @@ impl Effect for TorqueRipple {
         let angle = |x: &f64| TAU * k * x;
         let x = &motion.position_lp;
         vec![x.iter().map(|x| angle(x).cos()).collect(), x.iter().map(|x| angle(x).sin()).collect()]
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn action(&self, at: &Instant, k: f64, own: &[f64]) -> Action {
+        let (sin, cos) = (TAU * k * at.position).sin_cos();
+        Action::force(own[0] * cos + own[1] * sin)
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {

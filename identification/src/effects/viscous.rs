@@ -1,6 +1,6 @@
 //! Viscous friction: force Fv·v.
 
-use super::{Effect, Kinematics, Named, Naming};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// Fv·v.
@@ -17,6 +17,10 @@ impl Effect for Viscous {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![motion.velocity.clone()]
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(own[0] * at.velocity)
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

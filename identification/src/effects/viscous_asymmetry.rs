@@ -2,7 +2,7 @@
 //!
 //! Janot, Gautier and Brunot saw it on EMPS (2019) and blamed screw fatigue.
 
-use super::{Effect, Kinematics, Named, Naming};
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// c·|v|.
@@ -19,6 +19,10 @@ impl Effect for ViscousAsymmetry {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![motion.velocity.iter().map(|v| v.abs()).collect()]
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(own[0] * at.velocity.abs())
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

@@ -1,0 +1,143 @@
+//! The controller of the recorded axis, as `dataset.toml` describes it.
+//!
+//! A law counts as known only where it gives the recorded effort from the recorded positions and setpoints (a law on a load that was not recorded is
+//! believed). Two forms:
+//! - force: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`, where `v_f` follows the difference quotient of the position by the share
+//!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the central difference of that;
+//! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over voltage is found from the record.
+
+use crate::record::{ControllerForm, Dataset, Effort, Record};
+
+/// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise of the record.
+const LARGEST_MISFIT: f64 = 0.10;
+/// Rows from which the integral at the start is estimated.
+const START_ROWS: usize = 50;
+
+/// Form and gains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    Force { velocity_gain: f64, integral_per_s: f64, filter: f64, feedforward: f64 },
+    Voltage { gain: f64 },
+}
+
+/// A controller that reproduces the recorded effort.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    form: Form,
+    position_gain: f64,
+    limit: Option<f64>,
+    /// Whether it closes the position loop on the load.
+    pub on_load: bool,
+    /// Rms of recorded − computed effort, as a share of the recorded one; zero where the load that it closes on was not recorded.
+    pub misfit: f64,
+}
+
+/// State of a law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Memory {
+    before: [f64; 2],
+    velocity: f64,
+    sum: f64,
+}
+
+impl Law {
+    /// The law of a dataset, where it is described and fits its training record.
+    #[must_use]
+    pub fn of(dataset: &Dataset) -> Option<Self> {
+        let form = dataset.controller.as_ref().filter(|_| dataset.effort == Effort::Force)?;
+        let record = &dataset.train;
+        record.reference.as_ref()?;
+        let mut law = Self::described(form)?;
+        if let Form::Voltage { gain } = law.form {
+            let computed = Self { limit: None, ..law }.teacher_forced(record);
+            let sums = computed.iter().zip(&record.effort);
+            let (own, cross) = sums.fold((0.0, 0.0), |(own, cross), (c, e)| (own + c * c, cross + c * e));
+            law.form = Form::Voltage { gain: gain * cross / f64::max(own, f64::MIN_POSITIVE) };
+        }
+        if law.on_load && record.load.is_none() {
+            // Nothing to check it by: the load was not recorded.
+            return Some(law);
+        }
+        law.misfit = law.misfit_on(record);
+        (law.misfit <= LARGEST_MISFIT).then_some(law)
+    }
+
+    fn described(form: &ControllerForm) -> Option<Self> {
+        let kind = match (form.velocity_gain_n_s_per_m, form.velocity_gain_v_s_per_m) {
+            (Some(velocity_gain), _) => Form::Force {
+                velocity_gain,
+                integral_per_s: form.integral_per_s.unwrap_or(0.0),
+                filter: form.velocity_filter.unwrap_or(1.0),
+                feedforward: form.acceleration_feedforward_kg.unwrap_or(0.0),
+            },
+            (None, Some(gain)) => Form::Voltage { gain },
+            (None, None) => return None,
+        };
+        Some(Self {
+            form: kind,
+            position_gain: form.position_gain_per_s?,
+            limit: form.force_limit_n,
+            on_load: form.position_sensor.as_deref() == Some("load"),
+            misfit: 0.0,
+        })
+    }
+
+    fn measured<'a>(&self, record: &'a Record) -> &'a [f64] {
+        if self.on_load { record.load.as_deref().unwrap_or(&record.position) } else { &record.position }
+    }
+
+    /// The effort from recorded positions.
+    fn teacher_forced(&self, record: &Record) -> Vec<f64> {
+        let positions = self.measured(record);
+        let mut memory = self.start(record);
+        (0..record.len()).map(|row| self.step(record, &mut memory, row, positions[row])).collect()
+    }
+
+    fn misfit_on(&self, record: &Record) -> f64 {
+        let computed = self.teacher_forced(record);
+        let error: f64 = computed.iter().zip(&record.effort).map(|(c, e)| (c - e).powi(2)).sum();
+        let all: f64 = record.effort.iter().map(|e| e * e).sum();
+        (error / all.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// State at the start of a record: the integral is what its first efforts show.
+    #[must_use]
+    pub fn start(&self, record: &Record) -> Memory {
+        let positions = self.measured(record);
+        let first = positions.first().copied().unwrap_or(0.0);
+        let step = positions.get(1).map_or(0.0, |second| second - first);
+        let start =
+            Memory { before: [first - step, first - 2.0 * step], velocity: step / record.period_s, sum: 0.0 };
+        let Form::Force { velocity_gain, integral_per_s, .. } = self.form else { return start };
+        if integral_per_s == 0.0 {
+            return start;
+        }
+        let rows = START_ROWS.min(record.len());
+        let mut memory = start;
+        let missing: f64 =
+            (0..rows).map(|row| record.effort[row] - self.step(record, &mut memory, row, positions[row])).sum();
+        Memory { sum: missing / (rows as f64 * velocity_gain * integral_per_s), ..start }
+    }
+
+    /// The effort of a row for a measured position.
+    pub fn step(&self, record: &Record, memory: &mut Memory, row: usize, position: f64) -> f64 {
+        let period_s = record.period_s;
+        let reference = record.reference.as_deref().unwrap_or(&[]);
+        let at = |row: usize| reference.get(row).or(reference.last()).copied().unwrap_or(0.0);
+        let error = self.position_gain * (at(row) - position);
+        let [one, two] = memory.before;
+        memory.before = [position, one];
+        let effort = match self.form {
+            Form::Voltage { gain } => gain * (error - (position - two) / (2.0 * period_s)),
+            Form::Force { velocity_gain, integral_per_s, filter, feedforward } => {
+                memory.velocity += filter * ((position - one) / period_s - memory.velocity);
+                let slope = |row: usize| if row == 0 { 0.0 } else { (at(row) - at(row - 1)) / period_s };
+                let acceleration = (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * period_s);
+                let error = error + slope(row) - memory.velocity;
+                memory.sum += error * period_s;
+                velocity_gain * (error + integral_per_s * memory.sum) + feedforward * acceleration
+            }
+        };
+        self.limit.map_or(effort, |limit| effort.clamp(-limit, limit))
+    }
+}

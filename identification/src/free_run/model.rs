@@ -1,0 +1,184 @@
+//! An identified model, ready to be simulated, and its parameters as one vector.
+
+use super::axis::{Acting, Shape};
+use crate::bench::{Model, Term};
+use crate::effects::{Action, Instant};
+use crate::record::{Dataset, EffortHold};
+
+/// A term with its coefficients.
+#[derive(Clone)]
+pub struct Active {
+    term: Term,
+    own: Vec<f64>,
+}
+
+/// A model for free-run simulation.
+#[derive(Clone)]
+pub struct Simulated {
+    /// Moved mass.
+    pub mass: f64,
+    /// Terms other than the mass.
+    terms: Vec<Active>,
+    /// k of `u / (1 + k |u|)`.
+    pub saturation: f64,
+    /// Delay beyond the hold, s.
+    pub delay_s: f64,
+    /// Reversals.
+    pub shape: Shape,
+    travel: (f64, f64),
+}
+
+/// One entry of the parameter vector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// What it is, for people.
+    pub name: String,
+    /// Its size, for scaling.
+    pub scale: f64,
+    /// Step of the numerical derivative, in units of the scale.
+    pub step: f64,
+    /// Whether it stays positive.
+    pub positive: bool,
+}
+
+const STEP: f64 = 1.0e-3;
+/// The cost over a gap is jagged: contacts come and go with it.
+const JAGGED_STEP: f64 = 0.04;
+
+impl Entry {
+    /// Whether the cost over it is jagged.
+    #[must_use]
+    pub fn is_jagged(&self) -> bool {
+        self.step >= JAGGED_STEP
+    }
+}
+
+impl Simulated {
+    /// The simulation of an inverse model; `None` where it has no mass.
+    #[must_use]
+    pub fn new(dataset: &Dataset, period_s: f64, model: &Model, coefficients: &[f64], shape: Shape) -> Option<Self> {
+        let mut rest = coefficients.iter().copied();
+        let (mut mass, mut terms) = (0.0, Vec::new());
+        for term in &model.terms {
+            let own: Vec<f64> = rest.by_ref().take(term.effect.width(term.parameter)).collect();
+            if own.is_empty() {
+                return None;
+            }
+            if term.effect.name() == "inertia" {
+                mass = own[0];
+            } else {
+                terms.push(Active { term: *term, own });
+            }
+        }
+        // A simulated effort is held from its row on; an instantaneous record sees half a period of that as delay.
+        let hold_s = if dataset.hold == EffortHold::Instant { 0.5 * period_s } else { 0.0 };
+        let delay_s = (model.delay_s - hold_s).max(0.0);
+        let saturation = model.saturation.per_effort;
+        (mass > 0.0).then_some(Self { mass, terms, saturation, delay_s, shape, travel: dataset.travel() })
+    }
+
+    /// What acts at an instant under a commanded effort.
+    #[must_use]
+    pub fn acting(&self, position: f64, velocity: f64, time_s: f64, commanded: f64) -> Acting {
+        let scaled = (position - self.travel.0) / self.travel.1;
+        let at = Instant { position, scaled, velocity, time_s };
+        let delivered = commanded / (1.0 + self.saturation * commanded.abs());
+        let mut acting = Acting { motor: delivered, ..Acting::default() };
+        for Active { term, own } in &self.terms {
+            let Action { level, force } = term.effect.action(&at, term.parameter, own);
+            acting.level += level;
+            // Ripple comes from the motor and its screw, everything else from the load.
+            if term.effect.name() == "torque_ripple" {
+                acting.motor -= force;
+            } else {
+                acting.load += force;
+            }
+        }
+        acting
+    }
+
+    /// The entries of the parameter vector.
+    #[must_use]
+    pub fn entries(&self) -> Vec<Entry> {
+        let coulomb = self.terms.iter().find(|active| active.term.effect.name() == "coulomb");
+        let force = coulomb.map_or(self.mass, |active| active.own[0].abs()).max(f64::MIN_POSITIVE);
+        let plain = |name: &str, scale: f64| Entry { name: name.into(), scale, step: STEP, positive: false };
+        let mut entries = vec![Entry { positive: true, ..plain("inertia", self.mass) }];
+        for Active { term, own } in &self.terms {
+            let name = term.effect.name();
+            for (place, value) in own.iter().enumerate() {
+                let entry = plain(&format!("{name} {}", place + 1), value.abs().max(0.05 * force));
+                entries.push(Entry { positive: name == "coulomb", ..entry });
+            }
+            if term.effect.is_tuned() {
+                entries.push(Entry { positive: true, ..plain(&format!("{name} parameter"), term.parameter.abs()) });
+            }
+        }
+        if self.saturation != 0.0 {
+            entries.push(Entry { positive: true, ..plain("torque_saturation", self.saturation) });
+        }
+        if self.delay_s != 0.0 {
+            entries.push(Entry { positive: true, ..plain("delay", self.delay_s) });
+        }
+        if self.shape.deflection > 0.0 {
+            entries.push(Entry { positive: true, ..plain("presliding deflection", self.shape.deflection) });
+            let damping = Entry { positive: true, ..plain("presliding damping", self.shape.damping.max(2.0 * self.mass)) };
+            entries.push(damping);
+        }
+        if self.shape.gap > 0.0 {
+            let jagged = |name: &str, scale: f64| Entry { step: JAGGED_STEP, positive: true, ..plain(name, scale) };
+            entries.push(jagged("backlash gap", self.shape.gap));
+            entries.push(jagged("backlash load share", 1.0));
+            entries.push(jagged("backlash motor friction", 1.0));
+            entries.push(jagged("backlash restitution", 1.0));
+        }
+        entries
+    }
+
+    /// The parameter vector, unscaled, in the order of the entries.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        let mut copy = self.clone();
+        let mut values = Vec::new();
+        copy.visit(&mut |value| values.push(*value));
+        values
+    }
+
+    /// The model with another parameter vector.
+    #[must_use]
+    pub fn with(&self, values: &[f64]) -> Self {
+        let mut copy = self.clone();
+        let mut rest = values.iter();
+        copy.visit(&mut |value| *value = rest.next().copied().unwrap_or(*value));
+        copy.shape.load_share = copy.shape.load_share.clamp(0.05, 0.95);
+        copy.shape.motor_friction = copy.shape.motor_friction.clamp(0.0, 0.95);
+        copy.shape.restitution = copy.shape.restitution.clamp(0.0, 0.98);
+        copy
+    }
+
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        each(&mut self.mass);
+        for Active { term, own } in &mut self.terms {
+            own.iter_mut().for_each(&mut *each);
+            if term.effect.is_tuned() {
+                each(&mut term.parameter);
+            }
+        }
+        if self.saturation != 0.0 {
+            each(&mut self.saturation);
+        }
+        if self.delay_s != 0.0 {
+            each(&mut self.delay_s);
+        }
+        if self.shape.deflection > 0.0 {
+            each(&mut self.shape.deflection);
+            each(&mut self.shape.damping);
+        }
+        if self.shape.gap > 0.0 {
+            each(&mut self.shape.gap);
+            each(&mut self.shape.load_share);
+            each(&mut self.shape.motor_friction);
+            each(&mut self.shape.restitution);
+        }
+    }
+}
