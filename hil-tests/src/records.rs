@@ -328,13 +328,13 @@ struct Loop {
 impl Loop {
     fn step(&mut self, path: &[f64], row: usize, position: f64) -> f64 {
         let at = |row: usize| path[row.min(path.len() - 1)];
-        let (past, now, next) = (at(row.saturating_sub(1)), at(row), at(row + 1));
+        let slope = |row: usize| (at(row) - at(row.saturating_sub(1))) / PERIOD_S;
         let quotient = (position - self.before.unwrap_or(position)) / PERIOD_S;
         self.before = Some(position);
         self.velocity += VELOCITY_FILTER * (quotient - self.velocity);
-        let error = POSITION_GAIN_PER_S * (now - position) + (next - past) / (2.0 * PERIOD_S) - self.velocity;
+        let error = POSITION_GAIN_PER_S * (at(row) - position) + slope(row) - self.velocity;
         self.integral += PERIOD_S * INTEGRAL_PER_S * error;
         let gain = self.mass * TAU * VELOCITY_BANDWIDTH_HZ;
-        gain * (error + self.integral) + self.mass * (next - 2.0 * now + past) / PERIOD_S.powi(2)
+        gain * (error + self.integral) + self.mass * (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * PERIOD_S)
     }
 }

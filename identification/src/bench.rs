@@ -88,6 +88,19 @@ pub struct Design {
     shift_rows: f64,
 }
 
+/// Half widths of 95 % intervals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HalfWidths {
+    /// Per coefficient.
+    pub linear: Vec<f64>,
+    /// Per term: of its nonlinear parameter, where it has one.
+    pub parameters: Vec<Option<f64>>,
+    /// Of the delay.
+    pub delay_s: Option<f64>,
+    /// Of the saturation.
+    pub saturation: Option<f64>,
+}
+
 type Columns = Rc<Vec<Vec<f64>>>;
 
 /// A record on which models are fitted; it keeps the low-passed columns of the terms that it has seen last.
@@ -167,10 +180,36 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).cross_validate()
     }
 
-    /// Half widths of the 95 % intervals of the coefficients.
+    /// Half widths of 95 % intervals of everything that was fitted: the columns' own and, linearised, the nonlinear parameters.
     #[must_use]
-    pub fn half_widths(&self, model: &Model) -> Vec<f64> {
-        self.blocks(&self.design(model)).half_widths()
+    pub fn half_widths(&self, model: &Model, coefficients: &[f64]) -> HalfWidths {
+        let mut design = self.design(model);
+        let columns = design.columns.len();
+        let mut slope = |step: f64, moved: &dyn Fn(f64) -> Model| {
+            let [up, down] = [step, -step].map(|step| self.predict_lp(&moved(step), coefficients));
+            design.columns.push(up.iter().zip(&down).map(|(up, down)| (up - down) / (2.0 * step)).collect());
+        };
+        let tuned: Vec<usize> = (0..model.terms.len()).filter(|at| model.terms[*at].effect.is_tuned()).collect();
+        for at in &tuned {
+            let parameter = model.terms[*at].parameter;
+            slope(1.0e-4 * parameter, &|step| model.with_parameter(*at, parameter + step));
+        }
+        if model.delay_s != 0.0 {
+            slope(1.0e-5, &|step| Model { delay_s: model.delay_s + step, ..model.clone() });
+        }
+        let Saturation { per_effort, about } = &model.saturation;
+        if model.saturates() {
+            let moved = |step: f64| Saturation { per_effort: per_effort + step, about: about.clone() };
+            slope(1.0e-3 * per_effort, &|step| Model { saturation: moved(step), ..model.clone() });
+        }
+        let all = self.blocks(&design).half_widths();
+        let (linear, rest) = all.split_at(columns);
+        let mut rest = rest.iter().copied();
+        let mut parameters = vec![None; model.terms.len()];
+        tuned.into_iter().for_each(|at| parameters[at] = rest.next());
+        let delay_s = if model.delay_s == 0.0 { None } else { rest.next() };
+        let saturation = if model.saturates() { rest.next() } else { None };
+        HalfWidths { linear: linear.to_vec(), parameters, delay_s, saturation }
     }
 
     /// Sum of squares that a model leaves in the sample.

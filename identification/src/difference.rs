@@ -165,6 +165,29 @@ pub fn difference(dataset: &Dataset, motion: &Kinematics) -> Option<Difference> 
 }
 
 impl Difference {
+    /// Whether the load moves otherwise than the motor.
+    #[must_use]
+    pub const fn moves_apart(&self) -> bool {
+        self.gap.is_some() || self.stiffness.is_some()
+    }
+
+    /// Amplitude and wave number of the pitch error, if one was found.
+    #[must_use]
+    pub fn pitch(&self) -> Option<(f64, f64)> {
+        let mut place = 0;
+        for term in &self.terms {
+            match term {
+                Column::Pitch { k } => {
+                    let [a, b] = [0, 1].map(|i| self.coefficients.get(place + i).copied().unwrap_or(0.0));
+                    return Some((a.hypot(b), *k));
+                }
+                Column::WindUp => place += 2,
+                Column::Constant | Column::Play(_) => place += 1,
+            }
+        }
+        None
+    }
+
     /// Rms on another record: declared, extended; µm.
     #[must_use]
     pub fn on(&self, motion: &Kinematics, position: &[f64]) -> Option<(f64, f64)> {

@@ -10,6 +10,7 @@ pub mod coulomb;
 pub mod friction_drift;
 pub mod hum;
 pub mod inertia;
+pub mod load_inertia;
 pub mod offset;
 pub mod position_dependent_friction;
 pub mod quadratic_drag;
@@ -46,7 +47,7 @@ pub struct Named {
     pub name: String,
     /// Value.
     pub value: f64,
-    /// Half width of its 95 % interval; `None` for nonlinear parameters.
+    /// Half width of its 95 % interval, where there is one.
     pub half_width: Option<f64>,
     /// Unit.
     pub unit: String,
@@ -56,6 +57,8 @@ pub struct Named {
 pub struct Naming<'a> {
     /// Nonlinear parameter.
     pub parameter: f64,
+    /// Half width of its 95 % interval, where it was found.
+    pub parameter_half_width: Option<f64>,
     /// Coefficients with the half widths of their intervals.
     pub coefficients: &'a [(f64, f64)],
     /// The axis.
@@ -85,10 +88,11 @@ impl Naming<'_> {
         Named { name: name.into(), value, half_width: Some(half_width), unit }
     }
 
-    /// The nonlinear parameter.
+    /// A quantity that is proportional to the nonlinear parameter, or to one over it.
     #[must_use]
     pub fn nonlinear(&self, name: &str, value: f64, unit: String) -> Named {
-        Named { name: name.into(), value, half_width: None, unit }
+        let half_width = self.parameter_half_width.map(|half| half * (value / self.parameter).abs());
+        Named { name: name.into(), value, half_width, unit }
     }
 }
 
@@ -170,6 +174,11 @@ pub trait Effect: Sync {
     /// Whether what was fitted can be this effect.
     fn is_physical(&self, _fitted: &Fitted<'_>) -> bool {
         true
+    }
+
+    /// Whether all its columns are parts of the friction level, which holds at rest.
+    fn is_level(&self) -> bool {
+        false
     }
 
     /// Whether it may be found more than once (ripple orders).

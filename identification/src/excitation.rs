@@ -5,8 +5,8 @@ use crate::record::{AxisKind, Dataset};
 
 /// Warnings about a training record, one sentence each.
 #[must_use]
-pub fn warnings(dataset: &Dataset, motion: &Kinematics) -> Vec<String> {
-    let mut list = Vec::new();
+pub fn warnings(dataset: &Dataset, motion: &Kinematics, found: &[String]) -> Vec<String> {
+    let mut list = same_force(dataset, found);
     let moving = |test: &dyn Fn(f64) -> bool| {
         motion.velocity_lp.iter().zip(&motion.moving).filter(|(v, moving)| **moving && test(**v)).count()
     };
@@ -40,4 +40,11 @@ pub fn reversals(motion: &Kinematics) -> usize {
     let signs: Vec<f64> =
         motion.velocity_lp.iter().zip(&motion.moving).filter(|(_, moving)| **moving).map(|(v, _)| v.signum()).collect();
     signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}
+
+/// Explanations that no record can tell apart.
+fn same_force(dataset: &Dataset, found: &[String]) -> Vec<String> {
+    let has = |name: &str| found.iter().chain(&dataset.declared).any(|known| known == name);
+    let text = "offset and coulomb_asymmetry are the same force (a constant one, at rest as in motion): no record tells them apart, and offset stands for both";
+    (has("offset") || has("coulomb_asymmetry")).then(|| text.to_owned()).into_iter().collect()
 }

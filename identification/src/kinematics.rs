@@ -25,8 +25,8 @@ pub struct Kinematics {
     pub velocity: Vec<f64>,
     /// Motor position, raw, at the time of the velocity.
     pub position: Vec<f64>,
-    /// Motor position at the rows.
-    pub raw_position: Vec<f64>,
+    /// Load − motor acceleration, raw, where both were measured.
+    pub load_acceleration: Option<Vec<f64>>,
     /// Low-passed position.
     pub position_lp: Vec<f64>,
     /// Low-passed velocity where friction acts: at the load scale if there is one, else at the motor.
@@ -65,6 +65,8 @@ impl Kinematics {
         let filter = LowPass::new(period_s, cutoff)?;
         let motor = Derivatives::new(&record.position, period_s, dataset.hold);
         let friction = record.load.as_ref().map(|load| Derivatives::new(load, period_s, dataset.hold));
+        let relative = |load: &Derivatives| load.acceleration.iter().zip(&motor.acceleration).map(|(l, m)| l - m).collect();
+        let load_acceleration = friction.as_ref().map(relative);
         let friction = friction.as_ref().unwrap_or(&motor);
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, dataset.hold);
         let motor_lp = filter.apply(&motor.velocity);
@@ -77,7 +79,7 @@ impl Kinematics {
         Some(Self {
             period_s,
             time_s: record.time_s.clone(),
-            raw_position: record.position.clone(),
+            load_acceleration,
             position_lp: filter.apply(&motor.position),
             direction: velocity_lp.iter().map(|v| v.signum()).collect(),
             friction_position: friction.position.clone(),

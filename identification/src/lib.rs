@@ -24,13 +24,16 @@ pub mod free_run;
 pub mod kinematics;
 pub mod load;
 pub mod outcome;
+mod ranking;
 pub mod record;
 pub mod regression;
+pub mod report;
 pub mod residual;
 pub mod reversal;
 pub mod search;
 pub mod selection;
 
 pub use error::IdentificationError;
-pub use outcome::{Identification, identify};
+pub use outcome::identify;
 pub use record::{Dataset, Record};
+pub use report::Identification;

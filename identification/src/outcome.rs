@@ -1,148 +1,50 @@
-//! The whole identification of a dataset, and what is said about it.
+//! The whole identification of a dataset.
 
-use serde::Serialize;
-
+use crate::actuator::{self, Pair};
+use crate::bench::{Bench, Model};
 use crate::difference::{self, Difference};
-use crate::effects::{Named, Naming};
 use crate::error::IdentificationError;
 use crate::excitation;
+use crate::free_run::judge::{self, Reversals};
+use crate::free_run::{Drive, errors as free_run_errors};
 use crate::kinematics::Kinematics;
-use crate::record::{Dataset, Record};
+use crate::ranking;
+use crate::record::Dataset;
+use crate::report::{Curves, Errors, Identification, Report, ResidualReport};
 use crate::residual::{self, Structure, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE};
-use crate::reversal::{self, Reversal, bristle};
-use crate::actuator::{self, Pair};
-use crate::bench::{Bench, Model, Term};
-use crate::selection::{self, Scored, Selection};
+use crate::reversal::{self, Presliding, bristle};
+use crate::selection::{self, Selection};
 
-/// A candidate in the ranking.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
-    /// Effect.
-    pub effect: String,
-    /// Error if this effect alone is added to the declared model, percent: of the force on the validation record, or, for effects judged on motor − load,
-    /// what is left of that difference on held-out blocks.
-    pub validation_error_percent: Option<f64>,
-    /// Evidence: mean over standard error of its gain on held-out blocks, in the round in which it stood best.
-    pub evidence: f64,
-    /// Share of the held-out error that it removes.
-    pub share: f64,
-    /// On which measured output it was judged.
-    pub judged_on: &'static str,
-    /// Whether what was fitted can be this effect.
-    pub physical: bool,
-    /// Whether it was accepted.
-    pub accepted: bool,
+/// A model with its coefficients.
+pub(crate) struct Fitted {
+    pub(crate) model: Model,
+    pub(crate) coefficients: Vec<f64>,
+    /// Deflection of the bristle, where presliding is in the model.
+    pub(crate) deflection: Option<f64>,
 }
 
-/// Errors on one record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Errors {
-    /// Force error of the declared model over moving samples.
-    pub force_error_before_percent: f64,
-    /// Force error of the extended model.
-    pub force_error_after_percent: f64,
-    /// Rms of the force that is not explained about reversals and rests, declared; in the unit of the effort.
-    pub reversal_error_before: f64,
-    /// The same, extended.
-    pub reversal_error_after: f64,
-    /// Rms of motor − load that is not explained, declared.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub position_difference_error_um_before: Option<f64>,
-    /// The same, extended.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub position_difference_error_um_after: Option<f64>,
+/// What was found out, by stage.
+pub(crate) struct Findings<'a> {
+    pub(crate) dataset: &'a Dataset,
+    pub(crate) motion: &'a Kinematics,
+    pub(crate) validation: &'a Kinematics,
+    pub(crate) declared: Fitted,
+    pub(crate) extended: Fitted,
+    pub(crate) selected: Selection,
+    pub(crate) difference: Option<Difference>,
+    pub(crate) presliding: Option<Presliding>,
+    pub(crate) reversals: Option<Reversals>,
+    pub(crate) accepted: AtReversals,
 }
 
-/// Whether structure is left.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ResidualReport {
-    /// Declared model.
-    pub white_before: bool,
-    /// Extended model.
-    pub white_after: bool,
-    /// Share of the residual's variance that features explain on held-out blocks, declared.
-    pub share_before: f64,
-    /// The same, extended.
-    pub share_after: f64,
-    /// What the structure that is left looks like, where there is any.
-    pub looks_like: String,
-}
-
-/// A parameter with its interval.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
-    /// Value.
-    pub value: f64,
-    /// Unit.
-    pub unit: String,
-    /// Lower end of the 95 % interval; the value itself for nonlinear parameters.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-/// What was found, in the form of `identify --json`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Report {
-    /// Dataset.
-    pub dataset: String,
-    /// Declared effects.
-    pub declared: Vec<String>,
-    /// Effects that were lacking, in order of contribution.
-    pub found: Vec<String>,
-    /// Ranking.
-    pub candidates: Vec<Candidate>,
-    /// Errors on the training record.
-    pub train: Errors,
-    /// Errors on the validation record.
-    pub validate: Errors,
-    /// Errors on the whole file, where validation is its last part: the declared and the extended structure fitted to all of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub whole: Option<Errors>,
-    /// Structure left.
-    pub residual: ResidualReport,
-    /// Parameters of the extended model.
-    pub parameters: std::collections::BTreeMap<String, Parameter>,
-    /// `explained` or `unexplained`.
-    pub verdict: String,
-    /// What the record cannot say.
-    pub warnings: Vec<String>,
-}
-
-/// Curves for pictures and `prediction.csv`.
-#[derive(Clone, Debug, Default)]
-pub struct Curves {
-    /// Validation record: time, s.
-    pub time_s: Vec<f64>,
-    /// Recorded effort; where a known lag stands between the recorded and the acting effort, the acting one, which is what the predictions are of.
-    pub effort: Vec<f64>,
-    /// Prediction of the declared model, not low-passed.
-    pub declared: Vec<f64>,
-    /// Prediction of the extended model, not low-passed.
-    pub extended: Vec<f64>,
-    /// Moving samples of the validation record: velocity, position, residual declared, residual extended.
-    pub moving: Vec<[f64; 4]>,
-}
-
-/// Everything that came out.
-#[derive(Clone, Debug, Default)]
-pub struct Identification {
-    /// The report.
-    pub report: Report,
-    /// Curves.
-    pub curves: Curves,
-    /// Unit of the effort.
-    pub effort_unit: &'static str,
-    /// Name of the effort column.
-    pub effort_column: &'static str,
-    /// Unit of the position.
-    pub position_unit: &'static str,
-}
-
-struct Fitted {
-    model: Model,
-    coefficients: Vec<f64>,
-    reversal: Option<Reversal>,
+/// What acts at reversals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct AtReversals {
+    pub(crate) presliding: bool,
+    /// Seen from the motor; a gap that a load scale shows stands in the difference.
+    pub(crate) backlash: bool,
+    /// Something that is none of them.
+    pub(crate) unexplained: bool,
 }
 
 /// Identifies a dataset. `progress` hears of every step.
@@ -153,38 +55,62 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     let motion = kinematics(dataset, &dataset.train)?;
     let low_cutoff = actuator::delay_cutoff_hz(dataset.train.period_s);
     let low = Kinematics::with_cutoff(dataset, &dataset.train, low_cutoff).ok_or_else(|| no_room(dataset))?;
-    let moving = motion.moving.iter().filter(|moving| **moving).count();
-    if moving < crate::record::FEWEST_ROWS / 2 {
+    let validation = kinematics(dataset, &dataset.validate)?;
+    check_samples(dataset, &motion, &validation)?;
+    let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &low));
+    let pair = Pair { bench: &bench, low: &low };
+    progress("fitting the declared model");
+    let mut start = selection::declared_model(dataset);
+    selection::prepare(pair, &mut start);
+    progress("scoring candidate effects");
+    let selected = selection::select(pair, start.clone(), progress);
+    progress("looking at motor and load");
+    let difference = difference::difference(dataset, &motion);
+    progress("simulating reversals: stick, bristle, gap");
+    let coefficients = bench.fit(&selected.model).coefficients;
+    let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
+    let reversals = judge::reversals(dataset, &selected.model, &coefficients);
+    let accepted = at_reversals(presliding.as_ref(), reversals.as_ref(), difference.as_ref());
+    let deflection = deflection(presliding.as_ref(), reversals.as_ref());
+    let model = match &difference {
+        Some(found) if found.moves_apart() => selection::with_load_inertia(&bench, &selected.model),
+        _ => selected.model.clone(),
+    };
+    let declares_presliding = dataset.declared.iter().any(|name| name == "presliding");
+    let findings = Findings {
+        dataset,
+        motion: &motion,
+        validation: &validation,
+        declared: fitted(pair, start, deflection.filter(|_| declares_presliding)),
+        extended: fitted(pair, model, deflection.filter(|_| accepted.presliding || declares_presliding)),
+        selected,
+        difference,
+        presliding,
+        reversals,
+        accepted,
+    };
+    progress("validating");
+    Ok(assemble(&findings))
+}
+
+fn check_samples(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics) -> Result<(), IdentificationError> {
+    let fitted = motion.fitted.iter().filter(|fitted| **fitted).count();
+    if fitted < crate::record::FEWEST_ROWS / 2 {
         return Err(IdentificationError::new(format!(
-            "{}: only {moving} moving samples are left for the fit; record longer runs",
+            "{}: only {fitted} moving samples are left for the fit; record longer runs, away from the effort's limit",
             dataset.name
         )));
     }
-    let validation = kinematics(dataset, &dataset.validate)?;
     if validation.moving.iter().filter(|moving| **moving).count() < crate::filter::TRIM {
         return Err(IdentificationError::new(format!(
             "{}: hardly any moving samples are left in the validation record; record longer runs for it",
             dataset.name
         )));
     }
-    let bench = Bench::new(dataset, &motion);
-    let low = Bench::new(dataset, &low);
-    let pair = Pair { bench: &bench, low: &low };
-    progress("fitting the declared model");
-    let mut declared = selection::declared_model(dataset);
-    selection::prepare(pair, &mut declared);
-    let start = declared.clone();
-    let declared = fitted(pair, declared, dataset.declared.iter().any(|name| name == "presliding"));
-    progress("scoring candidate effects");
-    let selected = selection::select(pair, start, progress);
-    let extended = fitted(pair, selected.model.clone(), true);
-    progress("looking at motor and load");
-    let difference = difference::difference(dataset, &motion);
-    progress("validating");
-    Ok(assemble(dataset, &motion, &declared, &extended, &selected, difference.as_ref()))
+    Ok(())
 }
 
-fn kinematics(dataset: &Dataset, record: &Record) -> Result<Kinematics, IdentificationError> {
+fn kinematics(dataset: &Dataset, record: &crate::record::Record) -> Result<Kinematics, IdentificationError> {
     Kinematics::new(dataset, record).ok_or_else(|| no_room(dataset))
 }
 
@@ -192,20 +118,54 @@ fn no_room(dataset: &Dataset) -> IdentificationError {
     IdentificationError::new(format!("{}: the sample period leaves no room for the low-pass", dataset.name))
 }
 
-/// Fits a model on moving samples and judges presliding with it.
-fn fitted(pair: Pair<'_>, model: Model, with_presliding: bool) -> Fitted {
-    let bench = pair.bench;
-    let coefficients = bench.fit(&model).coefficients;
-    let reversal = reversal::judge(bench, &model, &coefficients);
-    let used = reversal.filter(|r| with_presliding && r.presliding);
-    let Some(accepted) = used else { return Fitted { model, coefficients, reversal } };
-    // The sign columns follow the bristle now; everything that depends on them is refined again.
-    let [motion, slow] = [bench, pair.low].map(|bench| bristle::motion(bench.motion, accepted.deflection));
-    let (bench, low) = (Bench::new(bench.dataset, &motion), Bench::new(bench.dataset, &slow));
+/// A load scale shows gaps directly and friction where it acts; without it the free run decides, if the controller is known. Where it is not, the
+/// simulation follows the record too closely to be a judge of bristles, but a gap that it sees is one.
+fn at_reversals(
+    presliding: Option<&Presliding>,
+    reversals: Option<&Reversals>,
+    difference: Option<&Difference>,
+) -> AtReversals {
+    let inverse = presliding.is_some_and(|p| p.accepted);
+    let suspicious = presliding.is_some_and(|p| !p.accepted && p.dahl < reversal::SUSPICION * p.rigid);
+    if let Some(difference) = difference {
+        let unexplained = suspicious && difference.gap.is_none();
+        return AtReversals { presliding: inverse, backlash: false, unexplained };
+    }
+    let Some(reversals) = reversals else {
+        return AtReversals { presliding: inverse, backlash: false, unexplained: suspicious };
+    };
+    let seen = reversals.accepted;
+    match reversals.drive {
+        Drive::Known(_) => {
+            AtReversals { presliding: seen.presliding, backlash: seen.backlash, unexplained: seen.undecided }
+        }
+        Drive::Followed => {
+            let presliding = if seen.backlash { seen.presliding } else { inverse };
+            let unexplained = !presliding && !seen.backlash && (suspicious || seen.undecided);
+            AtReversals { presliding, backlash: seen.backlash, unexplained }
+        }
+    }
+}
+
+/// Deflection of the bristle: from the free run where that has one, else from the inverse model.
+fn deflection(presliding: Option<&Presliding>, reversals: Option<&Reversals>) -> Option<f64> {
+    let simulated = reversals.filter(|r| r.accepted.presliding).map(|r| r.best().model.shape.deflection);
+    simulated.or_else(|| presliding.map(|p| p.deflection))
+}
+
+/// Fits a model on moving samples; its sign columns follow the bristle, where there is one.
+fn fitted(pair: Pair<'_>, model: Model, deflection: Option<f64>) -> Fitted {
+    let Some(width) = deflection else {
+        let coefficients = pair.bench.fit(&model).coefficients;
+        return Fitted { model, coefficients, deflection };
+    };
+    let dataset = pair.bench.dataset;
+    let [motion, slow] = [pair.bench, pair.low].map(|bench| bristle::motion(bench.motion, width));
+    let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &slow));
     let mut model = model;
     selection::refine(Pair { bench: &bench, low: &low }, &mut model);
     let coefficients = bench.fit(&model).coefficients;
-    Fitted { model, coefficients, reversal }
+    Fitted { model, coefficients, deflection }
 }
 
 struct Judged {
@@ -216,67 +176,57 @@ struct Judged {
 }
 
 impl Fitted {
-    fn uses_presliding(&self, allowed: bool) -> Option<f64> {
-        self.reversal.filter(|r| allowed && r.presliding).map(|r| r.deflection)
+    /// The motion as this model sees it.
+    pub(crate) fn motion(&self, motion: &Kinematics) -> Kinematics {
+        self.deflection.map_or_else(|| motion.clone(), |deflection| bristle::motion(motion, deflection))
     }
 
-    fn judge(&self, dataset: &Dataset, motion: &Kinematics, presliding: bool) -> Judged {
-        self.judge_with(dataset, motion, presliding, &self.coefficients)
+    fn judge(&self, dataset: &Dataset, motion: &Kinematics) -> Judged {
+        self.judge_with(dataset, motion, &self.coefficients)
     }
 
-    fn judge_with(&self, dataset: &Dataset, motion: &Kinematics, presliding: bool, coefficients: &[f64]) -> Judged {
-        let deflection = self.uses_presliding(presliding);
-        let bristle = deflection.map(|deflection| bristle::motion(motion, deflection));
-        let reversal = self.reversal.filter(|_| presliding);
-        let reversal = reversal::error_rms(&Bench::new(dataset, motion), &self.model, coefficients, reversal.as_ref());
-        let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(motion));
-        let residual = bench.residual(&self.model, coefficients);
+    fn judge_with(&self, dataset: &Dataset, motion: &Kinematics, coefficients: &[f64]) -> Judged {
+        let plain = Bench::new(dataset, motion);
+        let reversal = reversal::error_rms(&plain, &self.model, coefficients, self.deflection);
+        let motion = self.motion(motion);
+        let bench = Bench::new(dataset, &motion);
         Judged {
             force_percent: bench.force_error_percent(&self.model, coefficients),
             reversal: reversal.unwrap_or(0.0),
             prediction: bench.predict(&self.model, coefficients),
-            residual,
+            residual: bench.residual(&self.model, coefficients),
         }
     }
 }
 
-fn assemble(
-    dataset: &Dataset,
-    motion: &Kinematics,
-    declared: &Fitted,
-    extended: &Fitted,
-    selected: &Selection,
-    difference: Option<&Difference>,
-) -> Identification {
-    let declares_presliding = dataset.declared.iter().any(|name| name == "presliding");
-    let train = [declared.judge(dataset, motion, declares_presliding), extended.judge(dataset, motion, true)];
-    let validation_motion = Kinematics::new(dataset, &dataset.validate);
-    let validation_motion = validation_motion.as_ref().unwrap_or(motion);
-    let validation = [
-        declared.judge(dataset, validation_motion, declares_presliding),
-        extended.judge(dataset, validation_motion, true),
-    ];
-    let found = found(dataset, selected, extended, difference);
+fn assemble(findings: &Findings<'_>) -> Identification {
+    let Findings { dataset, motion, validation, declared, extended, selected, difference, .. } = findings;
+    let train = [declared.judge(dataset, motion), extended.judge(dataset, motion)];
+    let validate = [declared.judge(dataset, validation), extended.judge(dataset, validation)];
+    let found = found(findings);
     let residual = structure(motion, &train, selected);
     let percent_left = train[1].force_percent * residual.share_after.sqrt();
-    let matters = residual.share_after >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT;
-    let suspicious = reversal_suspicion(extended, difference);
-    let unexplained = matters || !selected.nameless.is_empty() || suspicious;
+    // Impacts in a gap leave structure in the force that no column of an inverse model can have.
+    let has_gap = found.iter().chain(&dataset.declared).any(|name| name == "backlash");
+    let matters = residual.share_after >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
+    let unexplained = matters || !selected.nameless.is_empty() || findings.accepted.unexplained;
+    let on_validation = |d: &Difference| d.on(validation, &dataset.validate.position);
     let report = Report {
         dataset: dataset.name.clone(),
         declared: dataset.declared.clone(),
-        candidates: candidates(dataset, motion, validation_motion, selected, extended, difference, &found),
-        found,
-        train: errors(&train, difference.map(|d| (d.before_um, d.after_um))),
-        validate: errors(&validation, difference.and_then(|d| d.on(validation_motion, &dataset.validate.position))),
-        whole: whole(dataset, declared, extended, declares_presliding),
-        residual: ResidualReport { looks_like: looks_like(&residual, selected, suspicious), ..residual },
-        parameters: parameters(dataset, motion, extended, difference),
+        candidates: ranking::candidates(findings, &found),
+        train: errors(&train, difference.as_ref().map(|d| (d.before_um, d.after_um))),
+        validate: errors(&validate, difference.as_ref().and_then(on_validation)),
+        whole: whole(dataset, declared, extended),
+        residual: ResidualReport { looks_like: looks_like(&residual, findings), ..residual },
+        free_run: findings.reversals.as_ref().and_then(|reversals| free_run_errors::report(findings, reversals)),
+        parameters: ranking::parameters(findings),
         verdict: if unexplained { "unexplained" } else { "explained" }.into(),
-        warnings: excitation::warnings(dataset, motion),
+        warnings: excitation::warnings(dataset, motion, &found),
+        found,
     };
     Identification {
-        curves: curves(dataset, validation_motion, &validation),
+        curves: curves(dataset, validation, &validate),
         report,
         effort_unit: dataset.effort.unit(),
         effort_column: dataset.effort.column(),
@@ -284,17 +234,13 @@ fn assemble(
     }
 }
 
-fn found(dataset: &Dataset, selected: &Selection, extended: &Fitted, difference: Option<&Difference>) -> Vec<String> {
-    let mut found: Vec<String> = selected.found.iter().map(|name| (*name).to_owned()).collect();
-    let declared = |name: &str| dataset.declared.iter().any(|declared| declared == name);
-    if extended.uses_presliding(true).is_some() && !declared("presliding") {
-        found.push("presliding".into());
-    }
-    if extended.reversal.is_some_and(|r| r.backlash) && !declared("backlash") {
-        found.push("backlash".into());
-    }
-    found.extend(difference.into_iter().flat_map(|d| &d.found).map(|name| (*name).to_owned()));
-    found
+fn found(findings: &Findings<'_>) -> Vec<String> {
+    let accepted = [(findings.accepted.presliding, "presliding"), (findings.accepted.backlash, "backlash")];
+    let at_reversals = accepted.into_iter().filter(|(accepted, _)| *accepted).map(|(_, name)| name);
+    let in_difference = findings.difference.iter().flat_map(|d| d.found.iter().copied());
+    let all = findings.selected.found.iter().copied().chain(at_reversals).chain(in_difference);
+    let declared = |name: &str| findings.dataset.declared.iter().any(|declared| declared == name);
+    all.filter(|name| !declared(name)).map(String::from).collect()
 }
 
 fn errors(judged: &[Judged; 2], difference_um: Option<(f64, f64)>) -> Errors {
@@ -309,17 +255,15 @@ fn errors(judged: &[Judged; 2], difference_um: Option<(f64, f64)>) -> Errors {
 }
 
 /// Both structures fitted to the whole file: the protocol of the published figures.
-fn whole(dataset: &Dataset, declared: &Fitted, extended: &Fitted, declares_presliding: bool) -> Option<Errors> {
+fn whole(dataset: &Dataset, declared: &Fitted, extended: &Fitted) -> Option<Errors> {
     let record = dataset.whole()?;
     let motion = Kinematics::new(dataset, &record)?;
-    let judge = |fitted: &Fitted, presliding: bool| {
-        let bristle =
-            fitted.uses_presliding(presliding).map(|deflection| bristle::motion(&motion, deflection));
-        let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(&motion));
-        let coefficients = bench.fit(&fitted.model).coefficients;
-        fitted.judge_with(dataset, &motion, presliding, &coefficients)
+    let judge = |fitted: &Fitted| {
+        let seen = fitted.motion(&motion);
+        let coefficients = Bench::new(dataset, &seen).fit(&fitted.model).coefficients;
+        fitted.judge_with(dataset, &motion, &coefficients)
     };
-    Some(errors(&[judge(declared, declares_presliding), judge(extended, true)], None))
+    Some(errors(&[judge(declared), judge(extended)], None))
 }
 
 fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> ResidualReport {
@@ -342,15 +286,8 @@ fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> 
     }
 }
 
-/// Something acts at reversals that neither rigid Coulomb friction nor an accepted effect explains.
-fn reversal_suspicion(extended: &Fitted, difference: Option<&Difference>) -> bool {
-    let has_gap = difference.is_some_and(|d| d.gap.is_some());
-    let unexplained = |r: Reversal| !r.presliding && !r.backlash && r.dahl < reversal::SUSPICION * r.rigid;
-    extended.reversal.is_some_and(unexplained) && !has_gap
-}
-
-fn looks_like(residual: &ResidualReport, selected: &Selection, suspicious: bool) -> String {
-    let mut parts: Vec<String> = selected.nameless.iter().map(|name| format!("a {name}")).collect();
+fn looks_like(residual: &ResidualReport, findings: &Findings<'_>) -> String {
+    let mut parts: Vec<String> = findings.selected.nameless.iter().map(|name| format!("a {name}")).collect();
     if residual.share_after >= WHITE_SHARE && !residual.looks_like.is_empty() {
         parts.push(format!(
             "structure over {} ({:.0} % of the residual)",
@@ -358,143 +295,10 @@ fn looks_like(residual: &ResidualReport, selected: &Selection, suspicious: bool)
             100.0 * residual.share_after
         ));
     }
-    if suspicious {
-        parts.push("structure at reversals that is neither stick nor a bristle".into());
+    if findings.accepted.unexplained {
+        parts.push("structure at reversals that is neither stick nor a bristle nor a gap".into());
     }
     parts.join("; ")
-}
-
-fn candidates(
-    dataset: &Dataset,
-    motion: &Kinematics,
-    validation: &Kinematics,
-    selected: &Selection,
-    extended: &Fitted,
-    difference: Option<&Difference>,
-    found: &[String],
-) -> Vec<Candidate> {
-    let mut list: Vec<Candidate> = Vec::new();
-    for scored in &selected.scored {
-        let known = list.iter_mut().find(|candidate| candidate.effect == scored.effect);
-        match known {
-            Some(known) if known.share >= scored.gain.share => {}
-            Some(known) => (known.share, known.evidence) = (scored.gain.share, scored.gain.t),
-            None => list.push(force_candidate(dataset, motion, validation, scored)),
-        }
-    }
-    let removed = |after: f64, before: f64| 1.0 - (after / before.max(f64::MIN_POSITIVE)).powi(2);
-    list.extend(extended.reversal.map(|r| Candidate {
-        effect: "presliding".into(),
-        validation_error_percent: Some(with_bristle(dataset, motion, validation, r.deflection)),
-        evidence: r.t,
-        share: removed(r.dahl, r.rigid),
-        judged_on: "effort about reversals",
-        physical: r.deflection >= reversal::resolution(dataset),
-        accepted: r.presliding,
-    }));
-    list.extend(extended.reversal.filter(|_| difference.is_none()).map(|r| Candidate {
-        effect: "backlash".into(),
-        validation_error_percent: None,
-        evidence: r.gap_t,
-        share: removed(r.gap_about, r.rigid_about),
-        judged_on: "effort about reversals",
-        physical: r.gap.width >= reversal::resolution(dataset),
-        accepted: r.backlash,
-    }));
-    list.extend(difference.into_iter().flat_map(|d| &d.scored).filter(|s| s.round == 0).map(|scored| Candidate {
-        effect: scored.effect.into(),
-        // Of the position difference: what is left of its rms on held-out blocks.
-        validation_error_percent: Some(100.0 * (1.0 - scored.gain.share).max(0.0).sqrt()),
-        evidence: scored.gain.t,
-        share: scored.gain.share,
-        judged_on: "motor - load position",
-        physical: scored.physical,
-        accepted: scored.accepted,
-    }));
-    for candidate in &mut list {
-        candidate.accepted = found.contains(&candidate.effect);
-    }
-    list.sort_by(|a, b| b.accepted.cmp(&a.accepted).then(b.share.total_cmp(&a.share)));
-    list
-}
-
-/// Force error on the validation record of the declared model with a bristle in place of the sign.
-fn with_bristle(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, deflection: f64) -> f64 {
-    let model = selection::declared_model(dataset);
-    let (train, validate) =
-        (bristle::motion(motion, deflection), bristle::motion(validation, deflection));
-    let coefficients = Bench::new(dataset, &train).fit(&model).coefficients;
-    Bench::new(dataset, &validate).force_error_percent(&model, &coefficients)
-}
-
-fn force_candidate(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics, scored: &Scored) -> Candidate {
-    let mut model = selection::declared_model(dataset);
-    match crate::effects::find(scored.effect) {
-        Some(effect) => model.terms.push(Term { effect, parameter: scored.parameter }),
-        None if scored.effect == "delay" => model.delay_s = scored.parameter,
-        None => model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter),
-    }
-    let coefficients = Bench::new(dataset, motion).fit(&model).coefficients;
-    let error = Bench::new(dataset, validation).force_error_percent(&model, &coefficients);
-    Candidate {
-        effect: scored.effect.into(),
-        validation_error_percent: Some(error),
-        evidence: scored.gain.t,
-        share: scored.gain.share,
-        judged_on: "effort of moving samples",
-        physical: scored.physical,
-        accepted: scored.accepted,
-    }
-}
-
-fn parameters(
-    dataset: &Dataset,
-    motion: &Kinematics,
-    extended: &Fitted,
-    difference: Option<&Difference>,
-) -> std::collections::BTreeMap<String, Parameter> {
-    let bristle = extended.uses_presliding(true).map(|deflection| bristle::motion(motion, deflection));
-    let bench = Bench::new(dataset, bristle.as_ref().unwrap_or(motion));
-    let half_widths = bench.half_widths(&extended.model);
-    let mut rest = extended.coefficients.iter().copied().zip(half_widths);
-    let mut named: Vec<Named> = Vec::new();
-    for term in &extended.model.terms {
-        let columns = term.effect.columns(motion, dataset, term.parameter).len();
-        let own: Vec<(f64, f64)> = rest.by_ref().take(columns).collect();
-        let naming = Naming { parameter: term.parameter, coefficients: &own, dataset };
-        for mut parameter in term.effect.parameters(&naming) {
-            let times = named.iter().filter(|known| known.name.starts_with(&parameter.name)).count();
-            if times > 0 {
-                parameter.name = format!("{}_{}", parameter.name, times + 1);
-            }
-            named.push(parameter);
-        }
-    }
-    let length = dataset.kind.position_unit();
-    let plain =
-        |name: &str, value: f64, unit: &str| Named { name: name.into(), value, half_width: None, unit: unit.into() };
-    if extended.model.delay_s != 0.0 {
-        named.push(plain("delay", extended.model.delay_s, "s"));
-    }
-    if extended.model.saturates() {
-        let unit = format!("1/{}", dataset.effort.unit());
-        named.push(plain("torque_saturation", extended.model.saturation.per_effort, &unit));
-    }
-    named.extend(extended.uses_presliding(true).map(|deflection| plain("presliding_deflection", deflection, length)));
-    if let Some(reversal) = extended.reversal.filter(|r| r.backlash) {
-        named.push(plain("backlash_gap", reversal.gap.width, length));
-        named.push(plain("backlash_load_share", reversal.gap.share, "of the moved mass"));
-    }
-    named.extend(difference.and_then(|d| d.gap).map(|gap| plain("backlash_gap", gap, length)));
-    let stiffness_unit = format!("{}/{length}", dataset.effort.unit());
-    named.extend(difference.and_then(|d| d.stiffness).map(|k| plain("compliance_stiffness", k, &stiffness_unit)));
-    named
-        .into_iter()
-        .map(|n| {
-            let half = n.half_width.unwrap_or(0.0);
-            (n.name, Parameter { value: n.value, unit: n.unit, low: n.value - half, high: n.value + half })
-        })
-        .collect()
 }
 
 fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> Curves {

@@ -176,17 +176,23 @@ impl Gain {
     #[must_use]
     pub fn of(before: &Fit, after: &Fit) -> Self {
         let gains: Vec<f64> = before.held_out.iter().zip(&after.held_out).map(|(b, a)| b - a).collect();
-        let (count, sum) = (gains.len() as f64, gains.iter().sum::<f64>());
-        let mean = sum / count;
-        let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-        let error = (variance / count).sqrt().max(f64::MIN_POSITIVE);
+        let sum = gains.iter().sum::<f64>();
         let base: f64 = before.held_out.iter().sum();
         Self {
             share: sum / base.max(f64::MIN_POSITIVE),
             percent: 100.0 * sum.signum() * (sum.abs() / before.total.max(f64::MIN_POSITIVE)).sqrt(),
-            t: mean / error,
+            t: t_of(&gains),
         }
     }
+}
+
+/// Mean over standard error.
+#[must_use]
+pub fn t_of(gains: &[f64]) -> f64 {
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count.max(1.0);
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    mean / (variance / count.max(1.0)).sqrt().max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

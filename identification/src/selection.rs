@@ -59,7 +59,10 @@ pub struct Selection {
 /// The declared terms of the inverse model.
 #[must_use]
 pub fn declared_model(dataset: &Dataset) -> Model {
-    let known = dataset.declared.iter().filter_map(|name| crate::effects::find(name));
+    // Coulomb asymmetry and offset are the same force: one column stands for both.
+    let column = |name: &String| if name == "coulomb_asymmetry" { "offset".to_owned() } else { name.clone() };
+    let names: std::collections::BTreeSet<String> = dataset.declared.iter().map(column).collect();
+    let known = LIBRARY.into_iter().filter(|effect| names.contains(effect.name()));
     let start = |effect: &'static dyn Effect| match effect.name() {
         "stribeck" => 5.0 * dataset.kind.moving_velocity(),
         "friction_drift" => 0.3 * dataset.train.period_s * dataset.train.len() as f64,
@@ -132,7 +135,8 @@ fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model
 
 fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> bool {
     let present = model.terms.iter().any(|term| term.effect.name() == effect.name());
-    !dataset.declared.iter().any(|name| name == effect.name()) && (!present || effect.repeats())
+    let declared = dataset.declared.iter().any(|name| name == effect.name());
+    !declared && (!present || effect.repeats())
 }
 
 fn is_accepted(scored: &Scored) -> bool {
@@ -217,6 +221,17 @@ pub fn refine(pair: Pair<'_>, model: &mut Model) {
             *model = actuator::with_saturation(bench, model, Some(model.saturation.per_effort));
         }
     }
+}
+
+/// The model with the load's own inertia, where that lowers the held-out error: for an axis whose load moves otherwise than its motor.
+#[must_use]
+pub fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
+    let extended = with(model, &crate::effects::load_inertia::LoadInertia, 0.0);
+    if bench.motion.load_acceleration.is_none() {
+        return model.clone();
+    }
+    let gain = Gain::of(&bench.fit(model), &bench.fit(&extended));
+    if gain.share >= SHARE && gain.t >= T[0].1 { extended } else { model.clone() }
 }
 
 /// What stood at the start of a selection, and is not removed.

@@ -38,7 +38,7 @@ struct Summary<'a> {
 struct AxisSummary<'a> {
     name: &'a str,
     #[serde(flatten)]
-    report: &'a identification::outcome::Report,
+    report: &'a identification::report::Report,
 }
 
 /// Runs the main job.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use identification::outcome::{Errors, Identification, Report};
+use identification::report::{Errors, Identification, Report};
 
 use crate::error::Outcome;
 use crate::plots::{self, Curve};

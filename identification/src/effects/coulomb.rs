@@ -19,6 +19,10 @@ impl Effect for Coulomb {
         vec![motion.direction.clone()]
     }
 
+    fn is_level(&self) -> bool {
+        true
+    }
+
     fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
         Action::level(own[0])
     }

@@ -38,6 +38,10 @@ impl Effect for PositionDependentFriction {
         if terms > 1.5 { 2 } else { 1 }
     }
 
+    fn is_level(&self) -> bool {
+        true
+    }
+
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
         Action::level(polynomial(own, at.scaled))
     }

@@ -27,6 +27,10 @@ impl Effect for Stribeck {
         true
     }
 
+    fn is_level(&self) -> bool {
+        true
+    }
+
     fn action(&self, at: &Instant, vs: f64, own: &[f64]) -> Action {
         Action::level(own[0] * (-(at.velocity / vs).powi(2)).exp())
     }

@@ -183,17 +183,21 @@ mod tests {
     }
 
     #[test]
-    fn a_bristle_gives_way_and_comes_back() {
+    fn a_bristle_gives_way_and_springs_back() {
         let shape = Shape { deflection: 10.0e-6, damping: 500.0, ..Shape::default() };
         let mut axis = Axis::at(0.0, 0.0);
-        let mut run = |force: f64| {
-            for _ in 0..4000 {
-                axis.advance(Acting { motor: force, load: 0.0, level: 100.0 }, 10.0, &shape, H);
+        let mut ramp = |from: f64, to: f64| {
+            for step in 0..=8000 {
+                let motor = from + (to - from) * f64::from(step) / 8000.0;
+                axis.advance(Acting { motor, load: 0.0, level: 100.0 }, 10.0, &shape, H);
             }
             axis.motor.x
         };
         // Dahl: F = G (1 − exp(−x/δ)), half the level at δ ln 2.
-        assert!((run(50.0) - 10.0e-6 * 2.0_f64.ln()).abs() < 0.1e-6);
-        assert!(run(0.0) > 0.0);
+        let there = ramp(0.0, 50.0);
+        assert!((there - 10.0e-6 * 2.0_f64.ln()).abs() < 0.1e-6, "{there}");
+        // Back along dF/dx = (G + F)/δ: x falls by δ ln 1.5.
+        let back = ramp(50.0, 0.0);
+        assert!((there - back - 10.0e-6 * 1.5_f64.ln()).abs() < 0.1e-6, "{back}");
     }
 }

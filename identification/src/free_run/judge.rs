@@ -5,11 +5,11 @@
 //! others; a shape is accepted where it leaves clearly less than rigid friction *and* than its rival.
 
 use super::axis::Shape;
-use super::fit::fit;
+use super::fit::{fit, half_widths};
 use super::model::Simulated;
 use super::{Drive, position_rms, simulate};
 use crate::bench::Model;
-use crate::effects::geometric;
+use crate::effects::{Named, geometric};
 use crate::record::{Dataset, Record};
 
 /// Length of the blocks that are fitted and judged in turn, s.
@@ -29,8 +29,10 @@ const FEWEST_COUNTS: f64 = 2.0;
 /// Bristle deflections and gaps that are tried, in moving-velocity units times a second.
 const DEFLECTIONS: (f64, f64, u32) = (1.0e-3, 6.0e-2, 7);
 const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
+/// Coefficients of restitution that are tried.
+const RESTITUTIONS: [f64; 2] = [0.1, 0.7];
 /// So many of the best gaps are fitted.
-const STARTS: usize = 2;
+const STARTS: usize = 3;
 
 /// What a shape leaves.
 #[derive(Clone)]
@@ -41,6 +43,8 @@ pub struct Judged {
     pub held_out: f64,
     /// Rms on the whole training record.
     pub all: f64,
+    /// Mean square on each block that was not fitted.
+    blocks: Vec<f64>,
 }
 
 /// What the free run says about reversals.
@@ -88,7 +92,9 @@ impl Judge<'_> {
         let run = simulate(&model, &self.drive, self.record);
         let held_out = position_rms(&run, self.record, &|row| !self.is_fitted(row));
         let all = position_rms(&run, self.record, &|_| true);
-        Judged { model, held_out, all }
+        let judged = (1..self.record.len() / self.block_rows).step_by(2);
+        let on_block = |block: usize| position_rms(&run, self.record, &|row| row / self.block_rows == block).powi(2);
+        Judged { model, held_out, all, blocks: judged.map(on_block).collect() }
     }
 
     /// The best fit from the best of several starts.
@@ -134,8 +140,11 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
 }
 
 fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
-    let shape = |gap| Shape { gap, load_share: 0.45, motor_friction: 0.2, restitution: 0.5, ..Shape::default() };
-    geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2).into_iter().filter_map(|gap| start(shape(gap))).collect()
+    let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
+    let shapes = widths.into_iter().flat_map(|gap| {
+        RESTITUTIONS.map(|restitution| Shape { gap, load_share: 0.45, motor_friction: 0.2, restitution, ..Shape::default() })
+    });
+    shapes.filter_map(start).collect()
 }
 
 impl Judge<'_> {
@@ -187,6 +196,20 @@ impl Judged {
 }
 
 impl Reversals {
+    /// Mean over standard error of the gain per block that a shape brings over rigid friction.
+    #[must_use]
+    pub fn t(&self, judged: &Judged) -> f64 {
+        let gains: Vec<f64> = self.rigid.blocks.iter().zip(&judged.blocks).map(|(before, after)| before - after).collect();
+        crate::regression::t_of(&gains)
+    }
+
+    /// Parameters of the simulation that was accepted, fitted to the positions, with intervals.
+    #[must_use]
+    pub fn named(&self, dataset: &Dataset) -> Vec<Named> {
+        let model = &self.best().model;
+        model.named(dataset, &half_widths(model, &self.drive, &dataset.train))
+    }
+
     /// The simulation that was accepted.
     #[must_use]
     pub fn best(&self) -> &Judged {

@@ -9,6 +9,7 @@
 
 pub mod axis;
 pub mod controller;
+pub(crate) mod errors;
 pub mod fit;
 pub mod judge;
 pub mod model;

@@ -2,7 +2,7 @@
 
 use super::axis::{Acting, Shape};
 use crate::bench::{Model, Term};
-use crate::effects::{Action, Instant};
+use crate::effects::{Action, Instant, Named, Naming};
 use crate::record::{Dataset, EffortHold};
 
 /// A term with its coefficients.
@@ -29,10 +29,8 @@ pub struct Simulated {
 }
 
 /// One entry of the parameter vector.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// What it is, for people.
-    pub name: String,
     /// Its size, for scaling.
     pub scale: f64,
     /// Step of the numerical derivative, in units of the scale.
@@ -66,7 +64,7 @@ impl Simulated {
             }
             if term.effect.name() == "inertia" {
                 mass = own[0];
-            } else {
+            } else if term.effect.name() != "load_inertia" {
                 terms.push(Active { term: *term, own });
             }
         }
@@ -102,35 +100,23 @@ impl Simulated {
     pub fn entries(&self) -> Vec<Entry> {
         let coulomb = self.terms.iter().find(|active| active.term.effect.name() == "coulomb");
         let force = coulomb.map_or(self.mass, |active| active.own[0].abs()).max(f64::MIN_POSITIVE);
-        let plain = |name: &str, scale: f64| Entry { name: name.into(), scale, step: STEP, positive: false };
-        let mut entries = vec![Entry { positive: true, ..plain("inertia", self.mass) }];
+        let free = |scale: f64| Entry { scale, step: STEP, positive: false };
+        let positive = |scale: f64| Entry { positive: true, ..free(scale) };
+        let jagged = |scale: f64| Entry { step: JAGGED_STEP, ..positive(scale) };
+        let mut entries = vec![positive(self.mass)];
         for Active { term, own } in &self.terms {
-            let name = term.effect.name();
-            for (place, value) in own.iter().enumerate() {
-                let entry = plain(&format!("{name} {}", place + 1), value.abs().max(0.05 * force));
-                entries.push(Entry { positive: name == "coulomb", ..entry });
-            }
-            if term.effect.is_tuned() {
-                entries.push(Entry { positive: true, ..plain(&format!("{name} parameter"), term.parameter.abs()) });
-            }
+            let is_coulomb = term.effect.name() == "coulomb";
+            let scales = own.iter().map(|value| value.abs().max(0.05 * force));
+            entries.extend(scales.map(|scale| if is_coulomb { positive(scale) } else { free(scale) }));
+            entries.extend(term.effect.is_tuned().then(|| positive(term.parameter.abs())));
         }
-        if self.saturation != 0.0 {
-            entries.push(Entry { positive: true, ..plain("torque_saturation", self.saturation) });
-        }
-        if self.delay_s != 0.0 {
-            entries.push(Entry { positive: true, ..plain("delay", self.delay_s) });
-        }
+        entries.extend((self.saturation != 0.0).then(|| positive(self.saturation)));
+        entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
         if self.shape.deflection > 0.0 {
-            entries.push(Entry { positive: true, ..plain("presliding deflection", self.shape.deflection) });
-            let damping = Entry { positive: true, ..plain("presliding damping", self.shape.damping.max(2.0 * self.mass)) };
-            entries.push(damping);
+            entries.extend([positive(self.shape.deflection), positive(self.shape.damping.max(2.0 * self.mass))]);
         }
         if self.shape.gap > 0.0 {
-            let jagged = |name: &str, scale: f64| Entry { step: JAGGED_STEP, positive: true, ..plain(name, scale) };
-            entries.push(jagged("backlash gap", self.shape.gap));
-            entries.push(jagged("backlash load share", 1.0));
-            entries.push(jagged("backlash motor friction", 1.0));
-            entries.push(jagged("backlash restitution", 1.0));
+            entries.extend([self.shape.gap, 1.0, 1.0, 1.0].map(jagged));
         }
         entries
     }
@@ -154,6 +140,47 @@ impl Simulated {
         copy.shape.motor_friction = copy.shape.motor_friction.clamp(0.0, 0.95);
         copy.shape.restitution = copy.shape.restitution.clamp(0.0, 0.98);
         copy
+    }
+
+    /// The parameters for people; `half_widths` in the order of the entries.
+    #[must_use]
+    pub fn named(&self, dataset: &Dataset, half_widths: &[f64]) -> Vec<Named> {
+        let mut rest = half_widths.iter().copied();
+        let mut next = || rest.next().unwrap_or(0.0);
+        let unit = |rest: &str| format!("{}{rest}", dataset.effort.unit());
+        let length = dataset.kind.position_unit();
+        let plain = |name: &str, value: f64, half: f64, unit: String| Named {
+            name: name.into(),
+            value,
+            half_width: Some(half),
+            unit,
+        };
+        let mut named = vec![plain("inertia", self.mass, next(), unit(&format!(" s^2/{length}")))];
+        for Active { term, own } in &self.terms {
+            let coefficients: Vec<(f64, f64)> = own.iter().map(|value| (*value, next())).collect();
+            let parameter_half_width = term.effect.is_tuned().then(&mut next);
+            let naming =
+                Naming { parameter: term.parameter, parameter_half_width, coefficients: &coefficients, dataset };
+            named.extend(term.effect.parameters(&naming));
+        }
+        if self.saturation != 0.0 {
+            named.push(plain("torque_saturation", self.saturation, next(), format!("1/{}", dataset.effort.unit())));
+        }
+        if self.delay_s != 0.0 {
+            named.push(plain("delay_beyond_hold", self.delay_s, next(), "s".into()));
+        }
+        let shape = &self.shape;
+        if shape.deflection > 0.0 {
+            named.push(plain("presliding_deflection", shape.deflection, next(), length.into()));
+            named.push(plain("presliding_damping", shape.damping, next(), unit(&format!(" s/{length}"))));
+        }
+        if shape.gap > 0.0 {
+            named.push(plain("backlash_gap", shape.gap, next(), length.into()));
+            named.push(plain("backlash_load_share", shape.load_share, next(), "of the moved mass".into()));
+            named.push(plain("backlash_motor_friction", shape.motor_friction, next(), "of the friction".into()));
+            named.push(plain("backlash_restitution", shape.restitution, next(), "of the velocity".into()));
+        }
+        named
     }
 
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {

@@ -1,0 +1,70 @@
+//! Free-run errors before and after, for the report.
+
+use super::axis::Shape;
+use super::fit::fit;
+use super::judge::Reversals;
+use super::model::Simulated;
+use super::{Drive, SETTLING_ROWS, position_rms, simulate};
+use crate::outcome::Findings;
+use crate::ranking;
+use crate::record::Record;
+use crate::report::{FreeRun, FreeRunErrors, ReversalShapes};
+
+const MICRO: f64 = 1.0e6;
+
+/// Free runs of the declared and of the extended model, both fitted to the positions of the training record.
+pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<FreeRun> {
+    let dataset = findings.dataset;
+    let record = &dataset.train;
+    let drive = reversals.drive;
+    let extended = &reversals.best().model;
+    let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
+    let shape = Shape {
+        deflection: if declares("presliding") { extended.shape.deflection } else { 0.0 },
+        gap: if declares("backlash") { extended.shape.gap } else { 0.0 },
+        ..extended.shape
+    };
+    let declared = &findings.declared;
+    let start = Simulated::new(dataset, record.period_s, &declared.model, &declared.coefficients, shape)?;
+    let before = fit(&start, &drive, record, &|_| true);
+    let errors = |record: &Record| {
+        let [before, after] = [&before, extended].map(|model| {
+            MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true)
+        });
+        let tracking = tracking_rms(record).map(|rms| MICRO * rms);
+        FreeRunErrors {
+            position_error_um_before: before,
+            position_error_um_after: after,
+            tracking_error_percent_before: tracking.map(|rms| 100.0 * before / rms),
+            tracking_error_percent_after: tracking.map(|rms| 100.0 * after / rms),
+        }
+    };
+    let um = |judged: &super::judge::Judged| MICRO * judged.held_out;
+    Some(FreeRun {
+        controller: match drive {
+            Drive::Known(_) => "known",
+            Drive::Followed => "followed",
+        },
+        controller_misfit_percent: match drive {
+            Drive::Known(law) => Some(100.0 * law.misfit),
+            Drive::Followed => None,
+        },
+        train: errors(record),
+        validate: errors(&dataset.validate),
+        reversals: ReversalShapes {
+            rigid_um: um(&reversals.rigid),
+            bristle_um: um(&reversals.bristle),
+            gap_um: reversals.gap.as_ref().map(um),
+            both_um: reversals.both.as_ref().map(um),
+        },
+        parameters: ranking::table(reversals.named(dataset)),
+    })
+}
+
+/// Rms of setpoint − position.
+fn tracking_rms(record: &Record) -> Option<f64> {
+    let reference = record.reference.as_ref()?;
+    let rows = record.len().saturating_sub(SETTLING_ROWS).max(1) as f64;
+    let pairs = reference.iter().zip(&record.position).skip(SETTLING_ROWS);
+    Some((pairs.map(|(r, q)| (r - q).powi(2)).sum::<f64>() / rows).sqrt()).filter(|rms| *rms > 0.0)
+}
