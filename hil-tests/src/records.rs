@@ -87,12 +87,22 @@ impl Hidden {
 pub struct Plan {
     /// What the declared model lacks.
     pub hidden: Vec<Hidden>,
-    /// Whether there is a load scale.
+    /// Whether the load position is recorded.
     pub load_scale: bool,
+    /// Whether the position loop is closed on the load: a gap is inside the loop.
+    pub load_loop: bool,
+    /// Factor on the Coulomb friction of the seed's axis.
+    pub friction_factor: f64,
     /// Noise of the recorded effort, N.
     pub noise_n: f64,
     /// Chooses the axis, the motion and the noise.
     pub seed: u64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { hidden: Vec::new(), load_scale: false, load_loop: false, friction_factor: 1.0, noise_n: 3.0, seed: 1 }
+    }
 }
 
 struct Source(ChaCha8Rng);
@@ -129,14 +139,15 @@ fn dataset(plan: &Plan, mass: f64) -> String {
     format!(
         "name = \"seed {}\"\nsample_period_s = {PERIOD_S}\neffort_hold = \"zero-order\"\n[axis]\nkind = \"linear\"\nlead_m_per_rev = {LEAD_M}\nencoder_resolution_m = {resolution:e}\n{load}\
          [controller]\nposition_gain_per_s = {POSITION_GAIN_PER_S}\nvelocity_gain_n_s_per_m = {gain}\nintegral_per_s = {INTEGRAL_PER_S}\nvelocity_filter = {VELOCITY_FILTER}\n\
-         acceleration_feedforward_kg = {mass}\nposition_sensor = \"motor\"\n[declared]\neffects = [\"inertia\", \"viscous\", \"coulomb\", \"offset\"]\n",
-        plan.seed
+         acceleration_feedforward_kg = {mass}\nposition_sensor = \"{}\"\n[declared]\neffects = [\"inertia\", \"viscous\", \"coulomb\", \"offset\"]\n",
+        plan.seed,
+        if plan.load_loop { "load" } else { "motor" }
     )
 }
 
 /// An axis of a plan: masses, friction and effects.
 fn axis(plan: &Plan, source: &mut Source) -> AxisParameters {
-    let coulomb_n = source.between(180.0, 320.0);
+    let coulomb_n = plan.friction_factor * source.between(180.0, 320.0);
     let sliding = Sliding {
         coulomb_n,
         static_n: coulomb_n,
@@ -302,11 +313,12 @@ fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], mass: f64, sou
     let resolution = LEAD_M / f64::from(COUNTS_PER_REV);
     let load = if plan.load_scale { ",load_position_m" } else { "" };
     let mut text = format!("time_s,reference_m,position_m{load},force_n\n");
-    let mut loop_state = Loop { mass, before: None, velocity: 0.0, integral: 0.0 };
+    let mut control = Loop::new(mass);
     for row in 0..path.len() {
         let Reading { motor_increments, load_10_nm } = axis.read();
         let position = motor_increments as f64 * resolution;
-        let force = loop_state.step(path, row, position);
+        let measured = if plan.load_loop { 1.0e-8 * load_10_nm as f64 } else { position };
+        let force = control.step(path, row, measured);
         let recorded = force + plan.noise_n * source.normal();
         let load = if plan.load_scale { format!(",{:.8}", 1.0e-8 * load_10_nm as f64) } else { String::new() };
         let time_s = PERIOD_S * row as f64;
@@ -315,6 +327,43 @@ fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], mass: f64, sou
         axis.advance(force + foreign_n(&plan.hidden, motion.table_m, motion.table_m_per_s, time_s), PERIOD_S);
     }
     text
+}
+
+/// Radius and feed of the circle on which bursts are compared.
+const CIRCLE_M: f64 = 0.100;
+const FEED_M_PER_S: f64 = 2.0 / 60.0;
+/// Bursts are looked for within this angle about a reversal, rad.
+const BURST_WINDOW: f64 = 0.26;
+
+/// The burst that the axis of a plan makes on a circle, m: the largest deviation of the table from its setpoint about the reversals of the second turn,
+/// less the deviation in between.
+#[must_use]
+pub fn burst_m(plan: &Plan) -> f64 {
+    let mut source = Source(ChaCha8Rng::seed_from_u64(plan.seed));
+    let parameters = AxisParameters { force_noise_n: 0.0, ..axis(plan, &mut source) };
+    let mass = parameters.mechanics.motor_inertia_kg + parameters.mechanics.table_mass_kg;
+    let omega = FEED_M_PER_S / CIRCLE_M;
+    let rows = (2.0 * TAU / omega / PERIOD_S) as usize;
+    let angle = |row: usize| omega * PERIOD_S * row as f64;
+    let path: Vec<f64> = (0..rows).map(|row| CIRCLE_M * angle(row).sin()).collect();
+    let mut axis = Axis::new(parameters, 1);
+    let mut control = Loop::new(mass);
+    let (mut largest, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
+    for row in 0..rows {
+        let Reading { motor_increments, load_10_nm } = axis.read();
+        let motor = motor_increments as f64 * LEAD_M / f64::from(COUNTS_PER_REV);
+        let measured = if plan.load_loop { 1.0e-8 * load_10_nm as f64 } else { motor };
+        let deviation = (axis.motion().table_m - path[row]).abs();
+        if angle(row) > TAU {
+            if angle(row).cos().abs() < BURST_WINDOW.sin() {
+                largest = largest.max(deviation);
+            } else {
+                (sum, count) = (sum + deviation, count + 1.0);
+            }
+        }
+        axis.advance(control.step(&path, row, measured), PERIOD_S);
+    }
+    largest - sum / f64::max(count, 1.0)
 }
 
 /// Position P, velocity PI with feedforward of velocity and acceleration.
@@ -326,6 +375,10 @@ struct Loop {
 }
 
 impl Loop {
+    const fn new(mass: f64) -> Self {
+        Self { mass, before: None, velocity: 0.0, integral: 0.0 }
+    }
+
     fn step(&mut self, path: &[f64], row: usize, position: f64) -> f64 {
         let at = |row: usize| path[row.min(path.len() - 1)];
         let slope = |row: usize| (at(row) - at(row.saturating_sub(1))) / PERIOD_S;
