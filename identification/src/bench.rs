@@ -122,15 +122,18 @@ impl<'a> Bench<'a> {
         Self { dataset, motion, kept: RefCell::default() }
     }
 
+    fn low_passed(&self, term: &Term) -> Vec<Vec<f64>> {
+        let raw = term.effect.columns(self.motion, self.dataset, term.parameter);
+        raw.iter().map(|column| self.motion.filter.apply(column)).collect()
+    }
+
     /// Low-passed columns of a term.
-    #[must_use]
-    pub fn columns(&self, term: &Term) -> Columns {
+    fn columns(&self, term: &Term) -> Columns {
         let key = (term.effect.name(), term.parameter.to_bits());
         if let Some(known) = self.kept.borrow().get(&key) {
             return Rc::clone(known);
         }
-        let raw = term.effect.columns(self.motion, self.dataset, term.parameter);
-        let columns: Columns = Rc::new(raw.iter().map(|column| self.motion.filter.apply(column)).collect());
+        let columns: Columns = Rc::new(self.low_passed(term));
         let mut kept = self.kept.borrow_mut();
         let values: usize = kept.values().map(|columns| columns.len() * self.motion.len()).sum();
         if values > KEPT_VALUES {
@@ -156,8 +159,18 @@ impl<'a> Bench<'a> {
     /// A design with one more term.
     #[must_use]
     pub fn extended(&self, design: &Design, term: &Term) -> Design {
+        self.with_columns(design, &self.columns(term))
+    }
+
+    /// The same for a term that will not be asked for again: nothing is kept.
+    #[must_use]
+    pub fn extended_once(&self, design: &Design, term: &Term) -> Design {
+        self.with_columns(design, &self.low_passed(term))
+    }
+
+    fn with_columns(&self, design: &Design, columns: &[Vec<f64>]) -> Design {
         let mut design = design.clone();
-        for column in self.columns(term).iter() {
+        for column in columns {
             let mut column = shifted(column, design.shift_rows);
             if let Some(slope) = &design.slope {
                 column.iter_mut().zip(slope).for_each(|(value, slope)| *value *= slope);

@@ -2,6 +2,8 @@
 
 use butterworth::{Cutoff, Filter};
 
+use crate::record::Record;
+
 /// Rows trimmed at each end of a filtered record.
 pub const TRIM: usize = 200;
 
@@ -10,6 +12,16 @@ pub const TRIM: usize = 200;
 pub fn cutoff_hz(period_s: f64) -> f64 {
     let rate = 1.0 / period_s;
     if rate < 999.0 { 0.1 * rate } else { 100.0 }
+}
+
+/// Cut-off where the clock jittered: the acceleration of jittered positions is noise above it, and inertia would come out small.
+const JITTERED_CUTOFF_HZ: f64 = 20.0;
+
+/// Cut-off with which a record is fitted.
+#[must_use]
+pub fn fit_cutoff_hz(record: &Record) -> f64 {
+    let defined = cutoff_hz(record.period_s);
+    if record.jittered { defined.min(JITTERED_CUTOFF_HZ) } else { defined }
 }
 
 /// Zero-phase low-pass.

@@ -6,7 +6,7 @@
 //!
 //! Nonlinear columns are made from the low-passed velocity and position and then low-passed themselves, linear ones from the raw derivatives.
 
-use crate::filter::{LowPass, TRIM, cutoff_hz};
+use crate::filter::{LowPass, TRIM, fit_cutoff_hz};
 use crate::record::{Dataset, EffortHold, Record};
 
 /// Slow samples spoil their neighbours within this time.
@@ -52,10 +52,10 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Kinematics of a record; `None` where the sample rate leaves no room for the low-pass.
+    /// Kinematics of a record with the cut-off of its fit; `None` where the sample rate leaves no room for the low-pass.
     #[must_use]
     pub fn new(dataset: &Dataset, record: &Record) -> Option<Self> {
-        Self::with_cutoff(dataset, record, cutoff_hz(record.period_s))
+        Self::with_cutoff(dataset, record, fit_cutoff_hz(record))
     }
 
     /// The same with another cut-off.

@@ -32,6 +32,7 @@ pub mod residual;
 pub mod reversal;
 pub mod search;
 pub mod selection;
+pub mod slow_ripple;
 
 pub use error::IdentificationError;
 pub use outcome::identify;

@@ -14,6 +14,7 @@ use crate::report::{Curves, Errors, Identification, Report, ResidualReport};
 use crate::residual::{self, Structure, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE};
 use crate::reversal::{self, Presliding, bristle};
 use crate::selection::{self, Selection};
+use crate::slow_ripple::slow_ripple;
 
 /// A model with its coefficients.
 pub(crate) struct Fitted {
@@ -203,7 +204,8 @@ fn assemble(findings: &Findings<'_>) -> Identification {
     let Findings { dataset, motion, validation, declared, extended, selected, difference, .. } = findings;
     let train = [declared.judge(dataset, motion), extended.judge(dataset, motion)];
     let validate = [declared.judge(dataset, validation), extended.judge(dataset, validation)];
-    let found = found(findings);
+    let slow_ripple = slow_ripple(dataset, motion);
+    let found = found(findings, slow_ripple.is_some());
     let residual = structure(motion, &train, selected);
     let percent_left = train[1].force_percent * residual.share_after.sqrt();
     // Impacts in a gap leave structure in the force that no column of an inverse model can have.
@@ -220,7 +222,10 @@ fn assemble(findings: &Findings<'_>) -> Identification {
         whole: whole(dataset, declared, extended),
         residual: ResidualReport { looks_like: looks_like(&residual, findings), ..residual },
         free_run: findings.reversals.as_ref().and_then(|reversals| free_run_errors::report(findings, reversals)),
-        parameters: ranking::parameters(findings),
+        parameters: ranking::parameters(findings, slow_ripple.as_ref()),
+        cutoff_hz: crate::filter::fit_cutoff_hz(&dataset.train),
+        as_defined: as_defined(findings),
+        slow_ripple,
         verdict: if unexplained { "unexplained" } else { "explained" }.into(),
         warnings: excitation::warnings(dataset, motion, &found),
         found,
@@ -234,13 +239,19 @@ fn assemble(findings: &Findings<'_>) -> Identification {
     }
 }
 
-fn found(findings: &Findings<'_>) -> Vec<String> {
+fn found(findings: &Findings<'_>, slow_ripple: bool) -> Vec<String> {
     let accepted = [(findings.accepted.presliding, "presliding"), (findings.accepted.backlash, "backlash")];
     let at_reversals = accepted.into_iter().filter(|(accepted, _)| *accepted).map(|(_, name)| name);
     let in_difference = findings.difference.iter().flat_map(|d| d.found.iter().copied());
-    let all = findings.selected.found.iter().copied().chain(at_reversals).chain(in_difference);
-    let declared = |name: &str| findings.dataset.declared.iter().any(|declared| declared == name);
-    all.filter(|name| !declared(name)).map(String::from).collect()
+    let ripple = slow_ripple.then_some("torque_ripple");
+    let all = findings.selected.found.iter().copied().chain(at_reversals).chain(in_difference).chain(ripple);
+    let mut list: Vec<String> = Vec::new();
+    for name in all.filter(|name| !findings.dataset.declared.iter().any(|declared| declared == name)) {
+        if !list.iter().any(|known| known == name) {
+            list.push(name.into());
+        }
+    }
+    list
 }
 
 fn errors(judged: &[Judged; 2], difference_um: Option<(f64, f64)>) -> Errors {
@@ -252,6 +263,19 @@ fn errors(judged: &[Judged; 2], difference_um: Option<(f64, f64)>) -> Errors {
         position_difference_error_um_before: difference_um.map(|(before, _)| before),
         position_difference_error_um_after: difference_um.map(|(_, after)| after),
     }
+}
+
+/// Errors with the defined low-pass, where the fit used another: training and validation record.
+fn as_defined(findings: &Findings<'_>) -> Option<[Errors; 2]> {
+    let Findings { dataset, declared, extended, .. } = findings;
+    if !dataset.train.jittered {
+        return None;
+    }
+    let on = |record: &crate::record::Record| {
+        let motion = Kinematics::with_cutoff(dataset, record, crate::filter::cutoff_hz(record.period_s))?;
+        Some(errors(&[declared.judge(dataset, &motion), extended.judge(dataset, &motion)], None))
+    };
+    Some([on(&dataset.train)?, on(&dataset.validate)?])
 }
 
 /// Both structures fitted to the whole file: the protocol of the published figures.

@@ -7,7 +7,7 @@ use crate::bench::{Bench, Term};
 use crate::effects::{Named, Naming};
 use crate::free_run::judge::Judged;
 use crate::outcome::Findings;
-use crate::report::{Candidate, Parameter};
+use crate::report::{Candidate, Parameter, SlowRipple};
 use crate::reversal::{self, bristle};
 use crate::selection::{self, Scored};
 
@@ -122,7 +122,7 @@ fn on_difference(findings: &Findings<'_>) -> Vec<Candidate> {
 }
 
 /// Parameters of the extended model, with intervals.
-pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Parameter> {
+pub(crate) fn parameters(findings: &Findings<'_>, ripple: Option<&SlowRipple>) -> BTreeMap<String, Parameter> {
     let mut named = of_the_inverse_model(findings);
     let length = findings.dataset.kind.position_unit();
     let plain =
@@ -136,6 +136,12 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Parameter>
         named.extend(difference.pitch().into_iter().flat_map(|(amplitude, k)| {
             [plain("pitch_error_amplitude", amplitude, length), plain("pitch_error_period", 1.0 / k, length)]
         }));
+    }
+    for order in ripple.iter().flat_map(|ripple| &ripple.orders) {
+        let unit = findings.dataset.effort.unit().to_owned();
+        let half_width = Some(order.half_width);
+        let name = format!("torque_ripple_amplitude_order_{}", order.per_rev);
+        named.push(Named { name, value: order.amplitude, half_width, unit });
     }
     table(named)
 }

@@ -102,6 +102,8 @@ pub struct Record {
     pub time_s: Vec<f64>,
     /// The rows of the file that this record was made from: time stamp and effort as they stand there.
     pub rows: Vec<(f64, f64)>,
+    /// Whether the time stamps jittered, so that the samples were interpolated.
+    pub jittered: bool,
     /// Samples that stand in a hole of the file and were interpolated; they are not fitted.
     pub interpolated: Vec<bool>,
 }
@@ -132,6 +134,7 @@ impl Record {
             time_s: cut(&self.time_s),
             rows: self.rows_between(range.start, range.end),
             interpolated: self.interpolated[range.clone()].to_vec(),
+            jittered: self.jittered,
         }
     }
 
@@ -449,6 +452,7 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
         rows: time_s.iter().copied().zip(effort.iter().copied()).collect(),
         effort,
         interpolated: vec![false; time_s.len()],
+        jittered: false,
         time_s,
     };
     check_effort(&table.path, which, &raw)?;
@@ -576,6 +580,7 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
         reference: raw.reference.as_deref().map(on_base),
         effort: on_base(&raw.effort),
         time_s: at.iter().map(|t| t - start).collect(),
+        jittered: jitters(&raw.time_s, median),
         interpolated: in_holes(&raw.time_s, &at, HOLE_PERIODS * median),
         rows: raw.rows,
     }
@@ -583,6 +588,15 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
 
 /// Rows further apart than so many median steps leave a hole; less is jitter.
 const HOLE_PERIODS: f64 = 10.0;
+
+/// Share of rows whose distance from the last one is off by more than a tenth, from which a clock jitters; fewer are missing rows.
+const JITTERY_SHARE: f64 = 0.02;
+
+fn jitters(time_s: &[f64], period_s: f64) -> bool {
+    let off = |step: f64| ((step / period_s).round() - step / period_s).abs() > 0.1;
+    let count = time_s.windows(2).filter(|pair| off(pair[1] - pair[0])).count();
+    count as f64 > JITTERY_SHARE * time_s.len() as f64
+}
 
 /// Which times stand between two rows that are further apart than a hole.
 fn in_holes(time_s: &[f64], at: &[f64], hole_s: f64) -> Vec<bool> {

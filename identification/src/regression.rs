@@ -64,7 +64,8 @@ impl Blocks {
         grams.iter_mut().for_each(DMatrix::fill_upper_triangle_with_lower_triangle);
         grams.retain(|gram| gram[(size - 1, size - 1)] > 0.0);
         let total = sum(&grams, size);
-        let scale: Vec<f64> = (0..size).map(|i| total[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        // A column of zeros keeps a scale that can be divided by.
+        let scale: Vec<f64> = (0..size).map(|i| total[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
         let folds = FOLDS.min(grams.len()).max(1);
         Self { grams, scale, folds }
     }

@@ -71,6 +71,40 @@ pub struct ReversalShapes {
     pub both_um: Option<f64>,
 }
 
+/// Torque ripple of an axis that is never slow for long, found about its reversals.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SlowRipple {
+    /// Samples up to this velocity were used, in position units per second.
+    pub fastest: f64,
+    /// Low-pass of this judgement, Hz.
+    pub cutoff_hz: f64,
+    /// Orders, largest contribution first.
+    pub orders: Vec<RippleOrder>,
+    /// Force error over these samples, training record, declared model fitted to them; percent.
+    pub train_force_error_before_percent: f64,
+    /// The same with the ripple.
+    pub train_force_error_after_percent: f64,
+    /// Validation record, declared.
+    pub validate_force_error_before_percent: f64,
+    /// Validation record, with the ripple.
+    pub validate_force_error_after_percent: f64,
+}
+
+/// One order of ripple.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RippleOrder {
+    /// Periods per revolution.
+    pub per_rev: u32,
+    /// Amplitude, in the unit of the effort.
+    pub amplitude: f64,
+    /// Half width of its 95 % interval.
+    pub half_width: f64,
+    /// Share of the held-out error that it removed when it was added.
+    pub share: f64,
+    /// Mean over standard error of that gain.
+    pub evidence: f64,
+}
+
 /// Free-run simulation with output-error fits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FreeRun {
@@ -141,6 +175,14 @@ pub struct Report {
     /// Free-run simulation, where the model can be simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_run: Option<FreeRun>,
+    /// Ripple about reversals, where the axis is never slow for long.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slow_ripple: Option<SlowRipple>,
+    /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of the sample rate, but 20 Hz where the clock jittered.
+    pub cutoff_hz: f64,
+    /// Where that is not the defined one: errors with the defined low-pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub as_defined: Option<[Errors; 2]>,
     /// Parameters of the extended model.
     pub parameters: std::collections::BTreeMap<String, Parameter>,
     /// `explained` or `unexplained`.

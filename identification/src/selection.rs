@@ -140,12 +140,14 @@ fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> boo
 }
 
 fn is_accepted(scored: &Scored) -> bool {
-    let Gain { share, percent, t } = scored.gain;
     let smallest = if scored.nameless { NAMELESS_SHARE } else { SHARE };
-    scored.physical
-        && share >= smallest
-        && percent >= PERCENT
-        && T.iter().any(|(from, smallest)| share >= *from && t >= *smallest)
+    scored.physical && scored.gain.share >= smallest && is_enough(&scored.gain)
+}
+
+/// Whether a gain is relevant, large enough to matter to the axis, and more than chance.
+#[must_use]
+pub fn is_enough(gain: &Gain) -> bool {
+    gain.percent >= PERCENT && T.iter().any(|(from, smallest)| gain.share >= *from && gain.t >= *smallest)
 }
 
 fn with(model: &Model, effect: &'static dyn Effect, parameter: f64) -> Model {

@@ -148,6 +148,7 @@ mod tests {
             reference: Some(time_s.iter().map(|t| path(*t)).collect()),
             effort: vec![0.0; time_s.len()],
             rows: Vec::new(),
+            jittered: false,
             interpolated: vec![false; time_s.len()],
             time_s,
         };

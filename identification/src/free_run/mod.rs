@@ -93,14 +93,21 @@ pub fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
         let time_s = record.time_s[row];
         for step in 0..steps as usize {
             let since = (step as f64 + 0.5) * h;
-            let rows_late = ((model.delay_s - since) / period_s).ceil().max(0.0) as usize;
-            let commanded = efforts[rows_late.min(efforts.len() - 1)];
+            let commanded = held(&efforts, (since - 0.5 * h - model.delay_s) / period_s, h / period_s);
             let middle = axis.motor.x + 0.5 * h * axis.motor.v;
             let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
             axis.advance(acting, model.mass, &model.shape, h);
         }
     }
     run
+}
+
+/// Mean of held efforts (the present one first) from a time on, in rows.
+fn held(efforts: &[f64], from: f64, length: f64) -> f64 {
+    let late = |at: f64| efforts[((-at.floor()).max(0.0) as usize).min(efforts.len() - 1)];
+    let edge = from.floor() + 1.0;
+    let before = (edge - from).min(length) / length;
+    before * late(from) + (1.0 - before) * late(edge)
 }
 
 /// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position; also of the load, where both are there.
