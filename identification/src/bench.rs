@@ -41,6 +41,12 @@ impl Saturation {
         wanted / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS))
     }
 
+    /// Delivered effort for a commanded one.
+    #[must_use]
+    pub fn delivered(&self, commanded: f64) -> f64 {
+        commanded / (1.0 + self.per_effort * commanded.abs())
+    }
+
     fn slope(&self, wanted: f64) -> f64 {
         1.0 / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS)).powi(2)
     }
@@ -237,6 +243,23 @@ impl<'a> Bench<'a> {
         let linear = Model { saturation: Saturation::default(), ..model.clone() };
         let wanted = weighted(&self.design(&linear).columns, coefficients, self.motion.len());
         wanted.into_iter().map(|q| model.saturation.commanded(q)).collect()
+    }
+
+    /// What the motor gives to the load side, but for its own mass: the delivered effort without what acts on the motor itself (ripple); low-passed.
+    #[must_use]
+    pub fn transmitted(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
+        let commanded = shifted(&self.motion.effort_lp, -model.delay_s / self.motion.period_s);
+        let mut transmitted: Vec<f64> = commanded.into_iter().map(|u| model.saturation.delivered(u)).collect();
+        let mut rest = coefficients.iter();
+        for term in &model.terms {
+            for column in self.columns(term).iter() {
+                let coefficient = rest.next().copied().unwrap_or(0.0);
+                if term.effect.acts_on_motor() {
+                    transmitted.iter_mut().zip(column).for_each(|(sum, value)| *sum -= coefficient * value);
+                }
+            }
+        }
+        transmitted
     }
 
     /// Prediction that is not low-passed.

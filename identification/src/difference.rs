@@ -43,6 +43,15 @@ pub struct Difference {
     declared: Vec<f64>,
 }
 
+/// What a record gives to the difference, besides its kinematics.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<'a> {
+    /// Motor position at the rows.
+    pub position: &'a [f64],
+    /// What the motor gives to the load side, but for its own mass; low-passed.
+    pub transmitted: &'a [f64],
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Column {
     Constant,
@@ -61,10 +70,11 @@ impl Column {
         }
     }
 
-    fn columns(self, motion: &Kinematics, position: &[f64]) -> Vec<Vec<f64>> {
+    fn columns(self, motion: &Kinematics, path: Path<'_>) -> Vec<Vec<f64>> {
+        let position = path.position;
         match self {
             Self::Constant => vec![vec![1.0; motion.len()]],
-            Self::WindUp => vec![motion.effort_lp.clone(), motion.filter.apply(&motion.acceleration)],
+            Self::WindUp => vec![path.transmitted.to_vec(), motion.filter.apply(&motion.acceleration)],
             Self::Play(behind) => vec![behind.follow(position, motion.period_s).lag],
             Self::Pitch { k } => {
                 let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
@@ -76,19 +86,19 @@ impl Column {
 
 struct Bench<'a> {
     motion: &'a Kinematics,
-    position: &'a [f64],
+    path: Path<'a>,
     target: &'a [f64],
     mask: Vec<bool>,
 }
 
 impl<'a> Bench<'a> {
-    fn new(motion: &'a Kinematics, position: &'a [f64], target: &'a [f64]) -> Self {
+    fn new(motion: &'a Kinematics, path: Path<'a>, target: &'a [f64]) -> Self {
         let mask = motion.moving.iter().zip(&motion.slow).map(|(moving, slow)| *moving || *slow).collect();
-        Self { motion, position, target, mask }
+        Self { motion, path, target, mask }
     }
 
     fn design(&self, terms: &[Column]) -> Vec<Vec<f64>> {
-        terms.iter().flat_map(|term| term.columns(self.motion, self.position)).collect()
+        terms.iter().flat_map(|term| term.columns(self.motion, self.path)).collect()
     }
 
     fn blocks(&self, terms: &[Column]) -> Blocks {
@@ -115,9 +125,9 @@ impl<'a> Bench<'a> {
 
 /// Judges the difference of a training record; `None` where there is no load scale.
 #[must_use]
-pub fn difference(dataset: &Dataset, motion: &Kinematics) -> Option<Difference> {
+pub fn difference(dataset: &Dataset, motion: &Kinematics, path: Path<'_>) -> Option<Difference> {
     let target = motion.difference.as_deref()?;
-    let bench = Bench::new(motion, &dataset.train.position, target);
+    let bench = Bench::new(motion, path, target);
     let mut terms = vec![Column::Constant];
     if dataset.declared.iter().any(|name| name == "compliance") {
         terms.push(Column::WindUp);
@@ -190,9 +200,9 @@ impl Difference {
 
     /// Rms on another record: declared, extended; µm.
     #[must_use]
-    pub fn on(&self, motion: &Kinematics, position: &[f64]) -> Option<(f64, f64)> {
+    pub fn on(&self, motion: &Kinematics, path: Path<'_>) -> Option<(f64, f64)> {
         let target = motion.difference.as_deref()?;
-        let bench = Bench::new(motion, position, target);
+        let bench = Bench::new(motion, path, target);
         let declared: Vec<Column> =
             self.terms.iter().copied().filter(|term| !self.found.contains(&term.name())).collect();
         Some((bench.rms_um(&declared, &self.declared), bench.rms_um(&self.terms, &self.coefficients)))
@@ -244,7 +254,7 @@ fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
     };
     // A gap is as wide as it is: its lag is subtracted, not scaled.
     let sse = |behind: Behind| {
-        let lag = behind.follow(bench.position, bench.motion.period_s).lag;
+        let lag = behind.follow(bench.path.position, bench.motion.period_s).lag;
         let target: Vec<f64> = bench.target.iter().zip(lag).map(|(target, lag)| target - lag).collect();
         Bench { target: &target, mask: bench.mask.clone(), ..*bench }.blocks(terms).fit().sse
     };
@@ -272,7 +282,7 @@ fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column>
         .filter(|at| bench.mask[*at])
         .map(|at| {
             let predicted: f64 = design.iter().zip(&base.coefficients).map(|(column, c)| c * column[at]).sum();
-            (bench.position[at], bench.target[at] - predicted)
+            (bench.path.position[at], bench.target[at] - predicted)
         })
         .collect();
     let power = |k: f64| {
@@ -308,7 +318,7 @@ fn judge(
         Column::WindUp => {
             let motor_mass = -own[1] / own[0];
             let inertia = crate::selection::plain_fit(bench.motion).inertia;
-            let effort = bench.motion.effort_lp.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+            let effort = bench.path.transmitted.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
             let visible = own[0] * effort >= counts;
             (visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
         }

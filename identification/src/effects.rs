@@ -181,6 +181,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether it acts on the motor and its screw rather than on the load.
+    fn acts_on_motor(&self) -> bool {
+        false
+    }
+
     /// Whether it may be found more than once (ripple orders).
     fn repeats(&self) -> bool {
         false

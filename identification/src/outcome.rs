@@ -66,9 +66,11 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     progress("scoring candidate effects");
     let selected = selection::select(pair, start.clone(), progress);
     progress("looking at motor and load");
-    let difference = difference::difference(dataset, &motion);
-    progress("simulating reversals: stick, bristle, gap");
     let coefficients = bench.fit(&selected.model).coefficients;
+    let transmitted = bench.transmitted(&selected.model, &coefficients);
+    let path = difference::Path { position: &dataset.train.position, transmitted: &transmitted };
+    let difference = difference::difference(dataset, &motion, path);
+    progress("simulating reversals: stick, bristle, gap");
     let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
     let reversals = judge::reversals(dataset, &selected.model, &coefficients);
     let accepted = at_reversals(presliding.as_ref(), reversals.as_ref(), difference.as_ref());
@@ -212,7 +214,9 @@ fn assemble(findings: &Findings<'_>) -> Identification {
     let has_gap = found.iter().chain(&dataset.declared).any(|name| name == "backlash");
     let matters = residual.share_after >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
     let unexplained = matters || !selected.nameless.is_empty() || findings.accepted.unexplained;
-    let on_validation = |d: &Difference| d.on(validation, &dataset.validate.position);
+    let transmitted = Bench::new(dataset, validation).transmitted(&extended.model, &extended.coefficients);
+    let path = difference::Path { position: &dataset.validate.position, transmitted: &transmitted };
+    let on_validation = |d: &Difference| d.on(validation, path);
     let report = Report {
         dataset: dataset.name.clone(),
         declared: dataset.declared.clone(),

@@ -40,6 +40,10 @@ impl Effect for TorqueRipple {
         true
     }
 
+    fn acts_on_motor(&self) -> bool {
+        true
+    }
+
     fn action(&self, at: &Instant, k: f64, own: &[f64]) -> Action {
         let (sin, cos) = (TAU * k * at.position).sin_cos();
         Action::force(own[0] * cos + own[1] * sin)

@@ -85,8 +85,7 @@ impl Simulated {
         for Active { term, own } in &self.terms {
             let Action { level, force } = term.effect.action(&at, term.parameter, own);
             acting.level += level;
-            // Ripple comes from the motor and its screw, everything else from the load.
-            if term.effect.name() == "torque_ripple" {
+            if term.effect.acts_on_motor() {
                 acting.motor -= force;
             } else {
                 acting.load += force;
