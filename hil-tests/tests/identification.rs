@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use hil_tests::golden::{self, row};
 use hil_tests::records::Hidden::{
     Backlash, Compliance, CubicDrag, Delay, FrictionDrift, Hum, PitchError, PositionDependentFriction, Presliding,
     QuadraticDrag, Spring, Stribeck, TorqueRipple, TorqueSaturation, ViscousAsymmetry,
 };
-use hil_tests::golden::{self, row};
 use hil_tests::records::{self, Plan};
 use identification::report::Report;
 use identification::{Dataset, identify};

@@ -25,10 +25,7 @@ const AXES: [Hidden; 14] = [
     Hidden { effect: "stribeck", keys: &[("STATIC", "560.0")] },
     Hidden {
         effect: "presliding",
-        keys: &[(
-            "LAW",
-            "law = \"lu-gre\"\nbristle_stiffness_n_per_m = 4.0e7\nbristle_damping_n_s_per_m = 3.0e4",
-        )],
+        keys: &[("LAW", "law = \"lu-gre\"\nbristle_stiffness_n_per_m = 4.0e7\nbristle_damping_n_s_per_m = 3.0e4")],
     },
     Hidden { effect: "viscous_asymmetry", keys: &[("SLIDING", "viscous_asymmetry = 0.15")] },
     Hidden { effect: "quadratic_drag", keys: &[("SLIDING", "quadratic_drag_n_s2_per_m2 = 2500.0")] },
@@ -40,7 +37,10 @@ const AXES: [Hidden; 14] = [
     },
     Hidden { effect: "pitch_error", keys: &[("EFFECTS", "pitch_error = { amplitude_m = 3.0e-6, period_m = 0.010 }")] },
     Hidden { effect: "position_dependent_friction", keys: &[("EFFECTS", "position_dependent_friction_per_m = 2.0")] },
-    Hidden { effect: "friction_drift", keys: &[("EFFECTS", "friction_drift = { gain = 0.4, time_constant_s = 15.0 }")] },
+    Hidden {
+        effect: "friction_drift",
+        keys: &[("EFFECTS", "friction_drift = { gain = 0.4, time_constant_s = 15.0 }")],
+    },
     Hidden { effect: "torque_saturation", keys: &[("EFFECTS", "torque_saturation_per_n = 5.0e-5")] },
     Hidden { effect: "delay", keys: &[("EFFECTS", "delay_s = 0.7e-3")] },
     Hidden { effect: "offset", keys: &[("EFFECTS", "offset_n = 60.0")] },

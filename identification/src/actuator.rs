@@ -61,7 +61,10 @@ pub fn saturation_candidate(bench: &Bench<'_>, model: &Model, base: &Fit, round:
     let gain = Gain::of(base, &bench.fit(&extended));
     let parameter = extended.saturation.per_effort;
     let physical = parameter > 0.0;
-    (Scored { effect: "torque_saturation", parameter, gain, physical, accepted: false, nameless: false, round }, extended)
+    (
+        Scored { effect: "torque_saturation", parameter, gain, physical, accepted: false, nameless: false, round },
+        extended,
+    )
 }
 
 /// The model with the saturation of least error; searched about a start value, or everywhere.

@@ -65,7 +65,8 @@ impl Kinematics {
         let filter = LowPass::new(period_s, cutoff)?;
         let motor = Derivatives::new(&record.position, period_s, dataset.hold);
         let friction = record.load.as_ref().map(|load| Derivatives::new(load, period_s, dataset.hold));
-        let relative = |load: &Derivatives| load.acceleration.iter().zip(&motor.acceleration).map(|(l, m)| l - m).collect();
+        let relative =
+            |load: &Derivatives| load.acceleration.iter().zip(&motor.acceleration).map(|(l, m)| l - m).collect();
         let load_acceleration = friction.as_ref().map(relative);
         let friction = friction.as_ref().unwrap_or(&motor);
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, dataset.hold);

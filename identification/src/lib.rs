@@ -15,6 +15,7 @@
 
 pub mod actuator;
 pub mod bench;
+mod bus_log;
 pub mod difference;
 pub mod effects;
 pub mod error;
@@ -24,6 +25,7 @@ pub mod free_run;
 pub mod kinematics;
 pub mod load;
 pub mod outcome;
+pub mod plausibility;
 mod ranking;
 pub mod record;
 pub mod regression;
@@ -33,6 +35,7 @@ pub mod reversal;
 pub mod search;
 pub mod selection;
 pub mod slow_ripple;
+mod table;
 
 pub use error::IdentificationError;
 pub use outcome::identify;

@@ -8,6 +8,7 @@ use crate::excitation;
 use crate::free_run::judge::{self, Reversals};
 use crate::free_run::{Drive, errors as free_run_errors};
 use crate::kinematics::Kinematics;
+use crate::plausibility;
 use crate::ranking;
 use crate::record::Dataset;
 use crate::report::{Curves, Errors, Identification, Report, ResidualReport};
@@ -58,6 +59,7 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     let low = Kinematics::with_cutoff(dataset, &dataset.train, low_cutoff).ok_or_else(|| no_room(dataset))?;
     let validation = kinematics(dataset, &dataset.validate)?;
     check_samples(dataset, &motion, &validation)?;
+    plausibility::check(dataset, &motion)?;
     let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &low));
     let pair = Pair { bench: &bench, low: &low };
     progress("fitting the declared model");

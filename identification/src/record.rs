@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::bus_log::BusForm;
 use crate::error::IdentificationError;
+use crate::table::{Mapping, Table};
 
 type Outcome<T> = Result<T, IdentificationError>;
 
@@ -85,6 +87,17 @@ pub enum EffortHold {
     ZeroOrder,
 }
 
+/// What `time_s` counts from; it matters to what warms up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeFrom {
+    /// Every record starts cold.
+    #[default]
+    Record,
+    /// The machine was switched on at zero.
+    PowerOn,
+}
+
 /// A record on a uniform time base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -98,7 +111,7 @@ pub struct Record {
     pub reference: Option<Vec<f64>>,
     /// Effort.
     pub effort: Vec<f64>,
-    /// Time of each sample since the first row of the file, s.
+    /// Time of each sample since the first row of the file (or since power-on, where the file counts from there), s.
     pub time_s: Vec<f64>,
     /// The rows of the file that this record was made from: time stamp and effort as they stand there.
     pub rows: Vec<(f64, f64)>,
@@ -140,7 +153,7 @@ impl Record {
 
     /// Rows of the file that fall into a range of samples.
     fn rows_between(&self, from: usize, to: usize) -> Vec<(f64, f64)> {
-        let origin = self.rows.first().map_or(0.0, |row| row.0);
+        let origin = self.rows.first().map_or(0.0, |row| row.0) - self.time_s.first().copied().unwrap_or(0.0);
         let half = 0.5 * self.period_s;
         let low = self.time_s.get(from).map_or(f64::INFINITY, |t| t - half);
         let high = self.time_s.get(to).map_or(f64::INFINITY, |t| t - half);
@@ -155,6 +168,11 @@ struct DatasetForm {
     #[serde(default)]
     effort_hold: EffortHold,
     effort_lag_s: Option<f64>,
+    #[serde(default)]
+    time_from: TimeFrom,
+    #[serde(default)]
+    columns: Mapping,
+    bus: Option<BusForm>,
     axis: Option<AxisForm>,
     controller: Option<ControllerForm>,
     declared: Option<DeclaredForm>,
@@ -249,12 +267,16 @@ impl Dataset {
         }
         let form = read_form(&folder.join("dataset.toml"))?;
         let axis = form.axis.clone().unwrap_or_default();
-        let (whole, effort) = read_csv(&folder.join("train.csv"), axis.kind, form.sample_period_s)?;
-        let beside = folder.join("validate.csv");
+        let file = |stem: &str| {
+            let extension = if form.bus.is_some() { "log" } else { "csv" };
+            folder.join(stem).with_extension(extension)
+        };
+        let (whole, effort) = read_record(&file("train"), axis.kind, &form)?;
+        let beside = file("validate");
         let other: Option<PathBuf> = validate.map(Path::to_path_buf).or_else(|| beside.is_file().then_some(beside));
         let (train, validation, held_back) = match other {
             Some(path) => {
-                let (validation, validation_effort) = read_csv(&path, axis.kind, form.sample_period_s)?;
+                let (validation, validation_effort) = read_record(&path, axis.kind, &form)?;
                 check_pair(&path, &whole, effort, &validation, validation_effort)?;
                 (whole, validation, false)
             }
@@ -323,11 +345,70 @@ impl Dataset {
 fn read_form(path: &Path) -> Outcome<DatasetForm> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| IdentificationError::new(format!("{}: {error}; a dataset needs this file", path.display())))?;
+    check_keys(path, &text)?;
     toml::from_str(&text).map_err(|error| {
         let line =
             error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
         IdentificationError::new(format!("{}:{line}: {}", path.display(), error.message()))
     })
+}
+
+/// Keys that mean something; others are kept for people (source, licence, notes).
+const KEYS: [(&str, &[&str]); 4] = [
+    (
+        "",
+        &[
+            "name",
+            "sample_period_s",
+            "effort_hold",
+            "effort_lag_s",
+            "time_from",
+            "columns",
+            "bus",
+            "axis",
+            "controller",
+            "declared",
+        ],
+    ),
+    (
+        "axis",
+        &["kind", "lead_m_per_rev", "encoder_resolution_m", "encoder_resolution_rad", "load_encoder_resolution_m"],
+    ),
+    (
+        "controller",
+        &[
+            "position_gain_per_s",
+            "velocity_gain_n_s_per_m",
+            "velocity_gain_v_s_per_m",
+            "integral_per_s",
+            "velocity_filter",
+            "acceleration_feedforward_kg",
+            "force_limit_n",
+            "position_sensor",
+        ],
+    ),
+    ("declared", &["effects"]),
+];
+/// Edits between a key and one that was meant.
+const TYPO: usize = 2;
+
+/// A key that is nearly one that we know is a slip of the pen, and would be ignored without a word.
+fn check_keys(path: &Path, text: &str) -> Outcome<()> {
+    let Ok(table) = text.parse::<toml::Table>() else { return Ok(()) };
+    for (section, known) in KEYS {
+        let part = if section.is_empty() { Some(&table) } else { table.get(section).and_then(toml::Value::as_table) };
+        for key in part.into_iter().flat_map(|part| part.keys()).filter(|key| !known.contains(&key.as_str())) {
+            if let Some(meant) = known.iter().find(|known| strsim::damerau_levenshtein(key, known) <= TYPO) {
+                let line =
+                    text.lines().position(|line| line.trim_start().starts_with(key.as_str())).map_or(0, |at| at + 1);
+                return Err(IdentificationError::new(format!(
+                    "{}:{line}: unknown key {key}; did you mean {meant}?",
+                    path.display()
+                )));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
@@ -369,70 +450,13 @@ fn check_declared(folder: &Path, declared: Option<Vec<String>>) -> Outcome<Vec<S
     }
 }
 
-struct Table {
-    path: String,
-    header: Vec<String>,
-    columns: Vec<Vec<f64>>,
-}
-
-impl Table {
-    fn read(path: &Path) -> Outcome<Self> {
-        let shown = path.display().to_string();
-        let failed =
-            |error: csv::Error| IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"));
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(failed)?;
-        let header: Vec<String> = reader.headers().map_err(failed)?.iter().map(String::from).collect();
-        let mut columns = vec![Vec::new(); header.len()];
-        for row in reader.records() {
-            let row = row.map_err(failed)?;
-            let line = row.position().map_or(0, csv::Position::line);
-            for ((text, name), column) in row.iter().zip(&header).zip(&mut columns) {
-                let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-                column.push(value.ok_or_else(|| {
-                    IdentificationError::new(format!(
-                        "{shown}:{line}: column {name}: \"{text}\" is not a finite number; remove the row or fill the gap"
-                    ))
-                })?);
-            }
+fn read_record(path: &Path, kind: AxisKind, form: &DatasetForm) -> Outcome<(Record, Effort)> {
+    let table = match &form.bus {
+        Some(bus) if path.extension().is_some_and(|extension| extension == "log") => {
+            crate::bus_log::read(path, bus, &form.columns, form.sample_period_s)?
         }
-        Ok(Self { path: shown, header, columns })
-    }
-
-    fn column(&self, name: &str) -> Option<Vec<f64>> {
-        let place = self.header.iter().position(|known| known == name)?;
-        self.columns.get(place).cloned()
-    }
-
-    fn required(&self, name: &str) -> Outcome<Vec<f64>> {
-        self.column(name).ok_or_else(|| {
-            IdentificationError::new(format!(
-                "{}:1: no column {name}; the header has {}",
-                self.path,
-                self.header.join(", ")
-            ))
-        })
-    }
-
-    fn effort(&self) -> Outcome<(Vec<f64>, Effort)> {
-        let present: Vec<Effort> =
-            Effort::ALL.into_iter().filter(|effort| self.header.iter().any(|name| name == effort.column())).collect();
-        match present[..] {
-            [effort] => Ok((self.required(effort.column())?, effort)),
-            [] => Err(IdentificationError::new(format!(
-                "{}:1: no effort column; give force_n, torque_nm or current_a (the header has {})",
-                self.path,
-                self.header.join(", ")
-            ))),
-            _ => Err(IdentificationError::new(format!(
-                "{}:1: more than one effort column; keep one of force_n, torque_nm, current_a",
-                self.path
-            ))),
-        }
-    }
-}
-
-fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Record, Effort)> {
-    let table = Table::read(path)?;
+        _ => Table::read(path)?.mapped(&form.columns)?,
+    };
     let unit = kind.position_unit();
     let time_s = table.required("time_s")?;
     if time_s.len() < FEWEST_ROWS {
@@ -443,7 +467,8 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
         )));
     }
     check_time(&table.path, &time_s)?;
-    let (effort, which) = table.effort()?;
+    check_period(&table.path, &time_s, form.sample_period_s)?;
+    let (effort, which) = effort_column(&table)?;
     let raw = Record {
         period_s: 0.0,
         position: table.required(&format!("position_{unit}"))?,
@@ -456,7 +481,28 @@ fn read_csv(path: &Path, kind: AxisKind, period_s: Option<f64>) -> Outcome<(Reco
         time_s,
     };
     check_effort(&table.path, which, &raw)?;
-    Ok((uniform(raw, period_s), which))
+    let origin_s = match form.time_from {
+        TimeFrom::Record => raw.time_s[0],
+        TimeFrom::PowerOn => 0.0,
+    };
+    Ok((uniform(raw, form.sample_period_s, origin_s), which))
+}
+
+fn effort_column(table: &Table) -> Outcome<(Vec<f64>, Effort)> {
+    let present: Vec<Effort> =
+        Effort::ALL.into_iter().filter(|effort| table.header.iter().any(|name| name == effort.column())).collect();
+    match present[..] {
+        [effort] => Ok((table.required(effort.column())?, effort)),
+        [] => Err(IdentificationError::new(format!(
+            "{}:1: no effort column; give force_n, torque_nm or current_a (the header has {})",
+            table.path,
+            table.header.join(", ")
+        ))),
+        _ => Err(IdentificationError::new(format!(
+            "{}:1: more than one effort column; keep one of force_n, torque_nm, current_a",
+            table.path
+        ))),
+    }
 }
 
 fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
@@ -478,6 +524,17 @@ fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
             time_s[row + 1] - time_s[row]
         ))),
         None => Ok(()),
+    }
+}
+
+/// The stated sample period against the rows.
+fn check_period(path: &str, time_s: &[f64], stated: Option<f64>) -> Outcome<()> {
+    let median = median_step(time_s);
+    match stated {
+        Some(period) if !(0.5..2.0).contains(&(median / period)) => Err(IdentificationError::new(format!(
+            "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them in another unit?"
+        ))),
+        _ => Ok(()),
     }
 }
 
@@ -534,7 +591,7 @@ fn check_pair(path: &Path, train: &Record, effort: Effort, other: &Record, other
     Ok(())
 }
 
-fn range(values: &[f64]) -> (f64, f64) {
+pub(crate) fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
@@ -560,13 +617,13 @@ fn smallest_step(values: &[f64]) -> f64 {
 }
 
 /// Brings a record with jittered time stamps onto a uniform base by linear interpolation; leaves a uniform one as it is.
-fn uniform(raw: Record, period_s: Option<f64>) -> Record {
+fn uniform(raw: Record, period_s: Option<f64>, origin_s: f64) -> Record {
     let median = median_step(&raw.time_s);
     let period_s = period_s.filter(|period| (period / median - 1.0).abs() < 0.2).unwrap_or(median);
     let start = raw.time_s[0];
     let even = raw.time_s.iter().enumerate().all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
     if even {
-        let time_s = raw.time_s.iter().map(|t| t - start).collect();
+        let time_s = raw.time_s.iter().map(|t| t - origin_s).collect();
         return Record { period_s, time_s, ..raw };
     }
     let duration = raw.time_s[raw.time_s.len() - 1] - start;
@@ -579,7 +636,7 @@ fn uniform(raw: Record, period_s: Option<f64>) -> Record {
         load: raw.load.as_deref().map(on_base),
         reference: raw.reference.as_deref().map(on_base),
         effort: on_base(&raw.effort),
-        time_s: at.iter().map(|t| t - start).collect(),
+        time_s: at.iter().map(|t| t - origin_s).collect(),
         jittered: jitters(&raw.time_s, median),
         interpolated: in_holes(&raw.time_s, &at, HOLE_PERIODS * median),
         rows: raw.rows,

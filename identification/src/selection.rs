@@ -87,7 +87,8 @@ pub fn prepare(pair: Pair<'_>, model: &mut Model) {
 
 /// Forward selection on a record, from the declared model. `progress` hears of every round.
 pub fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
-    let start = Start { terms: start.terms.len(), delay: start.delay_s != 0.0, saturation: start.saturates(), model: start };
+    let start =
+        Start { terms: start.terms.len(), delay: start.delay_s != 0.0, saturation: start.saturates(), model: start };
     let mut selection = Selection { model: start.model.clone(), ..Selection::default() };
     for round in 0..MOST {
         let mut candidates = candidates(pair, &selection.model, round);
@@ -165,9 +166,7 @@ fn candidate(
     round: usize,
 ) -> (Scored, Model) {
     let fixed = bench.design(model);
-    let sse = |parameter: f64| {
-        bench.blocks(&bench.extended(&fixed, &Term { effect, parameter })).fit().sse
-    };
+    let sse = |parameter: f64| bench.blocks(&bench.extended(&fixed, &Term { effect, parameter })).fit().sse;
     let known = |k: &f64| is_new(bench, model, effect, *k);
     let grid: Vec<f64> = effect.grid(bench.motion, setting).into_iter().filter(known).collect();
     let start = smallest(grid, &sse).unwrap_or(0.0);

@@ -30,13 +30,15 @@ pub fn record(session: &mut Session<'_>, machine: &Machine, validation: bool) ->
         machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, validation)).collect();
     let duration_s = bursts.iter().map(|bursts| excitation::duration_s(bursts)).fold(0.0, f64::max);
     session.go_to(&vec![0.0; machine.axes.len()])?;
+    // Times are since the drive was switched on: what warms up does not start cold in the second record.
+    let origin_s = session.cycles() as f64 * machine.period_s;
     let mut records = vec![AxisRecord::default(); machine.axes.len()];
     session.follow(
         duration_s,
         |time_s| bursts.iter().map(|bursts| excitation::at(bursts, time_s)).collect(),
         |time_s, axes| {
             for (record, axis) in records.iter_mut().zip(axes) {
-                record.rows.push((time_s, *axis));
+                record.rows.push((origin_s + time_s, *axis));
             }
         },
     )?;
@@ -86,7 +88,7 @@ fn dataset_toml(machine: &Machine, axis: &MachineAxis) -> String {
     };
     let declared = axis.declared.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
     format!(
-        "name = \"{}-{}\"\nsample_period_s = {}\neffort_hold = \"zero-order\"\neffort_lag_s = {}   # current loop, first order\n\n\
+        "name = \"{}-{}\"\nsample_period_s = {}\neffort_hold = \"zero-order\"\ntime_from = \"power-on\"\neffort_lag_s = {}   # current loop, first order\n\n\
          [axis]\nkind = \"linear\"\nlead_m_per_rev = {}\nencoder_resolution_m = {:e}\nload_encoder_resolution_m = {:e}\n\n\
          [controller]\nposition_gain_per_s = {}\nposition_sensor = \"{sensor}\"\n\n[declared]\neffects = [{declared}]\n",
         machine.name,

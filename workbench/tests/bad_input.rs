@@ -212,3 +212,99 @@ fn every_command_explains_itself() {
         assert!(String::from_utf8_lossy(&output.stdout).contains("Usage: quadrant"), "{command}");
     }
 }
+
+/// A record of an axis of 100 kg with friction, along two sines, with the controller that made its effort; columns may be scaled.
+fn plausible(position: f64, load: f64, reference: f64, effort: f64, time: f64) -> String {
+    let mut text = String::from("time_s,reference_m,position_m,load_position_m,force_n\n");
+    let path = |t: f64| 0.05 * (3.0 * t).sin() + 0.01 * (11.0 * t).sin();
+    for row in 0..6000 {
+        let t = 0.001 * f64::from(row);
+        let velocity = 0.15 * (3.0 * t).cos() + 0.11 * (11.0 * t).cos();
+        let acceleration = -0.45 * (3.0 * t).sin() - 1.21 * (11.0 * t).sin();
+        let force = 100.0 * acceleration + 200.0 * velocity + 20.0 * velocity.signum();
+        let x = (path(t) / 1.0e-6).round() * 1.0e-6;
+        text += &format!(
+            "{:.3},{:.9},{:.6},{:.6},{:.4}\n",
+            time * t,
+            // A velocity controller without position gain: the setpoint is where the axis is plus what makes the force.
+            reference * (x + force / 40.0e3),
+            position * x,
+            load * x,
+            effort * force
+        );
+    }
+    text
+}
+
+const CONTROLLED: &str = "name = \"t\"\nsample_period_s = 0.001\n[axis]\nkind = \"linear\"\nencoder_resolution_m = 1e-6\n\
+    [controller]\nposition_gain_per_s = 40000\nvelocity_gain_n_s_per_m = 1\n[declared]\neffects = [\"inertia\", \"viscous\", \"coulomb\"]\n";
+
+#[test]
+fn records_that_cannot_be_what_they_say_are_refused_with_what_they_look_like() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().display().to_string();
+    let uncontrolled = "[axis]\nkind = \"linear\"\n";
+    let typo = CONTROLLED.replace("encoder_resolution_m", "encoder_resolutoin_m");
+    let columns = format!("{CONTROLLED}[columns]\nforce_n = \"motor_force\"\n");
+    let odd = format!("{CONTROLLED}[columns]\nforce_n = {{ name = \"force_n\", factor = 2.0 }}\n");
+    let cases: [(&str, String, &str, &[&str]); 13] = [
+        ("position in mm", plausible(1.0e3, 1.0e3, 1.0e3, 1.0, 1.0), CONTROLLED, &["position_m", "millimetres"]),
+        (
+            "position in km",
+            plausible(1.0e-3, 1.0e-3, 1.0e-3, 1.0, 1.0),
+            uncontrolled,
+            &["hardly moves", "unit of the position"],
+        ),
+        ("load in mm", plausible(1.0, 1.0e3, 1.0, 1.0, 1.0), CONTROLLED, &["load_position_m", "off by a thousand"]),
+        (
+            "load with swapped sign",
+            plausible(1.0, -1.0, 1.0, 1.0, 1.0),
+            CONTROLLED,
+            &["load_position_m", "sign is swapped"],
+        ),
+        ("load stands still", plausible(1.0, 0.0, 1.0, 1.0, 1.0), CONTROLLED, &["load_position_m", "stands still"]),
+        ("setpoint in mm", plausible(1.0, 1.0, 1.0e3, 1.0, 1.0), CONTROLLED, &["reference_m", "thousand"]),
+        ("effort in kN", plausible(1.0, 1.0, 1.0, 1.0e-3, 1.0), CONTROLLED, &["force_n", "0.0010 times", "unit"]),
+        ("effort with swapped sign", plausible(1.0, 1.0, 1.0, -1.0, 1.0), CONTROLLED, &["force_n", "sign"]),
+        ("the same without a controller", plausible(1.0, 1.0, 1.0, -1.0, 1.0), uncontrolled, &["force_n", "sign"]),
+        ("time in ms", plausible(1.0, 1.0, 1.0, 1.0, 1.0e3), CONTROLLED, &["time_s steps by 1 s", "sample_period_s"]),
+        ("a slip in a key", plausible(1.0, 1.0, 1.0, 1.0, 1.0), &typo, &["dataset.toml:5", "encoder_resolution_m?"]),
+        ("a column that is not there", plausible(1.0, 1.0, 1.0, 1.0, 1.0), &columns, &["no column motor_force"]),
+        ("an unknown key of a column", plausible(1.0, 1.0, 1.0, 1.0, 1.0), &odd, &["dataset.toml"]),
+    ];
+    for (name, csv, toml, parts) in cases {
+        file(folder.path(), "train.csv", &csv);
+        file(folder.path(), "dataset.toml", toml);
+        refused(name, &["identify", &path], parts);
+    }
+    file(folder.path(), "train.csv", &plausible(1.0, 1.0, 1.0, 1.0, 1.0));
+    file(folder.path(), "dataset.toml", CONTROLLED);
+    assert!(quadrant(&["identify", &path]).status.success(), "the same record with nothing wrong is taken");
+}
+
+#[test]
+fn logs_of_the_bus_that_do_not_fit_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().display().to_string();
+    let dbc = "VERSION \"\"\nNS_ :\nBS_:\nBU_: A\nBO_ 401 F: 8 A\n SG_ X : 0|32@1- (1,0) [0|0] \"m\" A\n";
+    let toml = |bus: &str, signal: &str| {
+        format!(
+            "[bus]\n{bus}\n[columns]\nposition_m = \"{signal}\"\nforce_n = \"{signal}\"\n[axis]\nkind = \"linear\"\n"
+        )
+    };
+    let good = "(1.0) can0 191#0000000000000000\n";
+    let cases: [(&str, &str, &str, String, &[&str]); 6] = [
+        ("no DBC", good, "", toml("dbc = \"none.dbc\"", "F.X"), &["none.dbc"]),
+        ("not a DBC", good, "BO_ what", toml("dbc = \"a.dbc\"", "F.X"), &["a.dbc", "not a DBC"]),
+        ("unknown signal", good, dbc, toml("dbc = \"a.dbc\"", "F.Y"), &["no signal F.Y", "[columns]"]),
+        ("no signal at all", good, dbc, toml("dbc = \"a.dbc\"", "F"), &["Message.Signal"]),
+        ("not a log", "hello\n", dbc, toml("dbc = \"a.dbc\"", "F.X"), &["train.log:1", "hello", "candump"]),
+        ("cycles without a period", good, dbc, toml("dbc = \"a.dbc\"\ncycle = \"F\"", "F.X"), &["sample_period_s"]),
+    ];
+    for (name, log, dbc, toml, parts) in cases {
+        file(folder.path(), "train.log", log);
+        file(folder.path(), "a.dbc", dbc);
+        file(folder.path(), "dataset.toml", &toml);
+        refused(name, &["identify", &path], parts);
+    }
+}

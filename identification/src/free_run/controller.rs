@@ -10,6 +10,8 @@ use crate::record::{ControllerForm, Dataset, Effort, Record};
 
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise of the record.
 const LARGEST_MISFIT: f64 = 0.10;
+/// Correlation from which recorded and computed effort belong together.
+const LEAST_CORRELATION: f64 = 0.7;
 /// Rows from which the integral at the start is estimated.
 const START_ROWS: usize = 50;
 
@@ -49,7 +51,7 @@ impl Law {
         record.reference.as_ref()?;
         let mut law = Self::described(form)?;
         if let Form::Voltage { gain } = law.form {
-            let computed = Self { limit: None, ..law }.teacher_forced(record);
+            let computed = Self { limit: None, ..law }.teacher_forced(record, law.start(record));
             let sums = computed.iter().zip(&record.effort);
             let (own, cross) = sums.fold((0.0, 0.0), |(own, cross), (c, e)| (own + c * c, cross + c * e));
             law.form = Form::Voltage { gain: gain * cross / f64::max(own, f64::MIN_POSITIVE) };
@@ -60,6 +62,24 @@ impl Law {
         }
         law.misfit = law.misfit_on(record);
         (law.misfit <= LARGEST_MISFIT).then_some(law)
+    }
+
+    /// Recorded over computed effort where the law is described in forces and the load it closes on, if any, was recorded; `None` where they have
+    /// nothing to do with each other.
+    #[must_use]
+    pub fn effort_over_computed(dataset: &Dataset) -> Option<f64> {
+        let form = dataset.controller.as_ref().filter(|_| dataset.effort == Effort::Force)?;
+        let record = &dataset.train;
+        record.reference.as_ref()?;
+        let law = Self { limit: None, ..Self::described(form)? };
+        if matches!(law.form, Form::Voltage { .. }) || (law.on_load && record.load.is_none()) {
+            return None;
+        }
+        let computed = law.teacher_forced(record, law.at_first(record));
+        let sums = computed.iter().zip(&record.effort);
+        let (cc, ce, ee) = sums.fold((0.0, 0.0, 0.0), |(cc, ce, ee), (c, e)| (cc + c * c, ce + c * e, ee + e * e));
+        let correlation = ce / f64::max((cc * ee).sqrt(), f64::MIN_POSITIVE);
+        (correlation.abs() > LEAST_CORRELATION).then_some(ce / f64::max(cc, f64::MIN_POSITIVE))
     }
 
     fn described(form: &ControllerForm) -> Option<Self> {
@@ -87,27 +107,31 @@ impl Law {
     }
 
     /// The effort from recorded positions.
-    fn teacher_forced(&self, record: &Record) -> Vec<f64> {
+    fn teacher_forced(&self, record: &Record, mut memory: Memory) -> Vec<f64> {
         let positions = self.measured(record);
-        let mut memory = self.start(record);
         (0..record.len()).map(|row| self.step(record, &mut memory, row, positions[row])).collect()
     }
 
     fn misfit_on(&self, record: &Record) -> f64 {
-        let computed = self.teacher_forced(record);
+        let computed = self.teacher_forced(record, self.start(record));
         let error: f64 = computed.iter().zip(&record.effort).map(|(c, e)| (c - e).powi(2)).sum();
         let all: f64 = record.effort.iter().map(|e| e * e).sum();
         (error / all.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// State at the first row, with nothing in the integral.
+    fn at_first(&self, record: &Record) -> Memory {
+        let positions = self.measured(record);
+        let first = positions.first().copied().unwrap_or(0.0);
+        let step = positions.get(1).map_or(0.0, |second| second - first);
+        Memory { before: [first - step, first - 2.0 * step], velocity: step / record.period_s, sum: 0.0 }
     }
 
     /// State at the start of a record: the integral is what its first efforts show.
     #[must_use]
     pub fn start(&self, record: &Record) -> Memory {
         let positions = self.measured(record);
-        let first = positions.first().copied().unwrap_or(0.0);
-        let step = positions.get(1).map_or(0.0, |second| second - first);
-        let start =
-            Memory { before: [first - step, first - 2.0 * step], velocity: step / record.period_s, sum: 0.0 };
+        let start = self.at_first(record);
         let Form::Force { velocity_gain, integral_per_s, .. } = self.form else { return start };
         if integral_per_s == 0.0 {
             return start;

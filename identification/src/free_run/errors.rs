@@ -28,9 +28,8 @@ pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<F
     let start = Simulated::new(dataset, record.period_s, &declared.model, &declared.coefficients, shape)?;
     let before = fit(&start, &drive, record, &|_| true);
     let errors = |record: &Record| {
-        let [before, after] = [&before, extended].map(|model| {
-            MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true)
-        });
+        let [before, after] =
+            [&before, extended].map(|model| MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true));
         let tracking = tracking_rms(record).map(|rms| MICRO * rms);
         FreeRunErrors {
             position_error_um_before: before,

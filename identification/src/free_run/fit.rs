@@ -91,7 +91,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 pub fn fit(start: &Simulated, drive: &Drive, record: &Record, mask: &dyn Fn(usize) -> bool) -> Simulated {
     let entries = start.entries();
     let values = start.values();
-    let at = DVector::from_iterator(values.len(), values.iter().zip(&entries).map(|(value, entry)| value / entry.scale));
+    let at =
+        DVector::from_iterator(values.len(), values.iter().zip(&entries).map(|(value, entry)| value / entry.scale));
     let inside = |row: &usize| mask(*row) && !record.interpolated[*row];
     let rows: Vec<usize> = (SETTLING_ROWS..record.len()).step_by(STRIDE).filter(inside).collect();
     let scale = super::position_rms(&simulate(start, drive, record), record, mask).max(f64::MIN_POSITIVE);

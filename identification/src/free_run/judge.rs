@@ -126,10 +126,12 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
     let rigid = judge.fitted(&start(Shape::default())?);
     let damping = 30.0 * rigid.model.mass;
     let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
-    let bristles = bristles.into_iter().filter_map(|deflection| start(Shape { deflection, damping, ..Shape::default() }));
+    let bristles =
+        bristles.into_iter().filter_map(|deflection| start(Shape { deflection, damping, ..Shape::default() }));
     let bristle = judge.best(bristles.collect(), 1)?;
     let rounding = ROUNDING * dataset.resolution;
-    let worth = rigid.all > VISIBLE * rounding || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
+    let worth =
+        rigid.all > VISIBLE * rounding || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
     let gap = worth.then(|| judge.best(gaps(unit, |shape| start(shape)), STARTS)).flatten();
     let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
     let both = judge.both(&accepted, &bristle, gap.as_ref(), unit, &start);
@@ -142,7 +144,13 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
 fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
     let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
     let shapes = widths.into_iter().flat_map(|gap| {
-        RESTITUTIONS.map(|restitution| Shape { gap, load_share: 0.45, motor_friction: 0.2, restitution, ..Shape::default() })
+        RESTITUTIONS.map(|restitution| Shape {
+            gap,
+            load_share: 0.45,
+            motor_friction: 0.2,
+            restitution,
+            ..Shape::default()
+        })
     });
     shapes.filter_map(start).collect()
 }
@@ -170,7 +178,14 @@ impl Judge<'_> {
         let (bristle, gap) = (bristle.model.shape, gap.model.shape);
         let Shape { deflection, damping, .. } = bristle;
         let of = |width: f64, share: f64| {
-            start(Shape { gap: width, deflection: share * deflection, damping, load_share: 0.45, motor_friction: 0.2, restitution: 0.5 })
+            start(Shape {
+                gap: width,
+                deflection: share * deflection,
+                damping,
+                load_share: 0.45,
+                motor_friction: 0.2,
+                restitution: 0.5,
+            })
         };
         let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8).into_iter().chain([gap.gap]);
         let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
@@ -199,7 +214,8 @@ impl Reversals {
     /// Mean over standard error of the gain per block that a shape brings over rigid friction.
     #[must_use]
     pub fn t(&self, judged: &Judged) -> f64 {
-        let gains: Vec<f64> = self.rigid.blocks.iter().zip(&judged.blocks).map(|(before, after)| before - after).collect();
+        let gains: Vec<f64> =
+            self.rigid.blocks.iter().zip(&judged.blocks).map(|(before, after)| before - after).collect();
         crate::regression::t_of(&gains)
     }
 
