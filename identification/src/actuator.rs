@@ -56,9 +56,13 @@ pub fn best_delay(low: &Bench<'_>, model: &Model, start_s: f64) -> f64 {
 
 /// Judges a saturating actuator.
 #[must_use]
-pub fn saturation_candidate(bench: &Bench<'_>, model: &Model, base: &Fit, round: usize) -> (Scored, Model) {
-    let extended = with_saturation(bench, model, None);
-    let gain = Gain::of(base, &bench.fit(&extended));
+pub fn saturation_candidate(pair: Pair<'_>, model: &Model, base: &Fit, round: usize) -> (Scored, Model) {
+    let extended = with_saturation(pair.bench, model, None);
+    let gain = Gain::of(base, &pair.bench.fit(&extended));
+    // Coarse positions dilute the inertia at 100 Hz, which bends like a saturation; at 30 Hz they do not.
+    let low = linearised(pair.low, model, extended.saturation.per_effort);
+    let gain_low = Gain::of(&pair.low.fit(model), &pair.low.fit(&low));
+    let gain = Gain { share: gain.share.min(gain_low.share), t: gain.t.min(gain_low.t), ..gain };
     let parameter = extended.saturation.per_effort;
     let physical = parameter > 0.0;
     (

@@ -135,6 +135,10 @@ pub fn difference(dataset: &Dataset, motion: &Kinematics, path: Path<'_>) -> Opt
     if dataset.declared.iter().any(|name| name == "backlash") {
         terms.push(best_gap(&bench, &terms, dataset));
     }
+    if dataset.declared.iter().any(|name| name == "pitch_error") {
+        let base = bench.fit(&terms);
+        terms.extend(best_pitch(&bench, &terms, &base));
+    }
     let declared_fit = bench.fit(&terms);
     let all: f64 = declared_fit.held_out.iter().sum();
     let mut outcome = Difference {

@@ -17,6 +17,7 @@ pub mod quadratic_drag;
 pub mod spring;
 pub mod stribeck;
 pub mod torque_ripple;
+pub mod trend;
 pub mod viscous;
 pub mod viscous_asymmetry;
 
@@ -107,6 +108,8 @@ pub struct Instant {
     pub velocity: f64,
     /// Time since the start of the record, s.
     pub time_s: f64,
+    /// Time over the duration of the training record.
+    pub time_share: f64,
 }
 
 /// What an effect does to a simulated axis.
@@ -130,6 +133,19 @@ impl Action {
     pub const fn force(force: f64) -> Self {
         Self { level: 0.0, force }
     }
+}
+
+/// What an effect is best seen against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// Velocity.
+    Velocity,
+    /// Position.
+    Position,
+    /// Position within one period of the nonlinear parameter.
+    Period,
+    /// Time.
+    Time,
 }
 
 /// An effect of the inverse model.
@@ -196,12 +212,17 @@ pub trait Effect: Sync {
         false
     }
 
+    /// What it is best seen against.
+    fn against(&self) -> Against {
+        Against::Velocity
+    }
+
     /// Its parameters for people.
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named>;
 }
 
 /// Every effect of the inverse model; the first four are the usual declared ones.
-pub static LIBRARY: [&dyn Effect; 12] = [
+pub static LIBRARY: [&dyn Effect; 13] = [
     &inertia::Inertia,
     &viscous::Viscous,
     &coulomb::Coulomb,
@@ -214,6 +235,7 @@ pub static LIBRARY: [&dyn Effect; 12] = [
     &quadratic_drag::QuadraticDrag,
     &spring::Spring,
     &hum::Hum,
+    &trend::Trend,
 ];
 
 /// Effects that are not columns of the inverse model: found by their own stage.

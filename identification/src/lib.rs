@@ -25,6 +25,7 @@ pub mod free_run;
 pub mod kinematics;
 pub mod load;
 pub mod outcome;
+mod pictures;
 pub mod plausibility;
 mod ranking;
 pub mod record;

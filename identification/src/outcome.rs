@@ -8,6 +8,7 @@ use crate::excitation;
 use crate::free_run::judge::{self, Reversals};
 use crate::free_run::{Drive, errors as free_run_errors};
 use crate::kinematics::Kinematics;
+use crate::pictures;
 use crate::plausibility;
 use crate::ranking;
 use crate::record::Dataset;
@@ -66,7 +67,8 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     let mut start = selection::declared_model(dataset);
     selection::prepare(pair, &mut start);
     progress("scoring candidate effects");
-    let selected = selection::select(pair, start.clone(), progress);
+    let mut selected = selection::select(pair, start.clone(), progress);
+    selection::veto(&bench, &Bench::new(dataset, &validation), &mut selected, start.terms.len());
     progress("looking at motor and load");
     let coefficients = bench.fit(&selected.model).coefficients;
     let transmitted = bench.transmitted(&selected.model, &coefficients);
@@ -74,8 +76,11 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     let difference = difference::difference(dataset, &motion, path);
     progress("simulating reversals: stick, bristle, gap");
     let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
-    let reversals = judge::reversals(dataset, &selected.model, &coefficients);
+    let mut reversals = judge::reversals(dataset, &selected.model, &coefficients);
     let accepted = at_reversals(presliding.as_ref(), reversals.as_ref(), difference.as_ref());
+    if let Some(reversals) = reversals.as_mut().filter(|_| difference.is_none()) {
+        reversals.settle(accepted.presliding, accepted.backlash);
+    }
     let deflection = deflection(presliding.as_ref(), reversals.as_ref());
     let model = match &difference {
         Some(found) if found.moves_apart() => selection::with_load_inertia(&bench, &selected.model),
@@ -141,15 +146,26 @@ fn at_reversals(
     };
     let seen = reversals.accepted;
     match reversals.drive {
-        Drive::Known(_) => {
-            AtReversals { presliding: seen.presliding, backlash: seen.backlash, unexplained: seen.undecided }
-        }
+        Drive::Known(_) if seen.undecided => tie(presliding, reversals),
+        Drive::Known(_) => AtReversals { presliding: seen.presliding, backlash: seen.backlash, unexplained: false },
         Drive::Followed => {
             let presliding = if seen.backlash { seen.presliding } else { inverse };
             let unexplained = !presliding && !seen.backlash && (suspicious || seen.undecided);
             AtReversals { presliding, backlash: seen.backlash, unexplained }
         }
     }
+}
+
+/// Ratios of the inverse model below which a bristle and above which a gap breaks a tie of the free run: noise that really acts raises what every shape
+/// leaves there.
+const BRISTLE_TIE: f64 = 0.5;
+const GAP_TIE: f64 = 0.8;
+
+fn tie(presliding: Option<&Presliding>, reversals: &Reversals) -> AtReversals {
+    let ratio = presliding.map_or(f64::NAN, |p| p.dahl / p.rigid);
+    let gap_wins = reversals.gap.as_ref().is_some_and(|gap| gap.held_out < reversals.bristle.held_out);
+    let (bristle, gap) = (ratio < BRISTLE_TIE && !gap_wins, ratio > GAP_TIE && gap_wins);
+    AtReversals { presliding: bristle, backlash: gap, unexplained: !bristle && !gap }
 }
 
 /// Deflection of the bristle: from the free run where that has one, else from the inverse model.
@@ -215,10 +231,12 @@ fn assemble(findings: &Findings<'_>) -> Identification {
     // Impacts in a gap leave structure in the force that no column of an inverse model can have.
     let has_gap = found.iter().chain(&dataset.declared).any(|name| name == "backlash");
     let matters = residual.share_after >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
-    let unexplained = matters || !selected.nameless.is_empty() || findings.accepted.unexplained;
+    let apart = difference.as_ref().is_some_and(|d| !has_gap && leaves_much(dataset, d));
+    let unexplained = matters || !selected.nameless.is_empty() || findings.accepted.unexplained || apart;
     let transmitted = Bench::new(dataset, validation).transmitted(&extended.model, &extended.coefficients);
     let path = difference::Path { position: &dataset.validate.position, transmitted: &transmitted };
     let on_validation = |d: &Difference| d.on(validation, path);
+    let free_run = findings.reversals.as_ref().and_then(|reversals| free_run_errors::report(findings, reversals));
     let report = Report {
         dataset: dataset.name.clone(),
         declared: dataset.declared.clone(),
@@ -226,8 +244,8 @@ fn assemble(findings: &Findings<'_>) -> Identification {
         train: errors(&train, difference.as_ref().map(|d| (d.before_um, d.after_um))),
         validate: errors(&validate, difference.as_ref().and_then(on_validation)),
         whole: whole(dataset, declared, extended),
-        residual: ResidualReport { looks_like: looks_like(&residual, findings), ..residual },
-        free_run: findings.reversals.as_ref().and_then(|reversals| free_run_errors::report(findings, reversals)),
+        residual: ResidualReport { looks_like: looks_like(&residual, findings, apart), ..residual },
+        free_run: free_run.as_ref().map(|(report, _)| report.clone()),
         parameters: ranking::parameters(findings, slow_ripple.as_ref()),
         cutoff_hz: crate::filter::fit_cutoff_hz(&dataset.train),
         as_defined: as_defined(findings),
@@ -237,7 +255,11 @@ fn assemble(findings: &Findings<'_>) -> Identification {
         found,
     };
     Identification {
-        curves: curves(dataset, validation, &validate),
+        curves: Curves {
+            effects: pictures::effects(findings),
+            free_run: free_run.map_or_else(Vec::new, |(_, curve)| curve),
+            ..curves(dataset, validation, &validate)
+        },
         report,
         effort_unit: dataset.effort.unit(),
         effort_column: dataset.effort.column(),
@@ -316,7 +338,16 @@ fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> 
     }
 }
 
-fn looks_like(residual: &ResidualReport, findings: &Findings<'_>) -> String {
+/// What motor − load may keep: µm (µrad), and counts of the coarser encoder.
+const LARGEST_DIFFERENCE_UM: f64 = 3.0;
+const LARGEST_DIFFERENCE_COUNTS: f64 = 10.0;
+
+fn leaves_much(dataset: &Dataset, difference: &Difference) -> bool {
+    let counts = 1.0e-6 * difference.after_um / dataset.resolution.max(dataset.load_resolution).max(f64::MIN_POSITIVE);
+    difference.after_um > LARGEST_DIFFERENCE_UM && counts > LARGEST_DIFFERENCE_COUNTS
+}
+
+fn looks_like(residual: &ResidualReport, findings: &Findings<'_>, apart: bool) -> String {
     let mut parts: Vec<String> = findings.selected.nameless.iter().map(|name| format!("a {name}")).collect();
     if residual.share_after >= WHITE_SHARE && !residual.looks_like.is_empty() {
         parts.push(format!(
@@ -327,6 +358,9 @@ fn looks_like(residual: &ResidualReport, findings: &Findings<'_>) -> String {
     }
     if findings.accepted.unexplained {
         parts.push("structure at reversals that is neither stick nor a bristle nor a gap".into());
+    }
+    if apart {
+        parts.push("motor and load that move apart otherwise than by a gap, a stiffness or a pitch error".into());
     }
     parts.join("; ")
 }
@@ -351,6 +385,7 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
         declared: on_rows(&validation[0].prediction),
         extended: on_rows(&validation[1].prediction),
         moving: moving.collect(),
+        ..Curves::default()
     }
 }
 

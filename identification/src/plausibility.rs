@@ -107,7 +107,13 @@ fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     for (column, values) in [("load_position", &record.load), ("reference", &record.reference)] {
         let Some(values) = values else { continue };
         let slope = slope(&record.position, values);
-        if !(LOAD_SLOPE.0..LOAD_SLOPE.1).contains(&slope) {
+        // A setpoint is not needed: only one in a wrong unit or direction is worth a refusal.
+        let wrong = if column == "reference" {
+            is_thousand(slope) && slope.abs() > 1.0e-6 || slope < -0.5
+        } else {
+            !(LOAD_SLOPE.0..LOAD_SLOPE.1).contains(&slope)
+        };
+        if wrong {
             let looks = match slope {
                 slope if slope.abs() < 1.0e-6 => "it stands still".to_owned(),
                 slope if slope < 0.0 && slope > -2.0 => "its sign is swapped".to_owned(),

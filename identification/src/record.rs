@@ -389,8 +389,9 @@ const KEYS: [(&str, &[&str]); 4] = [
     ),
     ("declared", &["effects"]),
 ];
-/// Edits between a key and one that was meant.
+/// Edits between a key and one that was meant, and the shortest key that is asked: short words are near each other (`note` and `name`).
 const TYPO: usize = 2;
+const SHORTEST_KEY: usize = 7;
 
 /// A key that is nearly one that we know is a slip of the pen, and would be ignored without a word.
 fn check_keys(path: &Path, text: &str) -> Outcome<()> {
@@ -398,7 +399,8 @@ fn check_keys(path: &Path, text: &str) -> Outcome<()> {
     for (section, known) in KEYS {
         let part = if section.is_empty() { Some(&table) } else { table.get(section).and_then(toml::Value::as_table) };
         for key in part.into_iter().flat_map(|part| part.keys()).filter(|key| !known.contains(&key.as_str())) {
-            if let Some(meant) = known.iter().find(|known| strsim::damerau_levenshtein(key, known) <= TYPO) {
+            let near = |known: &&&str| strsim::damerau_levenshtein(key, known) <= TYPO;
+            if let Some(meant) = known.iter().filter(|_| key.len() >= SHORTEST_KEY).find(near) {
                 let line =
                     text.lines().position(|line| line.trim_start().starts_with(key.as_str())).map_or(0, |at| at + 1);
                 return Err(IdentificationError::new(format!(

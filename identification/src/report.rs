@@ -191,9 +191,26 @@ pub struct Report {
     pub warnings: Vec<String>,
 }
 
+/// One effect of the extended model, as the training record shows it.
+#[derive(Clone, Debug, Default)]
+pub struct EffectCurve {
+    /// Effect.
+    pub effect: &'static str,
+    /// Its equation.
+    pub equation: &'static str,
+    /// What it is shown against, with its unit.
+    pub against: String,
+    /// That, the residual of the model without the effect, and the effect, moving samples.
+    pub points: Vec<[f64; 3]>,
+}
+
 /// Curves for pictures and `prediction.csv`.
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
+    /// The effects that were found in the effort.
+    pub effects: Vec<EffectCurve>,
+    /// Free run on the validation record: time, position error declared and extended, µm (µrad).
+    pub free_run: Vec<[f64; 3]>,
     /// Validation record: time, s.
     pub time_s: Vec<f64>,
     /// Recorded effort; where a known lag stands between the recorded and the acting effort, the acting one, which is what the predictions are of.

@@ -19,6 +19,10 @@ pub const PERCENT: f64 = 0.15;
 /// Shares of the held-out error, and the smallest t from each of them on. The t of an effect that shows in few blocks (slow motion) is small
 /// however large it is there.
 pub const T: [(f64, f64); 3] = [(0.30, 1.0), (0.12, 1.5), (SHARE, 2.5)];
+/// From this t on a coefficient's interval is not asked.
+const CERTAIN_T: f64 = 2.5;
+/// Largest error on another record with an effect over that without it.
+const VETO: f64 = 1.05;
 /// Smallest share of a structure without a name.
 pub const NAMELESS_SHARE: f64 = 0.15;
 /// Most effects that are added.
@@ -82,7 +86,23 @@ pub fn prepare(pair: Pair<'_>, model: &mut Model) {
     if declared("torque_saturation") {
         *model = actuator::with_saturation(pair.bench, model, None);
     }
+    for at in 0..model.terms.len() {
+        start_term(pair.bench, model, at);
+    }
     refine(pair, model);
+}
+
+/// Puts the nonlinear parameter of a declared term where the others leave the least.
+fn start_term(bench: &Bench<'_>, model: &mut Model, at: usize) {
+    let mut others = model.clone();
+    let term = others.terms.remove(at);
+    let residual = bench.residual(&others, &bench.fit(&others).coefficients);
+    let setting = Setting { dataset: bench.dataset, residual: &residual };
+    let grid = term.effect.grid(bench.motion, &setting);
+    if grid.len() > 1 {
+        let best = smallest(grid, &|parameter| bench.sse(&model.with_parameter(at, parameter)));
+        model.terms[at].parameter = best.unwrap_or(term.parameter);
+    }
 }
 
 /// Forward selection on a record, from the declared model. `progress` hears of every round.
@@ -93,7 +113,8 @@ pub fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> S
     for round in 0..MOST {
         let mut candidates = candidates(pair, &selection.model, round);
         candidates.sort_by(|a, b| b.0.gain.share.total_cmp(&a.0.gain.share));
-        let best = candidates.iter().position(|(scored, _)| is_accepted(scored));
+        let best =
+            candidates.iter().position(|(scored, model)| is_accepted(scored) && is_certain(pair.bench, scored, model));
         if let Some(best) = best {
             candidates[best].0.accepted = true;
             let (scored, model) = &candidates[best];
@@ -129,7 +150,7 @@ fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model
         candidates.push(actuator::delay_candidate(pair, model, &base, round));
     }
     if !model.saturates() {
-        candidates.push(actuator::saturation_candidate(bench, model, &base, round));
+        candidates.push(actuator::saturation_candidate(pair, model, &base, round));
     }
     candidates
 }
@@ -137,12 +158,51 @@ fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model
 fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> bool {
     let present = model.terms.iter().any(|term| term.effect.name() == effect.name());
     let declared = dataset.declared.iter().any(|name| name == effect.name());
-    !declared && (!present || effect.repeats())
+    if effect.repeats() { true } else { !declared && !present }
 }
 
 fn is_accepted(scored: &Scored) -> bool {
     let smallest = if scored.nameless { NAMELESS_SHARE } else { SHARE };
     scored.physical && scored.gain.share >= smallest && is_enough(&scored.gain)
+}
+
+/// Whether what was fitted differs from zero: asked where the gain sits in few blocks.
+fn is_certain(bench: &Bench<'_>, scored: &Scored, model: &Model) -> bool {
+    if scored.gain.t >= CERTAIN_T {
+        return true;
+    }
+    let coefficients = bench.fit(model).coefficients;
+    let half_widths = bench.half_widths(model, &coefficients);
+    match scored.effect {
+        "torque_saturation" => half_widths.saturation.is_some_and(|half| half < model.saturation.per_effort),
+        "delay" => half_widths.delay_s.is_some_and(|half| half < model.delay_s),
+        _ => {
+            let width = model.terms.last().map_or(0, |term| term.effect.width(term.parameter));
+            let own = coefficients.iter().zip(&half_widths.linear).rev().take(width);
+            own.into_iter().any(|(value, half)| value.abs() > *half)
+        }
+    }
+}
+
+/// Drops effects that make the error on another record larger by more than a little: what holds on one record only is no effect of the axis.
+pub fn veto(bench: &Bench<'_>, other: &Bench<'_>, selection: &mut Selection, declared: usize) {
+    let error = |model: &Model| {
+        let coefficients = bench.fit(model).coefficients;
+        other.force_error_percent(model, &coefficients)
+    };
+    let mut at = declared;
+    while at < selection.model.terms.len() {
+        let mut without = selection.model.clone();
+        let name = without.terms.remove(at).effect.name();
+        if error(&selection.model) <= VETO * error(&without) {
+            at += 1;
+            continue;
+        }
+        selection.model = without;
+        if !selection.model.has(name) {
+            selection.found.retain(|found| *found != name);
+        }
+    }
 }
 
 /// Whether a gain is relevant, large enough to matter to the axis, and more than chance.

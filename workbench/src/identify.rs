@@ -68,6 +68,31 @@ pub fn print(result: &Identification) {
         let cells: Vec<String> = row.iter().skip(1).map(|cell| format!("{cell:>28}")).collect();
         println!("  {:<32}{}", row.first().map_or("", String::as_str), cells.join(""));
     }
+    if let Some(free_run) = &result.report.free_run {
+        let unit = if result.position_unit == "rad" { "µrad" } else { "µm" };
+        let [train, validate] = [&free_run.train, &free_run.validate]
+            .map(|e| format!("{:.3} → {:.3}", e.position_error_um_before, e.position_error_um_after));
+        println!(
+            "  free-run position error, {unit} rms: training {train}, validation {validate} (controller {})",
+            free_run.controller
+        );
+    }
+    for order in result.report.slow_ripple.iter().flat_map(|ripple| &ripple.orders) {
+        let (amplitude, half_width) = (order.amplitude, order.half_width);
+        println!(
+            "  torque ripple of order {} per rev: {amplitude:.4} ± {half_width:.4} {}",
+            order.per_rev, result.effort_unit
+        );
+    }
+    if let Some(ripple) = &result.report.slow_ripple {
+        println!(
+            "  about reversals (up to {:.1} {}/s): force error {:.2} → {:.2} % on the validation record",
+            ripple.fastest,
+            result.position_unit,
+            ripple.validate_force_error_before_percent,
+            ripple.validate_force_error_after_percent
+        );
+    }
     for warning in &result.report.warnings {
         println!("  note: {warning}");
     }

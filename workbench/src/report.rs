@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use identification::report::{Errors, Identification, Report};
+use identification::report::{EffectCurve, Errors, FreeRunErrors, Identification, Report};
 
 use crate::error::Outcome;
 use crate::plots::{self, Curve};
@@ -101,18 +101,116 @@ pub fn identification(page: &mut Page, title: &str, result: &Identification) -> 
     page.table(&error_table(result));
     page.pictures(&residual_pictures(result)?);
     page.pictures(&[time_picture(result)?]);
+    page.pictures(&effect_pictures(result)?);
+    free_run(page, result)?;
+    slow_ripple(page, result);
     page.paragraph(
         "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):",
     );
     page.table(&candidate_table(report));
     page.paragraph(
-        "Parameters of the extended model, with 95 % intervals (jackknife over blocks; none for nonlinear ones):",
+        "Parameters of the extended model, with 95 % intervals (jackknife over blocks of 1 s, nonlinear ones linearised; low = high where there is none):",
     );
     page.table(&parameter_table(report));
     for warning in &report.warnings {
         page.paragraph(&format!("Note: {warning}."));
     }
     Ok(())
+}
+
+/// Each effect that was found in the effort: what the model without it leaves, and the effect.
+fn effect_pictures(result: &Identification) -> Outcome<Vec<String>> {
+    let picture = |curve: &EffectCurve| {
+        let dots = |which: usize, name: &str| Curve {
+            name: name.into(),
+            points: curve.points.iter().map(|point| (point[0], point[which])).collect(),
+            dots: true,
+        };
+        let list = [dots(1, "residual without it"), dots(2, "the effect")];
+        let title = format!("{}: {} (training)", curve.effect, curve.equation);
+        plots::curves(&title, &curve.against, result.effort_unit, (540, 360), &list)
+    };
+    result.curves.effects.iter().map(picture).collect()
+}
+
+/// Free-run simulation: errors, shapes at reversals, picture.
+fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
+    let Some(free_run) = &result.report.free_run else { return Ok(()) };
+    let known = free_run.controller == "known";
+    let unit = if result.position_unit == "rad" { "µrad" } else { "µm" };
+    page.paragraph(if known {
+        "Free run: the whole axis simulated in closed loop from the setpoints alone, parameters fitted to the positions of the training record:"
+    } else {
+        "The controller is not known: the recorded effort was applied and a soft controller kept the simulation near the record. No free run, but models compare:"
+    });
+    let percent = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
+    let head = [
+        "record".to_owned(),
+        format!("position error before, {unit} rms"),
+        format!("after, {unit} rms"),
+        "of the tracking error before, %".to_owned(),
+        "after, %".to_owned(),
+    ];
+    let line = |name: &str, errors: &FreeRunErrors| {
+        vec![
+            name.to_owned(),
+            format!("{:.3}", errors.position_error_um_before),
+            format!("{:.3}", errors.position_error_um_after),
+            percent(errors.tracking_error_percent_before),
+            percent(errors.tracking_error_percent_after),
+        ]
+    };
+    page.table(&[head.to_vec(), line("training", &free_run.train), line("validation", &free_run.validate)]);
+    let shapes = &free_run.reversals;
+    let row = |name: &str, value: Option<f64>| {
+        vec![name.to_owned(), value.map_or_else(|| "not tried".to_owned(), |value| format!("{value:.3}"))]
+    };
+    page.paragraph("What acts at reversals, by what the free run leaves on blocks that were not fitted:");
+    page.table(&[
+        vec!["shape".to_owned(), format!("position error, {unit} rms")],
+        row("rigid friction with stick", Some(shapes.rigid_um)),
+        row("bristle (presliding)", Some(shapes.bristle_um)),
+        row("gap (backlash)", shapes.gap_um),
+        row("bristle behind a gap", shapes.both_um),
+    ]);
+    let curve = |which: usize, name: &str| Curve {
+        name: name.into(),
+        points: result.curves.free_run.iter().map(|point| (point[0], point[which])).collect(),
+        dots: false,
+    };
+    let list = [curve(1, "declared"), curve(2, "extended")];
+    page.pictures(&[plots::curves(
+        "Free run on the validation record: simulated − recorded",
+        "time, s",
+        unit,
+        (1080, 300),
+        &list,
+    )?]);
+    Ok(())
+}
+
+/// Ripple that was found about the reversals of an axis that is never slow for long.
+fn slow_ripple(page: &mut Page, result: &Identification) {
+    let Some(ripple) = &result.report.slow_ripple else { return };
+    page.paragraph(&format!(
+        "Torque ripple about the reversals (samples up to {:.3} {}/s, low-pass {} Hz): force error {:.2} → {:.2} % on the training record, {:.2} → {:.2} % on the validation record:",
+        ripple.fastest,
+        result.position_unit,
+        ripple.cutoff_hz,
+        ripple.train_force_error_before_percent,
+        ripple.train_force_error_after_percent,
+        ripple.validate_force_error_before_percent,
+        ripple.validate_force_error_after_percent
+    ));
+    let mut rows = vec![vec![
+        "order per revolution".to_owned(),
+        format!("amplitude, {}", result.effort_unit),
+        "± (95 %)".to_owned(),
+    ]];
+    rows.extend(ripple.orders.iter().map(|order| {
+        vec![order.per_rev.to_string(), format!("{:.4}", order.amplitude), format!("{:.4}", order.half_width)]
+    }));
+    page.table(&rows);
 }
 
 /// Errors before and after.

@@ -1,6 +1,6 @@
 //! Friction that changes with time from the start of the record (warm-up): `(a sign(v) + b v)·exp(−t / τ)`; every record starts cold.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// (a sign(v) + b v)·exp(−t/τ).
@@ -27,6 +27,10 @@ impl Effect for FrictionDrift {
 
     fn is_tuned(&self) -> bool {
         true
+    }
+
+    fn against(&self) -> Against {
+        Against::Time
     }
 
     fn action(&self, at: &Instant, tau: f64, own: &[f64]) -> Action {

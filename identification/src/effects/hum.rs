@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// a cos(2π f t) + b sin(2π f t).
@@ -34,6 +34,10 @@ impl Effect for Hum {
 
     fn is_tuned(&self) -> bool {
         true
+    }
+
+    fn against(&self) -> Against {
+        Against::Time
     }
 
     fn action(&self, at: &Instant, hz: f64, own: &[f64]) -> Action {

@@ -1,6 +1,6 @@
 //! Offset: a constant force. Coulomb friction that differs by direction is the same force: `Fc ± ΔF` is `Fc sign(v)` and a constant.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
 
 /// A constant force.
@@ -17,6 +17,10 @@ impl Effect for Offset {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![vec![1.0; motion.len()]]
+    }
+
+    fn against(&self) -> Against {
+        Against::Time
     }
 
     fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {

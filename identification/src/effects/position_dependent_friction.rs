@@ -1,6 +1,6 @@
 //! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1 over the travel of the training record.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
 
 /// sign(v)·(a u + b u²).
@@ -40,6 +40,10 @@ impl Effect for PositionDependentFriction {
 
     fn is_level(&self) -> bool {
         true
+    }
+
+    fn against(&self) -> Against {
+        Against::Position
     }
 
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {

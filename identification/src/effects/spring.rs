@@ -1,6 +1,6 @@
 //! A force that depends on position alone: no effect of the list, but it must not be absorbed by one.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::effects::position_dependent_friction::{polynomial, scaled};
 use crate::record::Dataset;
 
@@ -24,6 +24,10 @@ impl Effect for Spring {
 
     fn width(&self, terms: f64) -> usize {
         if terms > 1.5 { 2 } else { 1 }
+    }
+
+    fn against(&self) -> Against {
+        Against::Position
     }
 
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {

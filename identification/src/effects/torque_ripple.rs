@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::{AxisKind, Dataset};
 
 /// Cosine and sine of position.
@@ -42,6 +42,10 @@ impl Effect for TorqueRipple {
 
     fn acts_on_motor(&self) -> bool {
         true
+    }
+
+    fn against(&self) -> Against {
+        Against::Period
     }
 
     fn action(&self, at: &Instant, k: f64, own: &[f64]) -> Action {

@@ -10,6 +10,8 @@ use crate::record::{ControllerForm, Dataset, Effort, Record};
 
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise of the record.
 const LARGEST_MISFIT: f64 = 0.10;
+/// Rows at each end that say nothing: the setpoint beyond them is not known.
+const EDGE_ROWS: usize = 3;
 /// Correlation from which recorded and computed effort belong together.
 const LEAST_CORRELATION: f64 = 0.7;
 /// Rows from which the integral at the start is estimated.
@@ -114,9 +116,10 @@ impl Law {
 
     fn misfit_on(&self, record: &Record) -> f64 {
         let computed = self.teacher_forced(record, self.start(record));
-        let error: f64 = computed.iter().zip(&record.effort).map(|(c, e)| (c - e).powi(2)).sum();
-        let all: f64 = record.effort.iter().map(|e| e * e).sum();
-        (error / all.max(f64::MIN_POSITIVE)).sqrt()
+        let inside = EDGE_ROWS..computed.len().saturating_sub(EDGE_ROWS);
+        let pairs = inside.map(|row| (computed[row], record.effort[row]));
+        let (error, all) = pairs.fold((0.0, 0.0), |(error, all), (c, e)| (error + (c - e).powi(2), all + e * e));
+        (error / f64::max(all, f64::MIN_POSITIVE)).sqrt()
     }
 
     /// State at the first row, with nothing in the integral.
@@ -155,7 +158,9 @@ impl Law {
             Form::Voltage { gain } => gain * (error - (position - two) / (2.0 * period_s)),
             Form::Force { velocity_gain, integral_per_s, filter, feedforward } => {
                 memory.velocity += filter * ((position - one) / period_s - memory.velocity);
-                let slope = |row: usize| if row == 0 { 0.0 } else { (at(row) - at(row - 1)) / period_s };
+                // Beyond both ends the setpoint goes on as it was.
+                let last = reference.len().saturating_sub(1).max(1);
+                let slope = |row: usize| (at(row.clamp(1, last)) - at(row.clamp(1, last) - 1)) / period_s;
                 let acceleration = (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * period_s);
                 let error = error + slope(row) - memory.velocity;
                 memory.sum += error * period_s;

@@ -13,7 +13,7 @@ use crate::report::{FreeRun, FreeRunErrors, ReversalShapes};
 const MICRO: f64 = 1.0e6;
 
 /// Free runs of the declared and of the extended model, both fitted to the positions of the training record.
-pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<FreeRun> {
+pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<(FreeRun, Vec<[f64; 3]>)> {
     let dataset = findings.dataset;
     let record = &dataset.train;
     let drive = reversals.drive;
@@ -39,7 +39,9 @@ pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<F
         }
     };
     let um = |judged: &super::judge::Judged| MICRO * judged.held_out;
-    Some(FreeRun {
+    let runs = [&before, extended].map(|model| simulate(model, &drive, &dataset.validate));
+    let curve = curve(&dataset.validate, &runs);
+    let report = FreeRun {
         controller: match drive {
             Drive::Known(_) => "known",
             Drive::Followed => "followed",
@@ -57,7 +59,16 @@ pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<F
             both_um: reversals.both.as_ref().map(um),
         },
         parameters: ranking::table(reversals.named(dataset)),
-    })
+    };
+    Some((report, curve))
+}
+
+/// Time and both position errors, thinned for a picture.
+fn curve(record: &Record, runs: &[super::Run; 2]) -> Vec<[f64; 3]> {
+    let stride = (record.len() / 6000).max(1);
+    let rows = (SETTLING_ROWS..record.len()).step_by(stride);
+    let error = |run: &super::Run, row: usize| MICRO * (run.motor[row] - record.position[row]);
+    rows.map(|row| [record.time_s[row], error(&runs[0], row), error(&runs[1], row)]).collect()
 }
 
 /// Rms of setpoint − position.

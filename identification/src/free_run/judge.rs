@@ -31,6 +31,8 @@ const DEFLECTIONS: (f64, f64, u32) = (1.0e-3, 6.0e-2, 7);
 const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
 /// Coefficients of restitution that are tried.
 const RESTITUTIONS: [f64; 2] = [0.1, 0.7];
+/// Shares of the friction on the motor side that are tried.
+const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
 /// So many of the best gaps are fitted.
 const STARTS: usize = 3;
 
@@ -143,11 +145,13 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
 
 fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
     let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
+    let kinds = RESTITUTIONS.into_iter().flat_map(|restitution| MOTOR_SHARES.map(|share| (restitution, share)));
+    let kinds: Vec<(f64, f64)> = kinds.collect();
     let shapes = widths.into_iter().flat_map(|gap| {
-        RESTITUTIONS.map(|restitution| Shape {
+        kinds.iter().map(move |&(restitution, motor_friction)| Shape {
             gap,
             load_share: 0.45,
-            motor_friction: 0.2,
+            motor_friction,
             restitution,
             ..Shape::default()
         })
@@ -211,6 +215,12 @@ impl Judged {
 }
 
 impl Reversals {
+    /// Takes over what was decided with the inverse model's word beside the free run's.
+    pub fn settle(&mut self, presliding: bool, backlash: bool) {
+        let undecided = self.accepted.undecided && !presliding && !backlash;
+        self.accepted = Accepted { presliding, backlash, undecided };
+    }
+
     /// Mean over standard error of the gain per block that a shape brings over rigid friction.
     #[must_use]
     pub fn t(&self, judged: &Judged) -> f64 {

@@ -26,6 +26,7 @@ pub struct Simulated {
     /// Reversals.
     pub shape: Shape,
     travel: (f64, f64),
+    duration_s: f64,
 }
 
 /// One entry of the parameter vector.
@@ -72,14 +73,15 @@ impl Simulated {
         let hold_s = if dataset.hold == EffortHold::Instant { 0.5 * period_s } else { 0.0 };
         let delay_s = (model.delay_s - hold_s).max(0.0);
         let saturation = model.saturation.per_effort;
-        (mass > 0.0).then_some(Self { mass, terms, saturation, delay_s, shape, travel: dataset.travel() })
+        let duration_s = dataset.train.period_s * dataset.train.len() as f64;
+        (mass > 0.0).then_some(Self { mass, terms, saturation, delay_s, shape, travel: dataset.travel(), duration_s })
     }
 
     /// What acts at an instant under a commanded effort.
     #[must_use]
     pub fn acting(&self, position: f64, velocity: f64, time_s: f64, commanded: f64) -> Acting {
         let scaled = (position - self.travel.0) / self.travel.1;
-        let at = Instant { position, scaled, velocity, time_s };
+        let at = Instant { position, scaled, velocity, time_s, time_share: time_s / self.duration_s };
         let delivered = commanded / (1.0 + self.saturation * commanded.abs());
         let mut acting = Acting { motor: delivered, ..Acting::default() };
         for Active { term, own } in &self.terms {
