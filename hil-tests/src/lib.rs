@@ -4,5 +4,6 @@
 //! run every node as a process of its own (blind to bandwidth), the board image is linked and looked at (blind to booting).
 
 pub mod golden;
+pub mod plans;
 pub mod records;
 pub mod rig;

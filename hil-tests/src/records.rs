@@ -17,7 +17,6 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
 const PERIOD_S: f64 = 1.0e-3;
-const ROWS: usize = 30_000;
 const LEAD_M: f64 = 0.010;
 const COUNTS_PER_REV: u32 = 131_072;
 const POSITION_GAIN_PER_S: f64 = 40.0;
@@ -95,13 +94,23 @@ pub struct Plan {
     pub friction_factor: f64,
     /// Noise of the recorded effort, N.
     pub noise_n: f64,
+    /// Rows of each record, 1 ms apart.
+    pub rows: usize,
     /// Chooses the axis, the motion and the noise.
     pub seed: u64,
 }
 
 impl Default for Plan {
     fn default() -> Self {
-        Self { hidden: Vec::new(), load_scale: false, load_loop: false, friction_factor: 1.0, noise_n: 3.0, seed: 1 }
+        Self {
+            hidden: Vec::new(),
+            load_scale: false,
+            load_loop: false,
+            friction_factor: 1.0,
+            noise_n: 3.0,
+            rows: 30_000,
+            seed: 1,
+        }
     }
 }
 
@@ -126,7 +135,7 @@ pub fn write(folder: &Path, plan: &Plan) -> io::Result<()> {
     let parameters = axis(plan, &mut source);
     let mass = parameters.mechanics.motor_inertia_kg + parameters.mechanics.table_mass_kg;
     for name in ["train.csv", "validate.csv"] {
-        let path = path(&mut source);
+        let path = path(plan.rows, &mut source);
         std::fs::write(folder.join(name), record(plan, &parameters, &path, mass, &mut source))?;
     }
     std::fs::write(folder.join("dataset.toml"), dataset(plan, mass))
@@ -227,9 +236,9 @@ fn foreign_n(hidden: &[Hidden], table_m: f64, velocity: f64, time_s: f64) -> f64
 }
 
 /// The motion of a record: sums of sines, bursts and trapezoids, slow and fast, with rests.
-fn path(source: &mut Source) -> Vec<f64> {
+fn path(rows: usize, source: &mut Source) -> Vec<f64> {
     let mut path = vec![0.0; (source.between(0.2, 0.6) / PERIOD_S) as usize];
-    while path.len() < ROWS {
+    while path.len() < rows {
         let here = path.last().copied().unwrap_or(0.0);
         let kind = source.between(0.0, 3.0);
         let piece = if kind < 1.0 {
@@ -243,7 +252,7 @@ fn path(source: &mut Source) -> Vec<f64> {
         let rest = (source.between(0.02, 0.3) / PERIOD_S) as usize;
         path.extend(std::iter::repeat_n(path.last().copied().unwrap_or(0.0), rest));
     }
-    path.truncate(ROWS);
+    path.truncate(rows);
     path
 }
 

@@ -261,6 +261,8 @@ fn assemble(findings: &Findings<'_>) -> Identification {
             ..curves(dataset, validation, &validate)
         },
         report,
+        travel: dataset.travel(),
+        residual_rms: reversal::rms(&train[1].residual, &motion.moving),
         effort_unit: dataset.effort.unit(),
         effort_column: dataset.effort.column(),
         position_unit: dataset.kind.position_unit(),

@@ -230,6 +230,10 @@ pub struct Identification {
     pub report: Report,
     /// Curves.
     pub curves: Curves,
+    /// Middle and half of the travel of the training record.
+    pub travel: (f64, f64),
+    /// Rms of what the extended model leaves of the effort on the training record, moving samples.
+    pub residual_rms: f64,
     /// Unit of the effort.
     pub effort_unit: &'static str,
     /// Name of the effort column.

@@ -163,6 +163,9 @@ struct AxisForm {
     gains: Option<Gains>,
     actual: Option<ActualForm>,
     declared: Option<DeclaredForm>,
+    /// What an identification said, for people: with intervals and units. The simulator reads `actual`.
+    #[serde(rename = "identified")]
+    _identified: Option<toml::Table>,
 }
 
 #[derive(Clone, Deserialize)]

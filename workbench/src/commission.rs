@@ -12,6 +12,7 @@ use crate::compensation::{self, AxisCompensation};
 use crate::error::{Failure, Outcome};
 use crate::identify::{self, write};
 use crate::master::AxisCycle;
+use crate::model_file::{self, Known};
 use crate::plots::{self, Curve, Trace};
 use crate::progress;
 use crate::recording;
@@ -126,8 +127,10 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn write(&self, out: &Path, names: &[String]) -> Outcome<()> {
-        let models: Vec<(String, &Identification)> = names.iter().cloned().zip(self.results).collect();
-        write(&out.join("model.toml"), &identify::model_toml(&models))?;
+        let known = self.machine.axes.iter().map(|axis| Known::of_machine(axis, self.machine.period_s));
+        let models: Vec<(String, Known, &Identification)> =
+            names.iter().zip(known).zip(self.results).map(|((name, known), r)| (name.clone(), known, r)).collect();
+        write(&out.join("model.toml"), &model_file::text(&format!("{}, identified", self.machine.name), &models))?;
         write(&out.join("compensation.toml"), &compensation::text(names, &self.tuned.compensation)?)?;
         write(&out.join("summary.json"), &self.summary()?)?;
         circle::write_logs(&out.join("circle-after.candump.log"), &self.after.logs)?;

@@ -6,6 +6,7 @@ use identification::{Dataset, Identification, IdentificationError};
 
 use crate::cli;
 use crate::error::{Failure, Outcome};
+use crate::model_file::{self, Known};
 use crate::progress;
 use crate::report::{self, Page};
 
@@ -31,7 +32,7 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
         std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
         write(&folder.join("identification.json"), &json)?;
         write(&folder.join("prediction.csv"), &prediction_csv(&result))?;
-        write(&folder.join("model.toml"), &model_toml(&[(dataset.name.clone(), &result)]))?;
+        write(&folder.join("model.toml"), &model_toml(&dataset, &result))?;
         let mut page = Page::new(&format!("Identification of {}", dataset.name));
         report::identification(&mut page, "Result", &result)?;
         write(&folder.join("report.html"), &page.finish())?;
@@ -41,6 +42,15 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
         println!("report: {}", folder.join("report.html").display());
     }
     Ok(())
+}
+
+/// The identified model: a machine file where the simulator has such an axis.
+fn model_toml(dataset: &Dataset, result: &Identification) -> String {
+    let mass_kg = result.report.parameters.get("inertia").map_or(0.0, |inertia| inertia.value);
+    match Known::of_dataset(dataset, mass_kg).filter(|_| mass_kg > 0.0) {
+        Some(known) => model_file::text(&dataset.name, &[("X".to_owned(), known, result)]),
+        None => model_file::parameters_only(&dataset.name, result),
+    }
 }
 
 /// Writes a file.
@@ -107,30 +117,6 @@ pub fn prediction_csv(result: &Identification) -> String {
         curves.time_s.iter().zip(&curves.effort).zip(&curves.declared).zip(&curves.extended)
     {
         text.push_str(&format!("{time},{effort},{declared:.6},{extended:.6}\n"));
-    }
-    text
-}
-
-/// The identified models as TOML: effects and parameters of each axis.
-#[must_use]
-pub fn model_toml(axes: &[(String, &Identification)]) -> String {
-    let mut text =
-        String::from("# Identified models: declared effects, what they lacked, parameters with 95 % intervals.\n");
-    for (name, result) in axes {
-        let report = &result.report;
-        let list = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-        text.push_str(&format!(
-            "\n[[axis]]\nname = \"{name}\"\ndeclared = [{}]\nfound = [{}]\nverdict = \"{}\"\n",
-            list(&report.declared),
-            list(&report.found),
-            report.verdict
-        ));
-        for (name, p) in &report.parameters {
-            text.push_str(&format!(
-                "parameters.{name} = {{ value = {:e}, low = {:e}, high = {:e}, unit = \"{}\" }}\n",
-                p.value, p.low, p.high, p.unit
-            ));
-        }
     }
     text
 }

@@ -14,6 +14,7 @@ pub mod excitation;
 pub mod identify;
 pub mod link;
 pub mod master;
+pub mod model_file;
 pub mod nodes;
 pub mod plots;
 pub mod progress;

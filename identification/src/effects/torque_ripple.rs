@@ -85,7 +85,14 @@ impl Effect for TorqueRipple {
         };
         let order = per_rev.map(|order| naming.nonlinear("torque_ripple_order", order, "per rev".into()));
         let period = naming.nonlinear("torque_ripple_period", 1.0 / k, naming.length().into());
-        [Some(amplitude), Some(period), order].into_iter().flatten().collect()
+        // a cos θ + b sin θ = A sin(θ + φ).
+        let phase = Named {
+            name: "torque_ripple_phase".into(),
+            value: a.value.atan2(b.value),
+            half_width: Some(half_width / a.value.hypot(b.value).max(f64::MIN_POSITIVE)),
+            unit: "rad".into(),
+        };
+        [Some(amplitude), Some(period), order, Some(phase)].into_iter().flatten().collect()
     }
 }
 
