@@ -55,7 +55,7 @@ pub enum Hidden {
     Spring(f64),
     /// Outside the list: a force over time, N and Hz.
     Hum(f64, f64),
-    /// Outside the list: a force over position and direction that grows with the cube of velocity, N·s³/m³.
+    /// Outside the list: a drag that grows with the cube of velocity, N·s³/m³.
     CubicDrag(f64),
 }
 

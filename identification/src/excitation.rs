@@ -6,7 +6,8 @@ use crate::record::{AxisKind, Dataset};
 /// Warnings about a training record, one sentence each.
 #[must_use]
 pub fn warnings(dataset: &Dataset, motion: &Kinematics, found: &[String]) -> Vec<String> {
-    let mut list = same_force(dataset, found);
+    let mut list = dataset.notes.clone();
+    list.extend(same_force(dataset, found));
     let moving = |test: &dyn Fn(f64) -> bool| {
         motion.velocity_lp.iter().zip(&motion.moving).filter(|(v, moving)| **moving && test(**v)).count()
     };

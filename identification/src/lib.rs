@@ -27,6 +27,7 @@ pub mod load;
 pub mod outcome;
 mod pictures;
 pub mod plausibility;
+pub mod protocols;
 mod ranking;
 pub mod record;
 pub mod regression;

@@ -10,6 +10,7 @@ use crate::free_run::{Drive, errors as free_run_errors};
 use crate::kinematics::Kinematics;
 use crate::pictures;
 use crate::plausibility;
+use crate::protocols;
 use crate::ranking;
 use crate::record::Dataset;
 use crate::report::{Curves, Errors, Identification, Report, ResidualReport};
@@ -78,8 +79,9 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
     let mut reversals = judge::reversals(dataset, &selected.model, &coefficients);
     let accepted = at_reversals(presliding.as_ref(), reversals.as_ref(), difference.as_ref());
-    if let Some(reversals) = reversals.as_mut().filter(|_| difference.is_none()) {
-        reversals.settle(accepted.presliding, accepted.backlash);
+    if let Some(reversals) = &mut reversals {
+        let gap = difference.as_ref().is_some_and(|d| d.gap.is_some());
+        reversals.settle(accepted.presliding, accepted.backlash || gap);
     }
     let deflection = deflection(presliding.as_ref(), reversals.as_ref());
     let model = match &difference {
@@ -224,7 +226,7 @@ fn assemble(findings: &Findings<'_>) -> Identification {
     let Findings { dataset, motion, validation, declared, extended, selected, difference, .. } = findings;
     let train = [declared.judge(dataset, motion), extended.judge(dataset, motion)];
     let validate = [declared.judge(dataset, validation), extended.judge(dataset, validation)];
-    let slow_ripple = slow_ripple(dataset, motion);
+    let slow_ripple = slow_ripple(dataset, motion, &declared.model);
     let found = found(findings, slow_ripple.is_some());
     let residual = structure(motion, &train, selected);
     let percent_left = train[1].force_percent * residual.share_after.sqrt();
@@ -244,6 +246,7 @@ fn assemble(findings: &Findings<'_>) -> Identification {
         train: errors(&train, difference.as_ref().map(|d| (d.before_um, d.after_um))),
         validate: errors(&validate, difference.as_ref().and_then(on_validation)),
         whole: whole(dataset, declared, extended),
+        protocols: protocols::table(findings),
         residual: ResidualReport { looks_like: looks_like(&residual, findings, apart), ..residual },
         free_run: free_run.as_ref().map(|(report, _)| report.clone()),
         parameters: ranking::parameters(findings, slow_ripple.as_ref()),
@@ -374,7 +377,7 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
     // One row per row of the record: predictions go back from the uniform base to the time stamps of the file.
     let origin = dataset.validate.rows.first().map_or(0.0, |row| row.0) - motion.time_s.first().copied().unwrap_or(0.0);
     let at: Vec<f64> = dataset.validate.rows.iter().map(|(t, _)| t - origin).collect();
-    let even = at.len() == motion.len();
+    let even = !dataset.validate.jittered && at.len() == motion.len();
     let on_rows =
         |values: &[f64]| if even { values.to_vec() } else { crate::record::interpolate(&motion.time_s, values, &at) };
     Curves {

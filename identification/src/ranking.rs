@@ -9,7 +9,7 @@ use crate::free_run::judge::Judged;
 use crate::outcome::Findings;
 use crate::report::{Candidate, Parameter, SlowRipple};
 use crate::reversal::{self, bristle};
-use crate::selection::{self, Scored};
+use crate::selection::Scored;
 
 const EFFORT: &str = "effort of moving samples";
 const ABOUT_REVERSALS: &str = "effort about reversals";
@@ -22,6 +22,10 @@ pub(crate) fn candidates(findings: &Findings<'_>, found: &[String]) -> Vec<Candi
     list.extend(on_reversals(findings));
     list.extend(on_free_run(findings));
     list.extend(on_difference(findings));
+    // One line each: the judgement that removes most.
+    list.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let mut seen = std::collections::BTreeSet::new();
+    list.retain(|candidate| seen.insert(candidate.effect.clone()));
     for candidate in &mut list {
         candidate.accepted = found.contains(&candidate.effect);
     }
@@ -44,7 +48,7 @@ fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
 
 fn force_candidate(findings: &Findings<'_>, scored: &Scored) -> Candidate {
     let Findings { dataset, motion, validation, .. } = findings;
-    let mut model = selection::declared_model(dataset);
+    let mut model = findings.declared.model.clone();
     match crate::effects::find(scored.effect) {
         Some(effect) => model.terms.push(Term { effect, parameter: scored.parameter }),
         None if scored.effect == "delay" => model.delay_s = scored.parameter,
@@ -78,10 +82,10 @@ fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
 /// Force error on the validation record of the declared model with a bristle in place of the sign.
 fn with_bristle(findings: &Findings<'_>, deflection: f64) -> f64 {
     let Findings { dataset, motion, validation, .. } = findings;
-    let model = selection::declared_model(dataset);
+    let model = &findings.declared.model;
     let (train, validate) = (bristle::motion(motion, deflection), bristle::motion(validation, deflection));
-    let coefficients = Bench::new(dataset, &train).fit(&model).coefficients;
-    Bench::new(dataset, &validate).force_error_percent(&model, &coefficients)
+    let coefficients = Bench::new(dataset, &train).fit(model).coefficients;
+    Bench::new(dataset, &validate).force_error_percent(model, &coefficients)
 }
 
 fn removed(after: f64, before: f64) -> f64 {

@@ -207,6 +207,7 @@ struct AxisForm {
     encoder_resolution_m: Option<f64>,
     encoder_resolution_rad: Option<f64>,
     load_encoder_resolution_m: Option<f64>,
+    load_encoder_resolution_rad: Option<f64>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -246,6 +247,8 @@ pub struct Dataset {
     pub validate: Record,
     /// Whether the validation record is the last part of the training record's file.
     pub held_back: bool,
+    /// What is odd in `dataset.toml` but no reason to refuse it.
+    pub notes: Vec<String>,
 }
 
 /// Share of the time that is kept for validation where there is no record of its own.
@@ -265,7 +268,8 @@ impl Dataset {
                 folder.display()
             )));
         }
-        let form = read_form(&folder.join("dataset.toml"))?;
+        let (form, notes) = read_form(&folder.join("dataset.toml"))?;
+        check_form(folder, &form)?;
         let axis = form.axis.clone().unwrap_or_default();
         let file = |stem: &str| {
             let extension = if form.bus.is_some() { "log" } else { "csv" };
@@ -274,7 +278,7 @@ impl Dataset {
         let (whole, effort) = read_record(&file("train"), axis.kind, &form)?;
         let beside = file("validate");
         let other: Option<PathBuf> = validate.map(Path::to_path_buf).or_else(|| beside.is_file().then_some(beside));
-        let (train, validation, held_back) = match other {
+        let (mut train, mut validation, held_back) = match other {
             Some(path) => {
                 let (validation, validation_effort) = read_record(&path, axis.kind, &form)?;
                 check_pair(&path, &whole, effort, &validation, validation_effort)?;
@@ -285,14 +289,17 @@ impl Dataset {
                 (whole.part(0..cut), whole.part(cut..whole.len()), true)
             }
         };
+        if train.reference.is_none() || validation.reference.is_none() {
+            // A setpoint in one of them only is of no use.
+            (train.reference, validation.reference) = (None, None);
+        }
         for (what, record) in [("training", &train), ("validation", &validation)] {
             check_motion(folder, what, record, axis.kind)?;
         }
-        check_form(folder, &form)?;
         let stated_limit = form.controller.as_ref().and_then(|c| c.force_limit_n).filter(|_| effort == Effort::Force);
-        let resolution = match axis.kind {
-            AxisKind::Linear => axis.encoder_resolution_m,
-            AxisKind::Rotary => axis.encoder_resolution_rad,
+        let (resolution, load_resolution) = match axis.kind {
+            AxisKind::Linear => (axis.encoder_resolution_m, axis.load_encoder_resolution_m),
+            AxisKind::Rotary => (axis.encoder_resolution_rad, axis.load_encoder_resolution_rad),
         };
         Ok(Self {
             name: form.name.unwrap_or_else(|| folder.display().to_string()),
@@ -302,15 +309,14 @@ impl Dataset {
             effort_lag_s: form.effort_lag_s.unwrap_or(0.0),
             lead_m_per_rev: axis.lead_m_per_rev,
             resolution: resolution.unwrap_or_else(|| smallest_step(&train.position)),
-            load_resolution: axis
-                .load_encoder_resolution_m
-                .unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
+            load_resolution: load_resolution.unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
             effort_limit: stated_limit.or_else(|| plateau(&train.effort)),
             controller: form.controller,
             declared: check_declared(folder, declared.or(form.declared.map(|declared| declared.effects)))?,
             train,
             validate: validation,
             held_back,
+            notes,
         })
     }
 
@@ -342,15 +348,16 @@ impl Dataset {
     }
 }
 
-fn read_form(path: &Path) -> Outcome<DatasetForm> {
+fn read_form(path: &Path) -> Outcome<(DatasetForm, Vec<String>)> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| IdentificationError::new(format!("{}: {error}; a dataset needs this file", path.display())))?;
-    check_keys(path, &text)?;
-    toml::from_str(&text).map_err(|error| {
+    let notes = slips(path, &text);
+    let form: DatasetForm = toml::from_str(&text).map_err(|error| {
         let line =
             error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
         IdentificationError::new(format!("{}:{line}: {}", path.display(), error.message()))
-    })
+    })?;
+    Ok((form, notes))
 }
 
 /// Keys that mean something; others are kept for people (source, licence, notes).
@@ -372,7 +379,14 @@ const KEYS: [(&str, &[&str]); 4] = [
     ),
     (
         "axis",
-        &["kind", "lead_m_per_rev", "encoder_resolution_m", "encoder_resolution_rad", "load_encoder_resolution_m"],
+        &[
+            "kind",
+            "lead_m_per_rev",
+            "encoder_resolution_m",
+            "encoder_resolution_rad",
+            "load_encoder_resolution_m",
+            "load_encoder_resolution_rad",
+        ],
     ),
     (
         "controller",
@@ -393,9 +407,10 @@ const KEYS: [(&str, &[&str]); 4] = [
 const TYPO: usize = 2;
 const SHORTEST_KEY: usize = 7;
 
-/// A key that is nearly one that we know is a slip of the pen, and would be ignored without a word.
-fn check_keys(path: &Path, text: &str) -> Outcome<()> {
-    let Ok(table) = text.parse::<toml::Table>() else { return Ok(()) };
+/// Keys that are nearly one that we know: slips of the pen, which would be ignored without a word.
+fn slips(path: &Path, text: &str) -> Vec<String> {
+    let Ok(table) = text.parse::<toml::Table>() else { return Vec::new() };
+    let mut notes = Vec::new();
     for (section, known) in KEYS {
         let part = if section.is_empty() { Some(&table) } else { table.get(section).and_then(toml::Value::as_table) };
         for key in part.into_iter().flat_map(|part| part.keys()).filter(|key| !known.contains(&key.as_str())) {
@@ -403,18 +418,19 @@ fn check_keys(path: &Path, text: &str) -> Outcome<()> {
             if let Some(meant) = known.iter().filter(|_| key.len() >= SHORTEST_KEY).find(near) {
                 let line =
                     text.lines().position(|line| line.trim_start().starts_with(key.as_str())).map_or(0, |at| at + 1);
-                return Err(IdentificationError::new(format!(
-                    "{}:{line}: unknown key {key}; did you mean {meant}?",
+                notes.push(format!(
+                    "{}:{line}: key {key} is not known and was ignored; did you mean {meant}?",
                     path.display()
-                )));
+                ));
             }
         }
     }
-    Ok(())
+    notes
 }
 
 fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
     let axis = form.axis.clone().unwrap_or_default();
+    let controller = form.controller.clone().unwrap_or_default();
     let positive = [
         ("sample_period_s", form.sample_period_s, 1.0e-6, 1.0),
         ("effort_lag_s", form.effort_lag_s, 0.0, 0.1),
@@ -422,6 +438,14 @@ fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
         ("encoder_resolution_m", axis.encoder_resolution_m, 0.0, 1.0e-2),
         ("encoder_resolution_rad", axis.encoder_resolution_rad, 0.0, 1.0),
         ("load_encoder_resolution_m", axis.load_encoder_resolution_m, 0.0, 1.0e-2),
+        ("load_encoder_resolution_rad", axis.load_encoder_resolution_rad, 0.0, 1.0),
+        ("position_gain_per_s", controller.position_gain_per_s, 0.0, 1.0e6),
+        ("velocity_gain_n_s_per_m", controller.velocity_gain_n_s_per_m, 0.0, 1.0e12),
+        ("velocity_gain_v_s_per_m", controller.velocity_gain_v_s_per_m, 0.0, 1.0e12),
+        ("integral_per_s", controller.integral_per_s, 0.0, 1.0e6),
+        ("velocity_filter", controller.velocity_filter, 1.0e-6, 1.0),
+        ("acceleration_feedforward_kg", controller.acceleration_feedforward_kg, 0.0, 1.0e9),
+        ("force_limit_n", controller.force_limit_n, 1.0e-6, 1.0e9),
     ];
     for (key, value, low, high) in positive {
         if let Some(value) = value.filter(|value| !(low..=high).contains(value)) {
@@ -533,7 +557,7 @@ fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
 fn check_period(path: &str, time_s: &[f64], stated: Option<f64>) -> Outcome<()> {
     let median = median_step(time_s);
     match stated {
-        Some(period) if !(0.5..2.0).contains(&(median / period)) => Err(IdentificationError::new(format!(
+        Some(period) if !(0.01..100.0).contains(&(median / period)) => Err(IdentificationError::new(format!(
             "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them in another unit?"
         ))),
         _ => Ok(()),
@@ -613,9 +637,11 @@ fn median_step(time_s: &[f64]) -> f64 {
     steps[steps.len() / 2]
 }
 
+/// Smallest step between two rows, the rounding of an encoder whose resolution was not stated.
 fn smallest_step(values: &[f64]) -> f64 {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
-    steps.fold(f64::INFINITY, f64::min).min(1.0e-6)
+    let smallest = steps.fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { smallest } else { 0.0 }
 }
 
 /// Brings a record with jittered time stamps onto a uniform base by linear interpolation; leaves a uniform one as it is.

@@ -40,8 +40,9 @@ impl Blocks {
     #[must_use]
     pub fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
         let size = columns.len() + 1;
-        let per_block = ((BLOCK_S / period_s).round() as usize).max(1);
-        let guard = (GUARD_S / period_s).round() as usize;
+        // A short record still has one block a fold.
+        let per_block = ((BLOCK_S / period_s).round() as usize).min(target.len() / FOLDS).max(1);
+        let guard = ((GUARD_S / period_s).round() as usize).min(per_block / 10);
         let blocks = target.len().div_ceil(per_block);
         let mut grams = vec![DMatrix::zeros(size, size); blocks];
         let mut row = vec![0.0; size];
@@ -187,9 +188,15 @@ impl Gain {
     }
 }
 
-/// Mean over standard error.
+/// Fewer blocks have no standard error worth the name.
+const FEWEST_GAINS: usize = 3;
+
+/// Mean over standard error; zero where there are too few values.
 #[must_use]
 pub fn t_of(gains: &[f64]) -> f64 {
+    if gains.len() < FEWEST_GAINS {
+        return 0.0;
+    }
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count.max(1.0);
     let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::protocols::Protocol;
+
 /// A candidate in the ranking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
@@ -170,6 +172,8 @@ pub struct Report {
     /// Errors on the whole file, where validation is its last part: the declared and the extended structure fitted to all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub whole: Option<Errors>,
+    /// The force error by the protocols that papers use.
+    pub protocols: Vec<Protocol>,
     /// Structure left.
     pub residual: ResidualReport,
     /// Free-run simulation, where the model can be simulated.

@@ -13,12 +13,12 @@ use crate::regression::{Blocks, Fit, Gain};
 use crate::search::{descend, smallest};
 
 /// Smallest share of the held-out error.
-pub const SHARE: f64 = 0.08;
+pub const SHARE: f64 = 0.05;
 /// Smallest size, percent of the effort.
 pub const PERCENT: f64 = 0.15;
 /// Shares of the held-out error, and the smallest t from each of them on. The t of an effect that shows in few blocks (slow motion) is small
 /// however large it is there.
-pub const T: [(f64, f64); 3] = [(0.30, 1.0), (0.12, 1.5), (SHARE, 2.5)];
+pub const T: [(f64, f64); 4] = [(0.30, 1.0), (0.12, 1.5), (0.08, 2.5), (SHARE, 3.0)];
 /// From this t on a coefficient's interval is not asked.
 const CERTAIN_T: f64 = 2.5;
 /// Largest error on another record with an effect over that without it.
@@ -144,7 +144,7 @@ fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model
     let mut candidates: Vec<(Scored, Model)> = LIBRARY
         .into_iter()
         .filter(|effect| is_open(*effect, model, bench.dataset))
-        .map(|effect| candidate(bench, model, &base, effect, &setting, round))
+        .filter_map(|effect| candidate(bench, model, &base, effect, &setting, round))
         .collect();
     if model.delay_s == 0.0 {
         candidates.push(actuator::delay_candidate(pair, model, &base, round));
@@ -201,7 +201,18 @@ pub fn veto(bench: &Bench<'_>, other: &Bench<'_>, selection: &mut Selection, dec
         selection.model = without;
         if !selection.model.has(name) {
             selection.found.retain(|found| *found != name);
+            selection.nameless.retain(|found| *found != name);
         }
+    }
+    let undelayed = Model { delay_s: 0.0, ..selection.model.clone() };
+    if selection.found.contains(&"delay") && error(&selection.model) > VETO * error(&undelayed) {
+        selection.found.retain(|found| *found != "delay");
+        selection.model = undelayed;
+    }
+    let ideal = Model { saturation: Saturation::default(), ..selection.model.clone() };
+    if selection.found.contains(&"torque_saturation") && error(&selection.model) > VETO * error(&ideal) {
+        selection.found.retain(|found| *found != "torque_saturation");
+        selection.model = ideal;
     }
 }
 
@@ -224,13 +235,16 @@ fn candidate(
     effect: &'static dyn Effect,
     setting: &Setting<'_>,
     round: usize,
-) -> (Scored, Model) {
+) -> Option<(Scored, Model)> {
     let fixed = bench.design(model);
     let sse = |parameter: f64| bench.blocks(&bench.extended(&fixed, &Term { effect, parameter })).fit().sse;
-    let known = |k: &f64| is_new(bench, model, effect, *k);
+    let bounds = effect.bounds(bench.motion);
+    let inside = |k: &f64| !effect.is_tuned() || (*k >= bounds.0 && *k <= bounds.1);
+    let known = |k: &f64| inside(k) && is_new(bench, model, effect, *k);
     let grid: Vec<f64> = effect.grid(bench.motion, setting).into_iter().filter(known).collect();
-    let start = smallest(grid, &sse).unwrap_or(0.0);
-    let parameter = descend(start, effect.refine_step(bench.motion, start), effect.bounds(bench.motion), &sse);
+    // Nothing on the grid: the record cannot show the effect.
+    let start = smallest(grid, &sse)?;
+    let parameter = descend(start, effect.refine_step(bench.motion, start), bounds, &sse);
     let extended = with(model, effect, parameter);
     let fit = bench.fit(&extended);
     let own = &fit.coefficients[base.coefficients.len().min(fit.coefficients.len())..];
@@ -241,7 +255,7 @@ fn candidate(
     });
     let gain = Gain::of(base, &fit);
     let nameless = effect.is_nameless();
-    (Scored { effect: effect.name(), parameter, gain, physical, accepted: false, nameless, round }, extended)
+    Some((Scored { effect: effect.name(), parameter, gain, physical, accepted: false, nameless, round }, extended))
 }
 
 /// A repeated ripple must have another wave number than the ones already found.

@@ -36,7 +36,7 @@ const WIDTHS: f64 = 1.5;
 
 /// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing was found.
 #[must_use]
-pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics) -> Option<SlowRipple> {
+pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics, declared: &Model) -> Option<SlowRipple> {
     let per_rev = match dataset.kind {
         AxisKind::Rotary => TAU,
         AxisKind::Linear => dataset.lead_m_per_rev?,
@@ -54,8 +54,7 @@ pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics) -> Option<SlowRipple>
         return None;
     }
     let bench = Bench::new(dataset, &train);
-    let declared = selection::declared_model(dataset);
-    let before = bench.fit(&declared);
+    let before = bench.fit(declared);
     let (model, after, found) = add_orders(&bench, declared.clone(), before.clone(), per_rev);
     if found.is_empty() {
         return None;
@@ -78,9 +77,9 @@ pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics) -> Option<SlowRipple>
         fastest,
         cutoff_hz: CUTOFF_HZ,
         orders,
-        train_force_error_before_percent: error(&train, &declared, &before),
+        train_force_error_before_percent: error(&train, declared, &before),
         train_force_error_after_percent: error(&train, &model, &after),
-        validate_force_error_before_percent: error(&validate, &declared, &before),
+        validate_force_error_before_percent: error(&validate, declared, &before),
         validate_force_error_after_percent: error(&validate, &model, &after),
     })
     .filter(|ripple| !ripple.orders.is_empty())

@@ -1,12 +1,13 @@
 //! The identified model as a machine file, which `circle`, `tune` and `plant` accept.
 //!
 //! `[axis.actual]` is the identified model; `[axis.identified]` beside it holds the parameters as they were found, with intervals and units. What a record
-//! does not say (the split of the masses, the stiffness of the screw) is stated as assumed.
+//! does not say (the split of the masses, the stiffness of the screw) is stated as assumed. Of several ripple orders the first is simulated, of position
+//! dependence the linear part, of friction drift the Coulomb part.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use identification::record::{AxisKind, Effort};
+use identification::record::{AxisKind, Effort, EffortHold};
 use identification::{Dataset, Identification};
 use plant_sim::machine::{Gains, Limits, MachineAxis, PositionSensor};
 
@@ -29,6 +30,8 @@ pub struct Known {
     pub gains: Gains,
     /// Sample period, s.
     pub period_s: f64,
+    /// Delay that the record sees because the effort is held while its rows say it acts at once, s.
+    pub hold_s: f64,
 }
 
 /// Share of the moved mass that is taken for the table's where nothing says it.
@@ -54,6 +57,7 @@ impl Known {
             limits: axis.limits,
             gains: axis.gains,
             period_s,
+            hold_s: 0.0,
         }
     }
 
@@ -94,6 +98,7 @@ impl Known {
                 torque_notch_hz: None,
             },
             period_s: record.period_s,
+            hold_s: if dataset.hold == EffortHold::Instant { 0.5 * record.period_s } else { 0.0 },
         })
     }
 }
@@ -230,7 +235,7 @@ fn effects(text: &mut String, known: &Known, result: &Identification) {
         let _ = writeln!(text, "torque_saturation_per_n = {k:e}");
     }
     if let Some(delay_s) = get("delay") {
-        let _ = writeln!(text, "delay_s = {:e}", delay_s.clamp(0.0, known.period_s.min(1.0e-3)));
+        let _ = writeln!(text, "delay_s = {:e}", (delay_s - known.hold_s).clamp(0.0, known.period_s.min(1.0e-3)));
     }
 }
 

@@ -104,6 +104,8 @@ pub fn identification(page: &mut Page, title: &str, result: &Identification) -> 
     page.pictures(&effect_pictures(result)?);
     free_run(page, result)?;
     slow_ripple(page, result);
+    page.paragraph("The force error by the protocols that papers use:");
+    page.table(&protocol_table(report));
     page.paragraph(
         "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):",
     );
@@ -244,6 +246,15 @@ pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
     if let Some(whole) = &report.whole {
         add("whole file, fitted to all of it", whole);
     }
+    rows
+}
+
+fn protocol_table(report: &Report) -> Vec<Vec<String>> {
+    let mut rows = vec![["samples and fit", "declared, %", "extended, %"].map(String::from).to_vec()];
+    rows.extend(report.protocols.iter().map(|protocol| {
+        let percent = |value: f64| format!("{value:.2}");
+        vec![protocol.definition.to_owned(), percent(protocol.declared_percent), percent(protocol.extended_percent)]
+    }));
     rows
 }
 

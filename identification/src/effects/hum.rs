@@ -12,6 +12,8 @@ const SLOWEST_HZ: f64 = 0.2;
 const FASTEST_HZ: f64 = 60.0;
 /// Every so many samples are scanned.
 const STRIDE: usize = 8;
+/// The whole band is scanned on so much of a record, s.
+const LONGEST_SCAN_S: f64 = 40.0;
 
 impl Effect for Hum {
     fn name(&self) -> &'static str {
@@ -46,24 +48,19 @@ impl Effect for Hum {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        let step = 0.5 / motion.duration_s();
         let fastest = FASTEST_HZ.min(0.4 / (motion.period_s * STRIDE as f64));
-        let count = ((fastest - SLOWEST_HZ) / step).clamp(0.0, 20_000.0) as usize;
-        let samples: Vec<(f64, f64)> = (0..motion.len())
-            .step_by(STRIDE)
-            .filter(|at| motion.moving[*at])
-            .map(|at| (motion.time_s[at], setting.residual.get(at).copied().unwrap_or(0.0)))
-            .collect();
-        let power = |hz: f64| {
-            let (re, im) = samples.iter().fold((0.0, 0.0), |(re, im), (t, e)| {
-                let (sin, cos) = (TAU * hz * t).sin_cos();
-                (re + cos * e, im + sin * e)
-            });
-            re.hypot(im)
+        // The whole band on a part of the record, then about its best on all of it: frequencies times samples would grow with the square.
+        let part = (LONGEST_SCAN_S / motion.period_s) as usize;
+        let duration_s = motion.duration_s().min(LONGEST_SCAN_S);
+        let step = 0.5 / duration_s;
+        let best = strongest(&samples(motion, setting, part), SLOWEST_HZ, fastest, step);
+        let fine = 0.5 / motion.duration_s();
+        let best = if motion.len() > part {
+            strongest(&samples(motion, setting, motion.len()), best - 2.0 * step, best + 2.0 * step, fine)
+        } else {
+            best
         };
-        let frequencies = (0..count).map(|i| SLOWEST_HZ + step * i as f64);
-        let best = frequencies.map(|hz| (power(hz), hz)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, hz)| hz);
-        (-3..=3).map(|i| best + step / 3.0 * f64::from(i)).collect()
+        (-3..=3).map(|i| best + fine / 3.0 * f64::from(i)).filter(|hz| *hz > 0.0).collect()
     }
 
     fn refine_step(&self, motion: &Kinematics, _: f64) -> f64 {
@@ -81,4 +78,24 @@ impl Effect for Hum {
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![naming.nonlinear("force_over_time_frequency", naming.parameter, "Hz".into())]
     }
+}
+
+/// Time and residual of moving samples, thinned.
+fn samples(motion: &Kinematics, setting: &Setting<'_>, rows: usize) -> Vec<(f64, f64)> {
+    let moving = (0..motion.len().min(rows)).step_by(STRIDE).filter(|at| motion.moving[*at]);
+    moving.map(|at| (motion.time_s[at], setting.residual.get(at).copied().unwrap_or(0.0))).collect()
+}
+
+/// The frequency with the strongest component within a band.
+fn strongest(samples: &[(f64, f64)], from: f64, to: f64, step: f64) -> f64 {
+    let power = |hz: f64| {
+        let (re, im) = samples.iter().fold((0.0, 0.0), |(re, im), (t, e)| {
+            let (sin, cos) = (TAU * hz * t).sin_cos();
+            (re + cos * e, im + sin * e)
+        });
+        re.hypot(im)
+    };
+    let count = ((to - from) / step).clamp(0.0, 20_000.0) as usize;
+    let frequencies = (0..count).map(|i| from + step * i as f64);
+    frequencies.map(|hz| (power(hz), hz)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, hz)| hz)
 }

@@ -65,6 +65,11 @@ impl Effect for TorqueRipple {
         0.05 / (high - low)
     }
 
+    fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
+        let (low, high) = motion.span();
+        (FEWEST_PERIODS / (high - low), f64::MAX)
+    }
+
     fn repeats(&self) -> bool {
         true
     }

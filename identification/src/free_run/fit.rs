@@ -168,6 +168,7 @@ mod tests {
             train: record.clone(),
             validate: record,
             held_back: false,
+            notes: Vec::new(),
         }
     }
 

@@ -14,6 +14,8 @@ use crate::record::{Dataset, Record};
 
 /// Length of the blocks that are fitted and judged in turn, s.
 const BLOCK_S: f64 = 2.0;
+/// A short record is cut into so many.
+const FEWEST_BLOCKS: usize = 6;
 /// A shape must leave at most this share of the rms without it.
 const RATIO: f64 = 0.6;
 /// And at most this share of what its rival leaves.
@@ -121,7 +123,7 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
     let record = &dataset.train;
     let drive = Drive::of(dataset);
     let smallest = FEWEST_COUNTS * dataset.resolution;
-    let block_rows = ((BLOCK_S / record.period_s) as usize).max(1);
+    let block_rows = ((BLOCK_S / record.period_s) as usize).min(record.len() / FEWEST_BLOCKS).max(1);
     let judge = Judge { drive, record, block_rows, smallest };
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, record.period_s, model, coefficients, shape);

@@ -70,7 +70,8 @@ pub fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
         Drive::Known(law) => law.start(record),
         Drive::Followed => controller::Memory::default(),
     };
-    let mut efforts = vec![record.effort.first().copied().unwrap_or(0.0); 8];
+    let mut efforts =
+        vec![record.effort.first().copied().unwrap_or(0.0); (model.delay_s / period_s).ceil() as usize + 2];
     let mut run = Run { motor: Vec::with_capacity(rows), load: Vec::with_capacity(rows) };
     for row in 0..rows {
         run.motor.push(axis.motor.x);
