@@ -1,8 +1,8 @@
 //! Forward selection with joint refinement and removal, on held-out blocks.
 //!
 //! Thresholds. A candidate must remove a share of the held-out error (relevance), be large enough to matter to the axis (percent of effort), and
-//! do so in more blocks than chance (t). Share is what separates: on 14 simulated records with nothing missing the largest false share was 0.016, the
-//! smallest true one accepted 0.16; t alone does not (false candidates reached 14, because gains sit in few blocks). Figures: docs/identification.md.
+//! do so in more blocks than chance (t). Share is what separates: on 14 simulated records with nothing missing the largest false share was 0.016; t alone
+//! does not (false candidates reached 14, because gains sit in few blocks). Figures: docs/identification.md.
 
 use crate::actuator::{self, Pair};
 use crate::bench::{Bench, Model, Saturation, Term};
