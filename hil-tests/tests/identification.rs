@@ -56,7 +56,9 @@ fn hidden_effects_are_named_and_nothing_else() {
         *matrix.entry((text(&wanted), text(came))).or_default() += 1;
     }
     println!("| hidden | named | records |\n|---|---|---|");
-    matrix.iter().for_each(|((wanted, came), count)| println!("| {wanted} | {came} | {count} |"));
+    for ((wanted, came), count) in &matrix {
+        println!("| {wanted} | {came} | {count} |");
+    }
     println!("{exact} of {} exact, {false_alarms} false alarms on {} empty records", plans.len(), EMPTY);
     assert_eq!((false_alarms, missed_structure), (0, 0));
     assert!(exact * 100 >= plans.len() * 95, "{exact} of {}", plans.len());

@@ -165,16 +165,16 @@ impl<'a> Bench<'a> {
     /// A design with one more term.
     #[must_use]
     pub fn extended(&self, design: &Design, term: &Term) -> Design {
-        self.with_columns(design, &self.columns(term))
+        Self::with_columns(design, &self.columns(term))
     }
 
     /// The same for a term that will not be asked for again: nothing is kept.
     #[must_use]
     pub fn extended_once(&self, design: &Design, term: &Term) -> Design {
-        self.with_columns(design, &self.low_passed(term))
+        Self::with_columns(design, &self.low_passed(term))
     }
 
-    fn with_columns(&self, design: &Design, columns: &[Vec<f64>]) -> Design {
+    fn with_columns(design: &Design, columns: &[Vec<f64>]) -> Design {
         let mut design = design.clone();
         for column in columns {
             let mut column = shifted(column, design.shift_rows);
@@ -225,7 +225,9 @@ impl<'a> Bench<'a> {
         let (linear, rest) = all.split_at(columns);
         let mut rest = rest.iter().copied();
         let mut parameters = vec![None; model.terms.len()];
-        tuned.into_iter().for_each(|at| parameters[at] = rest.next());
+        for at in tuned {
+            parameters[at] = rest.next();
+        }
         let delay_s = if model.delay_s == 0.0 { None } else { rest.next() };
         let saturation = if model.saturates() { rest.next() } else { None };
         HalfWidths { linear: linear.to_vec(), parameters, delay_s, saturation }

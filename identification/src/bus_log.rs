@@ -170,7 +170,7 @@ fn raw(signal: &Signal, data: &[u8]) -> Option<f64> {
             let mut at = signal.start_bit;
             for _ in 0..size {
                 value = value << 1 | bit(at)?;
-                at = if at % 8 == 0 { at + 15 } else { at - 1 };
+                at = if at.is_multiple_of(8) { at + 15 } else { at - 1 };
             }
         }
     }

@@ -136,9 +136,9 @@ pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Opti
     let rounding = ROUNDING * dataset.resolution;
     let worth =
         rigid.all > VISIBLE * rounding || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
-    let gap = worth.then(|| judge.best(gaps(unit, |shape| start(shape)), STARTS)).flatten();
+    let gap = worth.then(|| judge.best(gaps(unit, start), STARTS)).flatten();
     let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
-    let both = judge.both(&accepted, &bristle, gap.as_ref(), unit, &start);
+    let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
     if let Some(both) = &both {
         accepted = judge.add(accepted, &bristle, gap.as_ref(), both);
     }
@@ -174,7 +174,7 @@ impl Judge<'_> {
     /// A bristle behind a gap, from what was accepted of them.
     fn both(
         &self,
-        accepted: &Accepted,
+        accepted: Accepted,
         bristle: &Judged,
         gap: Option<&Judged>,
         unit: f64,
