@@ -83,7 +83,9 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
         let gap = difference.as_ref().is_some_and(|d| d.gap.is_some());
         reversals.settle(accepted.presliding, accepted.backlash || gap);
     }
-    let deflection = deflection(presliding.as_ref(), reversals.as_ref());
+    // With a load scale friction is judged where it acts, not at the motor.
+    let simulated = reversals.as_ref().filter(|_| difference.is_none());
+    let deflection = deflection(presliding.as_ref(), simulated);
     let model = match &difference {
         Some(found) if found.moves_apart() => selection::with_load_inertia(&bench, &selected.model),
         _ => selected.model.clone(),
