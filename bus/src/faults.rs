@@ -139,6 +139,7 @@ fn corrupted(frame: &CanFrame, kind: FrameKind, how: u8) -> CanFrame {
         FrameKind::Torque => Some(6),
         FrameKind::Setpoint => Some(2),
         FrameKind::Nmt
+        | FrameKind::PlantStatus
         | FrameKind::Status
         | FrameKind::ServoHeartbeat
         | FrameKind::PlantHeartbeat

@@ -147,7 +147,7 @@ impl PlantNode {
         if kind != FrameKind::Sync || self.nmt != NmtState::Operational {
             return Vec::new();
         }
-        self.sync.lost().map_or_else(Vec::new, |counter| self.on_sync(counter))
+        self.sync.begin_without_sync().map_or_else(Vec::new, |counter| self.on_sync(counter))
     }
 
     /// Lets time pass: notices that SYNC is gone.
@@ -163,6 +163,7 @@ impl PlantNode {
             Message::Torque(torque) => self.on_torque(torque),
             Message::Feedback(_)
             | Message::Setpoint(_)
+            | Message::PlantStatus(_)
             | Message::Status(_)
             | Message::ServoHeartbeat(_)
             | Message::PlantHeartbeat(_)
@@ -208,7 +209,7 @@ impl PlantNode {
         self.last_sync_us = Some(now_us);
         match self.sync.take(counter) {
             SyncEvent::Begin(counter) | SyncEvent::BeginStale(counter) => self.on_sync(counter),
-            SyncEvent::Doubled | SyncEvent::Late => Vec::new(),
+            SyncEvent::Confirmed | SyncEvent::Doubled | SyncEvent::Late => Vec::new(),
         }
     }
 

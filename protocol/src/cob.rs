@@ -36,6 +36,8 @@ pub enum FunctionCode {
     Tpdo1 = 0x180,
     /// First receive PDO.
     Rpdo1 = 0x200,
+    /// Second transmit PDO.
+    Tpdo2 = 0x280,
     /// Third transmit PDO.
     Tpdo3 = 0x380,
     /// SDO, server to client.
@@ -89,6 +91,8 @@ pub enum FrameKind {
     Torque,
     /// Position setpoint, workbench → servo.
     Setpoint,
+    /// State of power stage and brake, plant → servo.
+    PlantStatus,
     /// Drive status, servo → workbench.
     Status,
     /// Heartbeat or boot-up of the servo.
@@ -107,7 +111,7 @@ pub enum FrameKind {
 
 impl FrameKind {
     /// All kinds, in the order of [`crate::table::FRAMES`].
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Nmt,
         Self::Sync,
         Self::ServoEmergency,
@@ -115,6 +119,7 @@ impl FrameKind {
         Self::Feedback,
         Self::Setpoint,
         Self::Torque,
+        Self::PlantStatus,
         Self::Status,
         Self::SdoResponse,
         Self::SdoRequest,
@@ -154,6 +159,7 @@ impl AxisIds {
             FrameKind::Feedback => FunctionCode::Tpdo1.at(self.plant),
             FrameKind::Torque => FunctionCode::Rpdo1.at(self.plant),
             FrameKind::Setpoint => FunctionCode::Rpdo1.at(self.servo),
+            FrameKind::PlantStatus => FunctionCode::Tpdo2.at(self.plant),
             FrameKind::Status => FunctionCode::Tpdo3.at(self.servo),
             FrameKind::ServoHeartbeat => FunctionCode::Heartbeat.at(self.servo),
             FrameKind::PlantHeartbeat => FunctionCode::Heartbeat.at(self.plant),
@@ -167,6 +173,66 @@ impl AxisIds {
     /// What an identifier means on this axis; `None` for other people's traffic.
     #[must_use]
     pub fn classify(self, id: StandardId) -> Option<FrameKind> {
-        FrameKind::ALL.into_iter().find(|kind| self.identifier(*kind) == id)
+        let raw = id.as_raw();
+        let (code, node) = (raw & FUNCTION_BITS, raw & NODE_BITS);
+        let (servo, plant) = (node == node_bits(self.servo), node == node_bits(self.plant));
+        match code {
+            0x000 if node == 0 => Some(FrameKind::Nmt),
+            0x080 if node == 0 => Some(FrameKind::Sync),
+            0x080 if servo => Some(FrameKind::ServoEmergency),
+            0x080 if plant => Some(FrameKind::PlantEmergency),
+            0x180 if plant => Some(FrameKind::Feedback),
+            0x200 if servo => Some(FrameKind::Setpoint),
+            0x200 if plant => Some(FrameKind::Torque),
+            0x280 if plant => Some(FrameKind::PlantStatus),
+            0x380 if servo => Some(FrameKind::Status),
+            0x580 if servo => Some(FrameKind::SdoResponse),
+            0x600 if servo => Some(FrameKind::SdoRequest),
+            0x700 if servo => Some(FrameKind::ServoHeartbeat),
+            0x700 if plant => Some(FrameKind::PlantHeartbeat),
+            _ => None,
+        }
+    }
+}
+
+/// The four bits of an identifier that tell the function (CiA 301 §7.3.5).
+const FUNCTION_BITS: u16 = 0x780;
+/// The seven that tell the node.
+const NODE_BITS: u16 = 0x07F;
+
+#[expect(clippy::as_conversions, reason = "u8 to u16 is lossless; From is not const")]
+const fn node_bits(node: NodeId) -> u16 {
+    node.0 as u16
+}
+
+/// What a servo listens to; every leaf sets its filters from this list.
+pub const HEARD_BY_SERVO: [FrameKind; 8] = [
+    FrameKind::Nmt,
+    FrameKind::Sync,
+    FrameKind::Feedback,
+    FrameKind::Setpoint,
+    FrameKind::PlantStatus,
+    FrameKind::SdoRequest,
+    FrameKind::PlantHeartbeat,
+    FrameKind::PlantEmergency,
+];
+
+/// What a plant listens to.
+pub const HEARD_BY_PLANT: [FrameKind; 3] = [FrameKind::Nmt, FrameKind::Sync, FrameKind::Torque];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_identifier_is_classified_as_the_kind_that_has_it_or_is_foreign() {
+        for index in 0..16 {
+            let ids = AxisIds::of_axis(index).unwrap();
+            for raw in 0..=0x7FF {
+                let id = StandardId::new(raw).unwrap();
+                let wanted = FrameKind::ALL.into_iter().find(|kind| ids.identifier(*kind) == id);
+                assert_eq!(ids.classify(id), wanted, "{raw:#05x} on axis {index}");
+            }
+        }
     }
 }

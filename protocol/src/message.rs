@@ -16,7 +16,7 @@ use crate::counter::SyncCounter;
 use crate::fault::Fault;
 use crate::frame::CanFrame;
 use crate::sdo;
-use crate::states::{ControlWord, StatusWord};
+use crate::states::{BrakeState, ControlWord, StatusWord};
 use crate::weight::{FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm, TorquePerMille};
 
 /// Encoder positions of one cycle.
@@ -52,6 +52,19 @@ pub struct Setpoint {
     pub position: SetpointFine,
 }
 
+/// State of the plant's power stage and brake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlantStatus {
+    /// Status word of the torque drive.
+    pub status: StatusWord,
+    /// Where its brake stands.
+    pub brake: BrakeState,
+    /// Latched fault, if any.
+    pub fault: Option<Fault>,
+    /// Torque that acts.
+    pub torque: TorqueMicroNm,
+}
+
 /// Drive status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
@@ -78,6 +91,8 @@ pub enum Message {
     Torque(Torque),
     /// Position setpoint.
     Setpoint(Setpoint),
+    /// State of power stage and brake.
+    PlantStatus(PlantStatus),
     /// Drive status.
     Status(Status),
     /// Heartbeat or boot-up of the servo.
@@ -150,6 +165,7 @@ pub fn decode_as(kind: FrameKind, frame: &CanFrame) -> Result<Message, DecodeErr
         FrameKind::Feedback => feedback(bytes(kind, frame, "8 bytes")?),
         FrameKind::Torque => torque(bytes(kind, frame, "7 bytes")?),
         FrameKind::Setpoint => setpoint(bytes(kind, frame, "8 bytes")?),
+        FrameKind::PlantStatus => plant_status(bytes(kind, frame, "8 bytes")?),
         FrameKind::Status => status(bytes(kind, frame, "8 bytes")?),
         FrameKind::ServoHeartbeat => heartbeat(kind, frame).map(Message::ServoHeartbeat),
         FrameKind::PlantHeartbeat => heartbeat(kind, frame).map(Message::PlantHeartbeat),
@@ -203,20 +219,34 @@ fn setpoint([a, b, count, c, d, e, f, g]: [u8; 8]) -> Result<Message, DecodeErro
     }))
 }
 
-fn status([a, b, c, d, e, f, g, fault]: [u8; 8]) -> Result<Message, DecodeError> {
-    let word = StatusWord(u16::from_le_bytes([a, b]));
-    let error = |field, wanted, got| DecodeError { kind: FrameKind::Status, field, wanted, got };
-    if word.state().is_none() {
-        return Err(error("status word", "a CiA 402 state", u32::from(word.0)));
-    }
-    if fault != 0 && Fault::from_code(fault).is_none() {
-        return Err(error("fault", "a known fault code", u32::from(fault)));
-    }
+fn status_word(kind: FrameKind, bytes: [u8; 2]) -> Result<StatusWord, DecodeError> {
+    let word = StatusWord(u16::from_le_bytes(bytes));
+    let error = DecodeError { kind, field: "status word", wanted: "a CiA 402 state", got: u32::from(word.0) };
+    word.state().map(|_| word).ok_or(error)
+}
+
+fn fault(kind: FrameKind, code: u8) -> Result<Option<Fault>, DecodeError> {
+    let error = DecodeError { kind, field: "fault", wanted: "a known fault code", got: u32::from(code) };
+    if code == 0 { Ok(None) } else { Fault::from_code(code).map(Some).ok_or(error) }
+}
+
+fn plant_status([a, b, brake, code, c, d, e, f]: [u8; 8]) -> Result<Message, DecodeError> {
+    let kind = FrameKind::PlantStatus;
+    let error = DecodeError { kind, field: "brake", wanted: "0 to 3", got: u32::from(brake) };
+    Ok(Message::PlantStatus(PlantStatus {
+        status: status_word(kind, [a, b])?,
+        brake: BrakeState::from_code(brake).ok_or(error)?,
+        fault: fault(kind, code)?,
+        torque: TorqueMicroNm(i32::from_le_bytes([c, d, e, f])),
+    }))
+}
+
+fn status([a, b, c, d, e, f, g, code]: [u8; 8]) -> Result<Message, DecodeError> {
     Ok(Message::Status(Status {
-        status: word,
+        status: status_word(FrameKind::Status, [a, b])?,
         following_error: FollowingError24::from_bytes([c, d, e]),
         torque: TorquePerMille(i16::from_le_bytes([f, g])),
-        fault: Fault::from_code(fault),
+        fault: fault(FrameKind::Status, code)?,
     }))
 }
 
@@ -241,6 +271,7 @@ impl Message {
             Self::Feedback(_) => FrameKind::Feedback,
             Self::Torque(_) => FrameKind::Torque,
             Self::Setpoint(_) => FrameKind::Setpoint,
+            Self::PlantStatus(_) => FrameKind::PlantStatus,
             Self::Status(_) => FrameKind::Status,
             Self::ServoHeartbeat(_) => FrameKind::ServoHeartbeat,
             Self::PlantHeartbeat(_) => FrameKind::PlantHeartbeat,
@@ -261,6 +292,7 @@ impl Message {
             Self::Feedback(feedback) => CanFrame::full(id, feedback.bytes()),
             Self::Torque(torque) => CanFrame::of(id, torque.bytes()),
             Self::Setpoint(setpoint) => CanFrame::full(id, setpoint.bytes()),
+            Self::PlantStatus(status) => CanFrame::full(id, status.bytes()),
             Self::Status(status) => CanFrame::full(id, status.bytes()),
             Self::ServoHeartbeat(state) | Self::PlantHeartbeat(state) => {
                 CanFrame::of(id, canopen_rs::nmt::encode_heartbeat(state))
@@ -303,6 +335,14 @@ impl Setpoint {
         let [a, b] = self.control.0.to_le_bytes();
         let [c, d, e, f, g] = self.position.to_bytes();
         [a, b, self.counter.get(), c, d, e, f, g]
+    }
+}
+
+impl PlantStatus {
+    fn bytes(self) -> [u8; 8] {
+        let [a, b] = self.status.0.to_le_bytes();
+        let [c, d, e, f] = self.torque.0.to_le_bytes();
+        [a, b, self.brake.code(), self.fault.map_or(0, Fault::code), c, d, e, f]
     }
 }
 

@@ -1,6 +1,6 @@
 //! The drive's state words: CiA 402-2 (IEC 61800-7-201) state machine on the wire.
 //!
-//! Only the values stand here; who moves from which state to which is the servo's business (`servo::state`).
+//! Only the values stand here; who moves from which state to which is the servo's business.
 
 /// Power drive states, CiA 402-2 §4.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,8 +52,14 @@ pub struct StatusWord(pub u16);
 
 impl StatusWord {
     const STATE_MASK: u16 = 0x006F;
+    /// Bit 4: voltage enabled, the power stage is supplied.
+    pub const VOLTAGE_ENABLED: u16 = 0x0010;
     /// Bit 7: a frame was lost, stale or malformed since the last status frame, and was bridged.
     pub const WARNING: u16 = 0x0080;
+    /// Bit 9: the control word is followed (NMT operational).
+    pub const REMOTE: u16 = 0x0200;
+    /// Bit 10: target reached; while halt or a stop is commanded: the axis stands.
+    pub const TARGET_REACHED: u16 = 0x0400;
     /// Bit 11: torque or velocity stood at its limit.
     pub const INTERNAL_LIMIT: u16 = 0x0800;
     /// Bit 12: the drive follows the setpoint (cyclic synchronous position).
@@ -78,6 +84,45 @@ impl StatusWord {
     }
 }
 
+/// Where a brake stands, as the plant tells it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BrakeState {
+    /// The axis has none: it never holds and never hinders.
+    #[default]
+    NotFitted,
+    /// It holds.
+    Closed,
+    /// On its way; nobody may count on it.
+    Moving,
+    /// It lets go.
+    Open,
+}
+
+impl BrakeState {
+    /// The code on the wire.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::NotFitted => 0,
+            Self::Closed => 1,
+            Self::Moving => 2,
+            Self::Open => 3,
+        }
+    }
+
+    /// The state of a code; `None` for an unknown one.
+    #[must_use]
+    pub const fn from_code(code: u8) -> Option<Self> {
+        match code {
+            0 => Some(Self::NotFitted),
+            1 => Some(Self::Closed),
+            2 => Some(Self::Moving),
+            3 => Some(Self::Open),
+            _ => None,
+        }
+    }
+}
+
 /// Control word, object 6040h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ControlWord(pub u16);
@@ -95,6 +140,23 @@ impl ControlWord {
     pub const QUICK_STOP: Self = Self(0x0002);
     /// Fault reset, acts on its rising edge.
     pub const FAULT_RESET: Self = Self(0x0080);
+
+    /// Bit 8: halt, a controlled stop with the loop closed (605Dh).
+    pub const HALT: u16 = 0x0100;
+    /// Bit 11 (manufacturer specific), from the servo to its plant: release the brake.
+    pub const RELEASE_BRAKE: u16 = 0x0800;
+
+    /// The same word with further bits set.
+    #[must_use]
+    pub const fn with(self, bits: u16) -> Self {
+        Self(self.0 | bits)
+    }
+
+    /// Whether all of these bits are set.
+    #[must_use]
+    pub const fn has(self, bits: u16) -> bool {
+        self.0 & bits == bits
+    }
 
     /// What the word asks for, CiA 402-2 table 23; `None` where it asks for nothing known.
     #[must_use]

@@ -64,6 +64,8 @@ pub struct FrameSpec {
 
 /// A status frame goes out every so many cycles.
 pub const STATUS_EVERY_CYCLES: u16 = 10;
+/// A plant status goes out on change, and every so many cycles.
+pub const PLANT_STATUS_EVERY_CYCLES: u16 = 10;
 /// A heartbeat goes out every so many cycles.
 pub const HEARTBEAT_EVERY_CYCLES: u16 = 100;
 
@@ -89,13 +91,19 @@ const FEEDBACK: &[Signal] = &[
 ];
 const TORQUE: &[Signal] = &[
     scaled("TorqueCommand", 0, 32, true, TorqueMicroNm::WEIGHT, "motor torque"),
-    unsigned("ControlWord", 32, 16, "CiA 402 control word of the plant's torque drive"),
+    unsigned("ControlWord", 32, 16, "CiA 402 control word of the plant's torque drive; bit 11 releases the brake"),
     unsigned("Counter", 48, 8, COUNTER),
 ];
 const SETPOINT: &[Signal] = &[
     unsigned("ControlWord", 0, 16, "CiA 402 control word of the axis"),
     unsigned("Counter", 16, 8, COUNTER),
     scaled("PositionSetpoint", 24, 40, true, SetpointFine::WEIGHT, "position setpoint, due in the cycle of Counter"),
+];
+const PLANT_STATUS: &[Signal] = &[
+    unsigned("StatusWord", 0, 16, "CiA 402 status word of the torque drive"),
+    unsigned("Brake", 16, 8, "0 not fitted, 1 closed, 2 moving, 3 open"),
+    unsigned("Fault", 24, 8, "latched fault, 0 for none"),
+    scaled("ActualTorque", 32, 32, true, TorqueMicroNm::WEIGHT, "motor torque that acts"),
 ];
 const STATUS: &[Signal] = &[
     unsigned("StatusWord", 0, 16, "CiA 402 status word"),
@@ -132,7 +140,7 @@ const CYCLIC: Rate = Rate::EveryCycles(1);
 const BEAT: Rate = Rate::EveryCycles(HEARTBEAT_EVERY_CYCLES);
 
 /// Every frame of an axis, in order of priority on the bus.
-pub const FRAMES: [FrameSpec; 12] = [
+pub const FRAMES: [FrameSpec; 13] = [
     row(FrameKind::Nmt, "Nmt", Sender::Workbench, 2, Rate::OnEvent, NMT),
     row(FrameKind::Sync, "Sync", Sender::Workbench, 1, CYCLIC, SYNC),
     row(FrameKind::ServoEmergency, "ServoEmergency", Sender::Servo, 8, Rate::OnEvent, EMERGENCY),
@@ -140,6 +148,14 @@ pub const FRAMES: [FrameSpec; 12] = [
     row(FrameKind::Feedback, "Feedback", Sender::Plant, 8, CYCLIC, FEEDBACK),
     row(FrameKind::Setpoint, "Setpoint", Sender::Workbench, 8, CYCLIC, SETPOINT),
     row(FrameKind::Torque, "Torque", Sender::Servo, 7, CYCLIC, TORQUE),
+    row(
+        FrameKind::PlantStatus,
+        "PlantStatus",
+        Sender::Plant,
+        8,
+        Rate::EveryCycles(PLANT_STATUS_EVERY_CYCLES),
+        PLANT_STATUS,
+    ),
     row(FrameKind::Status, "Status", Sender::Servo, 8, Rate::EveryCycles(STATUS_EVERY_CYCLES), STATUS),
     row(FrameKind::SdoResponse, "SdoResponse", Sender::Servo, 8, Rate::OnEvent, SDO),
     row(FrameKind::SdoRequest, "SdoRequest", Sender::Workbench, 8, Rate::OnEvent, SDO),

@@ -4,10 +4,10 @@ use embedded_can::{Frame, StandardId};
 use proptest::prelude::*;
 use protocol::cob::{AxisIds, FrameKind, NodeId};
 use protocol::message::{
-    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, Setpoint, Status, Torque, decode, decode_as,
+    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, Status, Torque, decode, decode_as,
 };
 use protocol::sdo;
-use protocol::states::{ControlWord, DriveState, StatusWord};
+use protocol::states::{BrakeState, ControlWord, DriveState, StatusWord};
 use protocol::table::{FRAMES, Signal};
 use protocol::weight::{
     FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm, TorquePerMille,
@@ -41,6 +41,12 @@ fn golden() -> Vec<(Message, &'static str)> {
         counter: count(2),
         position: SetpointFine::saturating(-2_560_000_000),
     };
+    let plant_status = PlantStatus {
+        status: StatusWord::of(DriveState::OperationEnabled).with(StatusWord::VOLTAGE_ENABLED),
+        brake: BrakeState::Open,
+        fault: None,
+        torque: TorqueMicroNm(-2500),
+    };
     let status = Status {
         status: StatusWord::of(DriveState::Fault),
         following_error: FollowingError24::saturating(-2),
@@ -59,6 +65,7 @@ fn golden() -> Vec<(Message, &'static str)> {
         (Message::Feedback(feedback), "191#0000F0FFC0BDF0F0"),
         (Message::Torque(torque), "211#CCB609000F0001"),
         (Message::Setpoint(setpoint), "201#0F000200806967FF"),
+        (Message::PlantStatus(plant_status), "291#370003003CF6FFFF"),
         (Message::Status(status), "381#0800FEFFFFD4FF02"),
         (Message::ServoHeartbeat(NmtState::Operational), "701#05"),
         (Message::PlantHeartbeat(NmtState::Initialising), "711#00"),

@@ -50,7 +50,15 @@ pub const fn reaction(fault: Fault) -> Reaction {
         | Fault::SyncMissing
         | Fault::HeartbeatLost
         | Fault::PeerFault
-        | Fault::MalformedFrame => Reaction::TorqueZero,
+        | Fault::MalformedFrame
+        | Fault::SetpointImplausible
+        | Fault::StageRefused
+        | Fault::StageLost
+        | Fault::ReferenceTooFar
+        | Fault::CycleTimeMismatch
+        | Fault::EncoderRelation
+        | Fault::LimitOverrun
+        | Fault::BrakeFailed => Reaction::TorqueZero,
     }
 }
 
@@ -173,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_fault_is_left_only_by_the_edge_of_a_fault_reset() {
-        for fault in Fault::ALL {
+        for fault in Fault::ALL.iter().copied() {
             let faulted = Drive::OperationEnabled.faulted(fault, stop()).stopped();
             assert_eq!(faulted, Drive::Faulted(fault));
             for command in [Command::Shutdown, Command::EnableOperation, Command::DisableVoltage, Command::FaultReset] {

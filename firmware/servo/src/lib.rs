@@ -234,6 +234,7 @@ impl Servo {
             Message::SdoRequest(request) => self.on_sdo(request, out),
             // Our own frames, or those of a second servo with our id: nothing to do with them.
             Message::Torque(_)
+            | Message::PlantStatus(_)
             | Message::Status(_)
             | Message::ServoHeartbeat(_)
             | Message::ServoEmergency(_)
@@ -277,6 +278,7 @@ impl Servo {
                 self.watchdog.stale();
                 self.begin(counter, out);
             }
+            SyncEvent::Confirmed => {}
             SyncEvent::Doubled => self.watchdog.doubled(),
             SyncEvent::Late => self.watchdog.stale(),
         }
@@ -356,7 +358,7 @@ impl Servo {
         match kind {
             FrameKind::Sync => {
                 if self.nmt == NmtState::Operational
-                    && let Some(counter) = self.sync.lost()
+                    && let Some(counter) = self.sync.begin_without_sync()
                 {
                     self.begin(counter, out);
                 }
@@ -365,6 +367,7 @@ impl Servo {
             FrameKind::Feedback => self.inbox.miss_feedback(miss),
             FrameKind::Nmt
             | FrameKind::Torque
+            | FrameKind::PlantStatus
             | FrameKind::Status
             | FrameKind::ServoHeartbeat
             | FrameKind::PlantHeartbeat
