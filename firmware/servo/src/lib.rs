@@ -35,12 +35,15 @@ pub mod encoders;
 pub mod inbox;
 pub mod objects;
 pub mod parameters;
+pub mod physical;
+pub mod reference_config;
 pub mod sdo_server;
+pub mod settings;
 pub mod stop;
 pub mod watchdog;
 
 use controller::units::{Position, PositionError, Torque, Velocity};
-use controller::{Input, Output, State};
+use controller::{Input, Output, PositionSource, State};
 use heapless::Vec;
 use protocol::cob::{AxisIds, FrameKind, NodeId};
 use protocol::message::{self, Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, Setpoint, Status};
@@ -53,8 +56,9 @@ use drive::Drive;
 use encoders::{Encoders, Measured};
 use inbox::{Inbox, Miss, Taken};
 use objects::Parameter;
-use parameters::{ParameterSet, Settings};
-use sdo_server::{Effect, Readings, SdoServer};
+use parameters::ParameterSet;
+use sdo_server::{Diagnostics, Effect, Readings, SdoServer};
+use settings::Settings;
 use stop::Stop;
 use watchdog::Watchdog;
 
@@ -146,7 +150,7 @@ impl Servo {
     pub fn with_sync_timeout_us(mut self, timeout_us: u32) -> Self {
         self.sync_timeout_us = i32::try_from(timeout_us).unwrap_or(DEFAULT_SYNC_TIMEOUT_US);
         self.server.stage(Parameter::SyncTimeout, self.sync_timeout_us);
-        self.active = self.server.staged_settings();
+        self.active = self.server.activate().ok();
         self
     }
 
@@ -329,9 +333,8 @@ impl Servo {
 
     fn on_sdo(&mut self, request: protocol::sdo::Request, out: &mut Outbox) {
         let readings = self.readings();
-        let Some(active) = self.active.as_ref() else { return };
         let free = !self.drive.is_energised();
-        let (response, effect) = self.server.handle(request, &readings, active, free);
+        let (response, effect) = self.server.handle(request, &readings, !free);
         match effect {
             Effect::None => {}
             // At rest at once; in motion with the next cycle, as a whole.
@@ -344,13 +347,23 @@ impl Servo {
     }
 
     fn readings(&self) -> Readings {
-        let position = self.encoders.position().map_or(Position::default(), |at| at.load);
+        let (motor, load) =
+            self.encoders.position().map_or((Position::default(), Position::default()), |at| (at.motor, at.load));
+        let [_, stale, malformed, implausible, doubled] = self.watchdog.diagnostics();
+        let source = self.active.as_ref().map_or(PositionSource::Load, |active| active.config.position_source);
+        let position = match source {
+            PositionSource::Motor => motor,
+            PositionSource::Load => load,
+        };
         Readings {
             error_register: u8::from(self.drive.fault().is_some()),
             status_word: StatusWord::of(self.drive.state()).0,
             position: position.0.saturating_to_num(),
             following_error: self.last.following_error.0.to_num(),
-            diagnostics: self.watchdog.diagnostics(),
+            motor_position: motor.0.saturating_to_num(),
+            load_position: load.0.saturating_to_num(),
+            diagnostics: Diagnostics { stale, malformed, implausible, doubled, ..Diagnostics::default() },
+            ..Readings::default()
         }
     }
 
@@ -391,7 +404,7 @@ impl Servo {
         let stop = self.stop();
         let measured = self.measure(feedback, &settings, out);
         let target = self.target(setpoint, &settings, out);
-        self.check_heartbeat(&settings, out);
+        self.check_heartbeat(out);
         self.follow_control_word(setpoint, measured.is_some(), stop, out);
         self.last.torque = Torque::ZERO;
         self.last.limited = false;
@@ -437,8 +450,8 @@ impl Servo {
         self.setpoint
     }
 
-    fn check_heartbeat(&mut self, settings: &Settings, out: &mut Outbox) {
-        if self.watchdog.heartbeat_is_gone(settings.limits.heartbeat) && self.drive.is_energised() {
+    fn check_heartbeat(&mut self, out: &mut Outbox) {
+        if self.watchdog.heartbeat_is_gone(HEARTBEAT_CYCLES) && self.drive.is_energised() {
             self.latch(Fault::HeartbeatLost, out);
         }
     }
@@ -478,7 +491,7 @@ impl Servo {
 
     /// The setpoint that the loop follows: from the bus, or from the controlled stop; `None` when the stop has ended.
     fn reference(&mut self, settings: &Settings, target: Track) -> Option<Position> {
-        let deceleration = settings.limits.stop_deceleration;
+        let deceleration = settings.reference.quick_stop.deceleration;
         match &mut self.drive {
             Drive::QuickStop(stop) | Drive::FaultReaction(_, stop) => stop.step(deceleration),
             Drive::SwitchOnDisabled
@@ -490,9 +503,8 @@ impl Servo {
     }
 
     fn stop(&self) -> Stop {
-        let cycles = self.active.as_ref().map_or(0, |active| active.limits.stop);
         let track = self.setpoint.unwrap_or_default();
-        Stop::from(track.position, track.velocity, cycles)
+        Stop::from(track.position, track.velocity, STOP_CYCLES)
     }
 
     fn latch(&mut self, fault: Fault, out: &mut Outbox) {
@@ -556,6 +568,10 @@ impl Servo {
 }
 
 const BOOT_UP: Message = Message::ServoHeartbeat(NmtState::Initialising);
+/// The longest controlled stop, cycles.
+const STOP_CYCLES: u16 = 200;
+/// Cycles without a plant heartbeat.
+const HEARTBEAT_CYCLES: u16 = 250;
 const DEFAULT_SYNC_TIMEOUT_US: i32 = 1_000_000;
 const ERROR_REGISTER: message::ErrorRegister = message::ErrorRegister(message::ErrorRegister::GENERIC);
 
