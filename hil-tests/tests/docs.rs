@@ -55,17 +55,19 @@ fn parameter_rows() -> String {
 fn reading_rows() -> String {
     let mut rows = servo::objects::READINGS;
     rows.sort_unstable();
-    let rows: String = rows
-        .iter()
-        .map(|(address, name)| format!("| {:04X}h:{} | {name} |\n", address.index, address.subindex))
-        .collect();
-    format!("\n## What else can be read\n\n| object | value |\n|---|---|\n{rows}")
+    let mut text = String::from("\n## What else can be read\n\n| object | value |\n|---|---|\n");
+    for (address, name) in rows {
+        text += &format!("| {:04X}h:{} | {name} |\n", address.index, address.subindex);
+    }
+    text
 }
 
 fn reason_rows() -> String {
-    let rows: String =
-        servo::parameters::SetError::REASONS.iter().map(|(code, text)| format!("| {code} | {text} |\n")).collect();
-    format!("\n## Reasons of a refused commit (2F02h:2)\n\n| code | reason |\n|---|---|\n{rows}")
+    let mut text = String::from("\n## Reasons of a refused commit (2F02h:2)\n\n| code | reason |\n|---|---|\n");
+    for (code, reason) in servo::parameters::SetError::REASONS {
+        text += &format!("| {code} | {reason} |\n");
+    }
+    text
 }
 
 #[test]
