@@ -111,7 +111,15 @@ impl Inbox {
     /// Whether everything is in, or known to be missing.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
-        !self.closed && !self.setpoint.waits() && !self.feedback.waits()
+        !self.closed && !self.next_setpoint.waits() && !self.feedback.waits()
+    }
+
+    /// The setpoint of the next cycle.
+    ///
+    /// # Errors
+    /// The reason why it is not there.
+    pub fn preview(&self) -> Result<Setpoint, Miss> {
+        self.next_setpoint.outcome()
     }
 
     /// Begins the cycle of a counter.
@@ -134,6 +142,7 @@ impl Inbox {
     pub fn end(&mut self) -> (Result<Setpoint, Miss>, Result<Feedback, Miss>) {
         self.closed = true;
         self.feedback.close(Miss::Absent);
+        self.next_setpoint.close(Miss::Absent);
         (self.setpoint.outcome(), self.feedback.outcome())
     }
 
@@ -149,6 +158,7 @@ impl Inbox {
         }
         if now.is_none_or(|now| now.next() == setpoint.counter) {
             return match self.next_setpoint {
+                Slot::Missed(_) if self.closed && now.is_some() => Taken::Stale,
                 // Before the first SYNC there is no cycle to belong to: the newest counts.
                 Slot::Fresh(_) if now.is_some() => Taken::Doubled,
                 Slot::Fresh(_) => fill(&mut self.next_setpoint, setpoint),

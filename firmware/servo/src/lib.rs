@@ -39,6 +39,7 @@ pub mod sdo_server;
 pub mod stop;
 pub mod watchdog;
 
+use controller::reference::{Mode, Reference, ReferenceInput, ReferenceState};
 use controller::units::{Position, PositionError, Torque, Velocity};
 use controller::{Input, Output, State};
 use heapless::Vec;
@@ -72,7 +73,7 @@ pub struct Servo {
     encoders: Encoders,
     drive: Drive,
     control: ControlWord,
-    setpoint: Option<Track>,
+    reference: Option<ReferenceState>,
     law: State,
     active: Option<Settings>,
     committed: Option<Settings>,
@@ -80,33 +81,6 @@ pub struct Servo {
     watchdog: Watchdog,
     last: Last,
     sync_timeout_us: i32,
-}
-
-/// The setpoint of the present cycle: from the bus, or carried on from the last good one.
-#[derive(Clone, Copy, Debug, Default)]
-struct Track {
-    position: Position,
-    velocity: Velocity,
-    good: Position,
-    cycles_since_good: u16,
-}
-
-impl Track {
-    fn begin(position: Position) -> Self {
-        Self { position, velocity: Velocity::ZERO, good: position, cycles_since_good: 0 }
-    }
-
-    /// A good setpoint came: the velocity is the way since the last good one.
-    fn take(self, position: Position) -> Self {
-        let velocity = position.velocity_since(self.good, self.cycles_since_good.saturating_add(1));
-        Self { position, velocity, good: position, cycles_since_good: 0 }
-    }
-
-    /// None came: it goes on as before.
-    fn carry_on(self) -> Self {
-        let position = self.position.after(self.velocity);
-        Self { position, cycles_since_good: self.cycles_since_good.saturating_add(1), ..self }
-    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -130,7 +104,7 @@ impl Servo {
             encoders: Encoders::default(),
             drive: Drive::default(),
             control: ControlWord::default(),
-            setpoint: None,
+            reference: None,
             law: State::default(),
             active: ParameterSet::default().settings().ok(),
             committed: None,
@@ -390,7 +364,8 @@ impl Servo {
         let (setpoint, feedback) = self.inbox.end();
         let stop = self.stop();
         let measured = self.measure(feedback, &settings, out);
-        let target = self.target(setpoint, &settings, out);
+        let preview = self.inbox.preview();
+        let target = self.target(preview, &settings, out);
         self.check_heartbeat(&settings, out);
         self.follow_control_word(setpoint, measured.is_some(), stop, out);
         self.last.torque = Torque::ZERO;
@@ -420,21 +395,31 @@ impl Servo {
         accepted.ok().or_else(|| self.encoders.predict())
     }
 
-    fn target(&mut self, setpoint: Result<Setpoint, Miss>, settings: &Settings, out: &mut Outbox) -> Option<Track> {
-        self.last.warning |= setpoint.is_err();
-        match self.watchdog.setpoint(setpoint.err(), settings.limits.setpoint_misses) {
+    /// Steps the reference stage; the preview decides, the setpoint of this cycle only where it came late.
+    fn target(&mut self, preview: Result<Setpoint, Miss>, settings: &Settings, out: &mut Outbox) -> Option<Reference> {
+        self.last.warning |= preview.is_err();
+        match self.watchdog.setpoint(preview.err(), settings.limits.setpoint_misses) {
             Some(fault) if self.drive.is_energised() => self.latch(fault, out),
             _ => {}
         }
-        let before = self.setpoint;
-        self.setpoint = match setpoint {
-            Ok(setpoint) => {
-                let position = Position::from_fine_counts(setpoint.position.counts());
-                Some(before.map_or_else(|| Track::begin(position), |track| track.take(position)))
-            }
-            Err(_) => before.map(Track::carry_on),
+        let position_of = |setpoint: Setpoint| Position::from_fine_counts(setpoint.position.counts());
+        let preview = preview.ok().map(position_of);
+        if self.reference.is_none() || !self.drive.is_energised() {
+            let near = preview?;
+            let before = self.reference.map_or(near, |before| before.position());
+            let at = if self.drive.is_energised() { before } else { near };
+            self.reference = Some(ReferenceState::at(at, Velocity::ZERO));
+        }
+        let mode = match self.drive {
+            Drive::QuickStop(_) | Drive::FaultReaction(..) => Mode::QuickStop,
+            Drive::SwitchOnDisabled
+            | Drive::ReadyToSwitchOn
+            | Drive::SwitchedOn
+            | Drive::OperationEnabled
+            | Drive::Faulted(_) => Mode::Follow,
         };
-        self.setpoint
+        let input = ReferenceInput { present: None, preview, mode };
+        self.reference.as_mut().map(|reference| reference.step(&settings.config.reference, &input))
     }
 
     fn check_heartbeat(&mut self, settings: &Settings, out: &mut Outbox) {
@@ -457,13 +442,13 @@ impl Servo {
         }
     }
 
-    fn control(&mut self, settings: &Settings, measured: Measured, target: Track, out: &mut Outbox) {
-        let Some(setpoint) = self.reference(settings, target) else {
+    fn control(&mut self, settings: &Settings, measured: Measured, reference: Reference, out: &mut Outbox) {
+        if self.has_stopped(&reference) {
             self.drive = self.drive.stopped();
             self.law = State::default();
             return;
-        };
-        let input = Input { setpoint, motor: measured.motor, load: measured.load };
+        }
+        let input = Input { reference, motor: measured.motor, load: measured.load };
         let Output { torque, following_error, limited } = controller::step(&settings.config, &mut self.law, &input);
         self.last.following_error = following_error;
         self.last.limited = limited;
@@ -476,23 +461,20 @@ impl Servo {
         }
     }
 
-    /// The setpoint that the loop follows: from the bus, or from the controlled stop; `None` when the stop has ended.
-    fn reference(&mut self, settings: &Settings, target: Track) -> Option<Position> {
-        let deceleration = settings.limits.stop_deceleration;
+    fn has_stopped(&mut self, reference: &Reference) -> bool {
         match &mut self.drive {
-            Drive::QuickStop(stop) | Drive::FaultReaction(_, stop) => stop.step(deceleration),
+            Drive::QuickStop(stop) | Drive::FaultReaction(_, stop) => stop.is_over() || reference.standing,
             Drive::SwitchOnDisabled
             | Drive::ReadyToSwitchOn
             | Drive::SwitchedOn
             | Drive::OperationEnabled
-            | Drive::Faulted(_) => Some(target.position),
+            | Drive::Faulted(_) => false,
         }
     }
 
     fn stop(&self) -> Stop {
         let cycles = self.active.as_ref().map_or(0, |active| active.limits.stop);
-        let track = self.setpoint.unwrap_or_default();
-        Stop::from(track.position, track.velocity, cycles)
+        Stop::within(cycles)
     }
 
     fn latch(&mut self, fault: Fault, out: &mut Outbox) {

@@ -4,8 +4,9 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
+use controller::reference::{Ramp, ReferenceConfig};
 use controller::units::{
-    AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain, WayPerIncrement,
+    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain, WayPerIncrement,
 };
 use controller::{Config, PositionSource};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8};
@@ -67,6 +68,9 @@ pub struct Settings {
     pub rated_torque_mnm: i32,
 }
 
+/// 1 m/s² at 1 kHz: a jerk of 50 m/s³ changes the acceleration by a twentieth of it per cycle.
+const STEP: Velocity = Velocity(I20F12::from_bits(100 << 12));
+
 impl ParameterSet {
     /// Raw value of a parameter.
     #[must_use]
@@ -102,6 +106,7 @@ impl ParameterSet {
 
     fn config(&self) -> Result<Config, SetError> {
         Ok(Config {
+            reference: self.reference(),
             position_source: match self.get(Parameter::PositionSource) {
                 0 => PositionSource::Motor,
                 _ => PositionSource::Load,
@@ -112,6 +117,26 @@ impl ParameterSet {
             coulomb: Torque::from_micro_nm(self.get(Parameter::CoulombTorque)),
             filter: self.filter()?,
         })
+    }
+
+    /// Zero means no limit.
+    fn reference(&self) -> ReferenceConfig {
+        let limit = |parameter| match self.get(parameter) {
+            0 => Velocity(I20F12::MAX),
+            bits => Velocity(I20F12::from_bits(bits)),
+        };
+        let ramp = Ramp { deceleration: self.velocity(Parameter::StopDeceleration), jerk: Velocity::ZERO };
+        ReferenceConfig {
+            velocity_limit: limit(Parameter::VelocityLimit),
+            acceleration_limit: limit(Parameter::AccelerationLimit),
+            step: STEP,
+            position_min: Position::from_counts(i64::MIN),
+            position_max: Position::from_counts(i64::MAX),
+            quick_stop: ramp,
+            slow_down: ramp,
+            filter_log2: 0,
+            setpoint_cycles: 1,
+        }
     }
 
     fn cascade(&self) -> CascadeConfig {
