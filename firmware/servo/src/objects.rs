@@ -201,7 +201,7 @@ parameters! {
     BrakeClosing = (0x2140, 2), "brake closing time", MICROSECOND, BRAKE_US, 0;
     PresetTorque = (0x2141, 1), "torque preset at enable", MICRO_NM, SIGNED_TORQUE, 0;
     PresetFromLast = (0x2141, 2), "torque preset: 0 as 2141h:1, 1 as before the last disable", CHOICE, SWITCH, 0;
-    AbortConnectionOption = (0x6007, 0), "connection lost: 0 nothing, 1 fault, 2 disable voltage, 3 quick stop", CHOICE, (0, 3), 1;
+    AbortConnectionOption = (0x6007, 0), "connection lost: 1 fault, 2 disable voltage, 3 quick stop (0, nothing, is not taken)", CHOICE, (1, 3), 1;
     QuickStopOption = (0x605A, 0), "quick stop: 0 disable, 1 slow down, 2 quick stop; 5, 6 as 1, 2 and stay", CHOICE, (0, 6), 2;
     ShutdownOption = (0x605B, 0), "shutdown: 0 disable, 1 slow down", CHOICE, SWITCH, 0;
     DisableOperationOption = (0x605C, 0), "disable operation: 0 disable, 1 slow down", CHOICE, SWITCH, 1;
@@ -326,6 +326,6 @@ mod tests {
         assert_eq!(taken(Parameter::DisableOperationOption), [0, 1]);
         assert_eq!(taken(Parameter::HaltOption), [1, 2]);
         assert_eq!(taken(Parameter::FaultReactionOption), [0, 1, 2]);
-        assert_eq!(taken(Parameter::AbortConnectionOption), [0, 1, 2, 3]);
+        assert_eq!(taken(Parameter::AbortConnectionOption), [1, 2, 3]);
     }
 }

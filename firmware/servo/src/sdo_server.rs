@@ -10,52 +10,13 @@ use protocol::table::HEARTBEAT_EVERY_CYCLES;
 use crate::objects::{self, Entry, Misfit, Parameter};
 use crate::parameters::{ParameterSet, SetError};
 use crate::settings::Settings;
+use crate::watchdog::Counts;
 
-/// Counts since reset. Computed + bridged + refused = cycles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Diagnostics {
-    /// Cycles with a setpoint and a feedback of their own.
-    pub computed: u32,
-    /// Cycles that did without a frame.
-    pub bridged: u32,
-    /// Cycles whose setpoint or feedback was refused.
-    pub refused: u32,
-    /// Cycles closed by their deadline, or begun by the node's own timer.
-    pub by_deadline: u32,
-    /// Frames with an old counter.
-    pub stale: u32,
-    /// Frames that cannot be decoded.
-    pub malformed: u32,
-    /// Frames with a value that cannot be.
-    pub implausible: u32,
-    /// Frames that came twice.
-    pub doubled: u32,
-    /// Implausible values of a load scale that does not close the loop.
-    pub scale_warnings: u32,
-}
-
-impl Diagnostics {
-    /// The counts in the order of the subindices 1 to 9 of 2200h.
-    #[must_use]
-    pub const fn counts(&self) -> [u32; 9] {
-        [
-            self.computed,
-            self.bridged,
-            self.refused,
-            self.by_deadline,
-            self.stale,
-            self.malformed,
-            self.implausible,
-            self.doubled,
-            self.scale_warnings,
-        ]
-    }
-
-    fn object(&self, subindex: u8) -> Option<Expedited> {
-        match usize::from(subindex).checked_sub(1) {
-            None => Some(Expedited::u8(9)),
-            Some(place) => self.counts().get(place).copied().map(Expedited::u32),
-        }
+/// A count by its subindex; subindex 0 tells how many there are.
+fn count(counts: &Counts, subindex: u8) -> Option<Expedited> {
+    match usize::from(subindex).checked_sub(1) {
+        None => u8::try_from(Counts::NUMBER).ok().map(Expedited::u8),
+        Some(place) => counts.in_order().get(place).copied().map(Expedited::u32),
     }
 }
 
@@ -79,7 +40,7 @@ pub struct Readings {
     /// Following error, 10 nm.
     pub following_error: i32,
     /// Counts since reset.
-    pub diagnostics: Diagnostics,
+    pub counts: Counts,
 }
 
 /// Which set an upload reads.
@@ -268,7 +229,7 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
         objects::MOTOR_POSITION => Expedited::i32(readings.motor_position),
         objects::LOAD_POSITION => Expedited::i32(readings.load_position),
         objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
-        Address { index: objects::DIAGNOSTICS_INDEX, subindex } => return readings.diagnostics.object(subindex),
+        Address { index: objects::DIAGNOSTICS_INDEX, subindex } => return count(&readings.counts, subindex),
         _ => return None,
     })
 }

@@ -16,6 +16,7 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
+use controller::reference::{Ramp, ReferenceConfig};
 use controller::units::{
     AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain, WayPerIncrement,
 };
@@ -26,17 +27,14 @@ use protocol::table::HEARTBEAT_EVERY_CYCLES;
 use crate::objects::Parameter;
 use crate::parameters::{ParameterSet, SetError};
 use crate::physical::{Fraction, decay};
-use crate::reference_config::{Ramp, ReferenceConfig};
 
 /// A parameter set that is fit to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Cycle time that all machine units are made for.
     pub period_us: u32,
-    /// For the control law.
+    /// For the reference stage and the control law.
     pub config: Config,
-    /// For the reference stage.
-    pub reference: ReferenceConfig,
     /// For the watchdogs.
     pub limits: Limits,
     /// What the drive does about commands and faults.
@@ -108,11 +106,9 @@ pub enum StopOption {
     QuickStopAndStay,
 }
 
-/// What the drive does when the connection to the master is lost.
+/// What the drive does when the connection to the master is lost. The standard's 0, nothing, is not taken: an axis does not go on without its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AbortConnectionOption {
-    /// It goes on.
-    NoAction,
     /// It latches a fault.
     Fault,
     /// As on the command "disable voltage".
@@ -179,7 +175,6 @@ impl Settings {
         Ok(Self {
             period_us: set.get(Parameter::CyclePeriod).unsigned_abs(),
             config: reading.config()?,
-            reference: reading.reference()?,
             limits: reading.limits()?,
             options: reading.options(),
             brake: reading.brake()?,
@@ -271,6 +266,7 @@ impl Reading<'_> {
             backlash: self.backlash()?,
             coulomb: self.torque(Parameter::CoulombTorque),
             filter: self.filter()?,
+            reference: self.reference()?,
         })
     }
 
@@ -470,7 +466,6 @@ impl Reading<'_> {
             },
             fault_reaction: self.stop_option(Parameter::FaultReactionOption),
             abort_connection: match self.raw(Parameter::AbortConnectionOption) {
-                0 => AbortConnectionOption::NoAction,
                 2 => AbortConnectionOption::DisableVoltage,
                 3 => AbortConnectionOption::QuickStop,
                 _ => AbortConnectionOption::Fault,
@@ -567,7 +562,7 @@ mod tests {
     }
 
     fn held(settings: &Settings) -> Vec<i64> {
-        let (cascade, reference) = (settings.config.cascade, settings.reference);
+        let (cascade, reference) = (settings.config.cascade, settings.config.reference);
         vec![
             i64::from(cascade.position_gain.0.to_bits()),
             i64::from(cascade.velocity_gain.0.to_bits()),
@@ -719,9 +714,9 @@ mod tests {
             assert_eq!((cascade.torque_limit, cascade.position_gain), (Torque::ZERO, PositionGain::default()));
             assert_eq!(settings.limits.sync_timeout_us, 5 * u64::from(settings.period_us));
             assert_eq!(settings.limits.heartbeat_us, 250 * u64::from(settings.period_us));
-            assert_eq!(settings.reference.setpoint_cycles, 1);
+            assert_eq!(settings.config.reference.setpoint_cycles, 1);
             assert_eq!(
-                (settings.reference.position_min.0, settings.reference.position_max.0),
+                (settings.config.reference.position_min.0, settings.config.reference.position_max.0),
                 (I56F8::MIN, I56F8::MAX)
             );
         }
@@ -743,7 +738,7 @@ mod tests {
                 (Parameter::SetpointPeriod, value),
                 (Parameter::SetpointPeriodExponent, exponent),
             ]);
-            set.settings().map(|settings| settings.reference.setpoint_cycles)
+            set.settings().map(|settings| settings.config.reference.setpoint_cycles)
         };
         let refused = Err(SetError::SetpointPeriod(Parameter::SetpointPeriod));
         assert_eq!(
