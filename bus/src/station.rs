@@ -47,22 +47,23 @@ impl Station for servo::Servo {
 
 impl Station for plant_sim::PlantNode {
     fn ids(&self) -> AxisIds {
-        self.ids()
+        protocol::Station::ids(self)
     }
 
     fn boot(&mut self, out: &mut Vec<CanFrame>) {
-        out.extend(plant_sim::PlantNode::boot(self));
+        protocol::Station::boot(self, &mut |frame| out.push(frame));
     }
 
     fn take(&mut self, received: Received, now_us: u64, out: &mut Vec<CanFrame>) {
-        match received {
-            Received::Frame(frame) => out.extend(self.on_frame(&frame, now_us)),
-            Received::Lost(kind) => out.extend(self.on_lost(kind)),
+        if let Received::Frame(frame) = received {
+            protocol::Station::take(self, &frame, now_us, &mut |frame| out.push(frame));
         }
     }
 
     fn tick(&mut self, now_us: u64, out: &mut Vec<CanFrame>) {
-        out.extend(self.on_time(now_us));
+        while protocol::Station::wake_at_us(self).is_some_and(|wake| wake <= now_us) {
+            protocol::Station::time(self, now_us, &mut |frame| out.push(frame));
+        }
     }
 }
 
