@@ -13,6 +13,7 @@ pub mod friction;
 pub mod machine;
 pub mod mechanics;
 pub mod node;
+mod station;
 
 pub use axis::{Axis, AxisParameters};
 pub use machine::{Machine, MachineError};

@@ -156,6 +156,13 @@ impl PlantNode {
         if gone && self.enabled { self.latch(Fault::SyncMissing) } else { Vec::new() }
     }
 
+    /// When [`Self::on_time`] would notice that SYNC is gone.
+    #[must_use]
+    pub fn sync_gone_at_us(&self) -> Option<u64> {
+        let last = self.last_sync_us.filter(|_| self.enabled)?;
+        Some(last.saturating_add(self.sync_timeout_us).saturating_add(1))
+    }
+
     fn on_message(&mut self, message: Message, now_us: u64) -> Vec<CanFrame> {
         match message {
             Message::Nmt(command, node) => self.on_nmt(command, node),

@@ -36,6 +36,7 @@ pub mod inbox;
 pub mod objects;
 pub mod parameters;
 pub mod sdo_server;
+mod station;
 pub mod stop;
 pub mod watchdog;
 

@@ -61,6 +61,12 @@ impl Watchdog {
         self.last_sync_us = Some(now_us);
     }
 
+    /// When SYNC came last.
+    #[must_use]
+    pub const fn last_sync_us(&self) -> Option<u64> {
+        self.last_sync_us
+    }
+
     /// Whether SYNC is gone, by wall clock.
     #[must_use]
     pub fn sync_is_gone(&self, now_us: u64, timeout_us: u64) -> bool {
