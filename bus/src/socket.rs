@@ -58,7 +58,7 @@ impl CanPort {
         }
     }
 
-    /// Waits for a frame; `None` after the timeout.
+    /// Waits for a frame; `None` after the timeout, or where a signal came first.
     ///
     /// # Errors
     /// The kernel's.
@@ -66,7 +66,7 @@ impl CanPort {
         if let Some(frame) = self.try_receive()? {
             return Ok(Some(frame));
         }
-        wait_readable(&[self.as_raw_fd()], Some(timeout))?;
+        wait(&mut [readable(self.as_raw_fd())], Some(timeout))?;
         self.try_receive()
     }
 
@@ -131,13 +131,30 @@ fn to_socket(frame: &CanFrame) -> io::Result<socketcan::CanFrame> {
     made.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "not a classic CAN frame"))
 }
 
-/// Waits until one of the descriptors is readable, or the timeout is over; tells whether one is.
+/// How a waiting ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waited {
+    /// A descriptor is readable, or its other end is gone.
+    Ready,
+    /// The timeout is over.
+    TimedOut,
+    /// A signal came.
+    Interrupted,
+}
+
+/// Asks [`wait`] for a descriptor that is readable.
+#[must_use]
+pub const fn readable(fd: RawFd) -> libc::pollfd {
+    libc::pollfd { fd, events: libc::POLLIN, revents: 0 }
+}
+
+/// Waits until a descriptor is ready (its `revents` tell which), or the timeout is over; without a timeout for as long as it takes.
+///
+/// `ppoll`, not `poll`: the latter counts in milliseconds.
 ///
 /// # Errors
 /// The kernel's.
-pub fn wait_readable(descriptors: &[RawFd], timeout: Option<Duration>) -> io::Result<bool> {
-    let entry = |fd: &RawFd| libc::pollfd { fd: *fd, events: libc::POLLIN, revents: 0 };
-    let mut entries: Vec<libc::pollfd> = descriptors.iter().map(entry).collect();
+pub fn wait(entries: &mut [libc::pollfd], timeout: Option<Duration>) -> io::Result<Waited> {
     let limit = timeout.map(|timeout| libc::timespec {
         tv_sec: libc::time_t::try_from(timeout.as_secs()).unwrap_or(libc::time_t::MAX),
         tv_nsec: libc::c_long::from(timeout.subsec_nanos()),
@@ -150,9 +167,9 @@ pub fn wait_readable(descriptors: &[RawFd], timeout: Option<Duration>) -> io::Re
     match ready {
         -1 => {
             let error = io::Error::last_os_error();
-            if error.kind() == ErrorKind::Interrupted { Ok(false) } else { Err(error) }
+            if error.kind() == ErrorKind::Interrupted { Ok(Waited::Interrupted) } else { Err(error) }
         }
-        0 => Ok(false),
-        _ => Ok(true),
+        0 => Ok(Waited::TimedOut),
+        _ => Ok(Waited::Ready),
     }
 }

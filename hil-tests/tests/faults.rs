@@ -64,7 +64,7 @@ fn survive(plan: FaultPlan) -> (Master<InProcess>, Seen) {
             }
         }
     }
-    seen.warnings = servo.borrow().diagnostics().iter().sum();
+    seen.warnings = servo.borrow().counts().bridged;
     (master, seen)
 }
 

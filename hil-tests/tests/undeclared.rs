@@ -111,7 +111,7 @@ fn commissioned(pair: &[Hidden]) -> (Vec<(String, Vec<String>)>, Vec<Measured>) 
     let file = folder.path().join("machine.toml");
     std::fs::write(&file, format!("name = \"{}\"\n{HEAD}{axes}", pair[0].effect)).unwrap();
     let out = folder.path().join("out");
-    let machine = MachineArguments { machine: Some(file), can: None };
+    let machine = MachineArguments { machine: Some(file), ..MachineArguments::default() };
     commission::command(&Commission { machine, out: out.clone() }).unwrap();
     let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -8,6 +8,7 @@ use crate::cli::{self, MachineArguments, Method};
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::{Failure, Outcome};
 use crate::identify::write;
+use crate::nodes::refuse_overload;
 use crate::plots::{self, Trace};
 use crate::progress;
 use crate::recording;
@@ -24,7 +25,11 @@ pub fn machine(arguments: &MachineArguments) -> Outcome<(Machine, Place)> {
         Some(path) => Machine::read(path)?,
         None => Machine::reference(),
     };
-    let place = arguments.can.clone().map_or(Place::InProcess, Place::Can);
+    let pace = arguments.timing.pace();
+    let place = arguments.can.clone().map_or(Place::InProcess, |names| Place::Can { names, pace });
+    if arguments.can.is_some() {
+        refuse_overload(&machine, pace)?;
+    }
     Ok((machine, place))
 }
 

@@ -230,7 +230,7 @@ mod tests {
             let per_velocity = TAU / 0.010 / 1.0e6 * period_s / COUNT_M;
             let kp = settings.config.cascade.velocity_gain.0.to_num::<f64>() * per_velocity;
             assert!((kp / (931.65 * TAU * 30.0) - 1.0).abs() < 2.0e-6, "{kp} at {period_s}");
-            let deceleration = settings.reference.quick_stop.deceleration.0.to_num::<f64>();
+            let deceleration = settings.config.reference.quick_stop.deceleration.0.to_num::<f64>();
             assert!((deceleration * COUNT_M / period_s / period_s / 5.0 - 1.0).abs() < 1.0e-5, "{deceleration}");
         }
     }

@@ -1,7 +1,7 @@
 //! The workbench on the bus: NMT master, SYNC producer, SDO client, source of setpoints.
 //!
 //! One cycle k in lock-step: SYNC k, setpoints k + 1, then wait until the torque k of every axis was seen. A cycle whose torque does not come
-//! within the timeout counts as missed and the run goes on; what that means is the business of the nodes' watchdogs.
+//! while the link waits counts as missed and the run goes on; what that means is the business of the nodes' watchdogs.
 
 use std::time::Duration;
 
@@ -22,9 +22,6 @@ use crate::link::{Link, axis_ids};
 
 /// How long an answer may take before the node counts as absent.
 const ANSWER: Duration = Duration::from_secs(1);
-/// How long all torques of a cycle may take in lock-step.
-const CYCLE: Duration = Duration::from_millis(200);
-
 /// Frames that may pass while an answer is waited for: more than a full 1 Mbit/s bus carries in a second.
 const FRAMES_PER_ANSWER: u32 = 20_000;
 /// Frames that may pass in a cycle.
@@ -401,7 +398,7 @@ impl<L: Link> Master<L> {
         let mut frames = 0;
         while self.axes.iter().any(|axis| axis.bus == bus && !axis.torque_seen) {
             frames += 1;
-            let received = if frames > FRAMES_PER_CYCLE { None } else { self.link.receive(bus, CYCLE)? };
+            let received = if frames > FRAMES_PER_CYCLE { None } else { self.link.receive_in_cycle(bus)? };
             let Some(frame) = received else {
                 self.missed += 1;
                 return Ok(());

@@ -1,6 +1,7 @@
 //! Runs on a machine: connect, configure, enable, move, record.
 
 use plant_sim::Machine;
+use quadrant_host::Pace;
 
 use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
@@ -15,8 +16,13 @@ pub enum Place {
     /// Servo and plant in this process.
     #[default]
     InProcess,
-    /// On CAN interfaces; several names separated by commas.
-    Can(String),
+    /// On CAN interfaces.
+    Can {
+        /// Their names, separated by commas.
+        names: String,
+        /// Who beats the time.
+        pace: Pace,
+    },
 }
 
 /// A machine that is ready to move.
@@ -40,6 +46,10 @@ impl Link for Box<dyn Link> {
 
     fn receive(&mut self, bus: usize, timeout: std::time::Duration) -> Outcome<Option<protocol::CanFrame>> {
         self.as_mut().receive(bus, timeout)
+    }
+
+    fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<protocol::CanFrame>> {
+        self.as_mut().receive_in_cycle(bus)
     }
 
     fn pass(&mut self, cycle: std::time::Duration) {
@@ -67,7 +77,7 @@ impl<'a> Session<'a> {
     pub fn open(machine: &'a Machine, place: &Place, compensation: &[AxisCompensation], run: u64) -> Outcome<Self> {
         let link: Box<dyn Link> = match place {
             Place::InProcess => Box::new(InProcess::new(machine, run)?),
-            Place::Can(names) => Box::new(Interfaces::open(machine, names)?),
+            Place::Can { names, pace } => Box::new(Interfaces::open(machine, names)?.with_pace(*pace)),
         };
         let mut master = Master::start(link, machine)?;
         master.configure(machine, compensation)?;
