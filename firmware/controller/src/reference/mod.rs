@@ -93,6 +93,7 @@ pub struct ReferenceInput {
 
 /// What the law follows in cycle k.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "what is true of one cycle, each apart")]
 pub struct Reference {
     /// Of cycle k, in time with its feedback.
     pub position: Position,
