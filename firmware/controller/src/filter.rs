@@ -59,7 +59,7 @@ impl FilterConfig {
 /// 1 − a1 − a2 > 0 and 1 + a1 − a2 > 0 make |a1| < 1 − a2. In integers, exact.
 fn decays(a1: i32, a2: i32) -> bool {
     let one = 1_i64 << COEFFICIENT_FRACTION_BITS;
-    let [a1, a2] = [a1, a2].map(|a| i64::from(a));
+    let [a1, a2] = [a1, a2].map(i64::from);
     a2.saturating_abs() < one && a1.saturating_abs() < one.saturating_sub(a2)
 }
 
@@ -128,16 +128,20 @@ mod tests {
     #[test]
     fn coefficients_beyond_the_headroom_are_refused() {
         let result = FilterConfig::new([i32::MAX, i32::MAX, 0, 0, 0]);
-        assert_eq!(result, Err(FilterError::TooLarge { sum: 2 * i32::MAX as u64 }));
+        assert_eq!(result, Err(FilterError::TooLarge { sum: 2 * u64::from(i32::MAX.unsigned_abs()) }));
     }
 
     /// 1 in Q29.
     const ONE: i32 = 1 << COEFFICIENT_FRACTION_BITS;
 
+    fn q29(a: f64) -> i32 {
+        fixed::types::I3F29::from_num(a).to_bits()
+    }
+
     #[test]
     fn a_pole_at_1_2_is_refused() {
         // (1 − 1.2 z⁻¹)(1 − 0.5 z⁻¹): a1 = 1.7, a2 = −0.6.
-        let [a1, a2] = [1.7, -0.6].map(|a: f64| (a * f64::from(ONE)) as i32);
+        let [a1, a2] = [1.7, -0.6].map(q29);
         assert_eq!(FilterConfig::new([ONE, 0, 0, a1, a2]), Err(FilterError::Unstable { a1, a2 }));
     }
 
@@ -166,7 +170,7 @@ mod tests {
             let root = a1 * a1 / 4.0 + a2;
             let largest = if root < 0.0 { (-a2).sqrt() } else { a1.abs() / 2.0 + root.sqrt() };
             prop_assume!((largest - 1.0).abs() > 1e-6);
-            prop_assert_eq!(decays((a1 * f64::from(ONE)) as i32, (a2 * f64::from(ONE)) as i32), largest < 1.0);
+            prop_assert_eq!(decays(q29(a1), q29(a2)), largest < 1.0);
         }
     }
 }

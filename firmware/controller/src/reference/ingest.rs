@@ -136,7 +136,8 @@ impl Ingest {
         if !judged || second.is_some_and(|second| self.is_believable(bounds, first, second)) {
             return Some(self.revised(first));
         }
-        self.hole = self.hole.saturating_add(1);
+        // However many are refused: what the axis can reach does not grow with them.
+        self.hole = self.hole.max(1);
         self.refusals = self.refusals.saturating_add(1);
         None
     }
@@ -146,22 +147,23 @@ impl Ingest {
         Revision { track: self.track, by }
     }
 
-    /// The table of the module's head.
+    /// The table of the module's head: where both are possible, a setpoint is believed that leaves clearly less.
     fn is_believable(&self, bounds: Bounds, first: Way, second: Way) -> bool {
-        let acceleration = self.track.acceleration;
-        let double = first.saturating_add(first);
-        let (possible, left, otherwise) = if self.hole == 0 {
-            let (before, after) =
-                (acceleration.saturating_add(first), acceleration.saturating_add(second.saturating_sub(double)));
-            let possible = within(before, bounds.acceleration) && within(after, bounds.acceleration);
-            let otherwise = within(acceleration.saturating_add(second), bounds.acceleration);
-            (possible, second.saturating_sub(double).saturating_sub(first), otherwise)
-        } else {
-            let cycles = self.hole.saturating_add(1);
-            let (reach, farther) = (reach(bounds, cycles), reach(bounds, cycles.saturating_add(1)));
-            (within(first, reach), second.saturating_sub(double), within(second, farther))
-        };
-        possible && (!otherwise || left.saturating_abs() <= second.saturating_abs())
+        let cycles = self.hole.saturating_add(1);
+        let between = second.saturating_sub(first).saturating_sub(first);
+        let left = if self.hole == 0 { between.saturating_sub(first) } else { between };
+        let goes_on = self.hole > 0 || within(self.track.acceleration.saturating_add(between), bounds.acceleration);
+        let believed = self.is_possible(bounds, cycles, first) && goes_on;
+        let otherwise = self.hole > 0 || within(self.track.acceleration.saturating_add(second), bounds.acceleration);
+        believed && !(otherwise && left.saturating_abs().saturating_add(bounds.step) >= second.saturating_abs())
+    }
+
+    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m (m + 1) / 2.
+    fn is_possible(&self, bounds: Bounds, cycles: u8, deviation: Way) -> bool {
+        let cycles = i32::from(cycles);
+        let times = cycles.saturating_mul(cycles.saturating_add(1)).wrapping_shr(1);
+        let way = self.track.acceleration.saturating_mul_int(times).saturating_add(deviation);
+        within(way, bounds.acceleration.saturating_mul_int(times))
     }
 
     fn advance(&mut self, bounds: Bounds, judged: bool, next: I56F8) -> bool {
@@ -171,20 +173,21 @@ impl Ingest {
         }
         let expected = self.track.ahead();
         let deviation = way(expected.position, next);
-        let far = !within(deviation, if judged { bounds.step } else { reach(bounds, self.hole.saturating_add(1)) });
-        if far && !judged {
+        let is_plausible = within(deviation, bounds.step)
+            || !judged && self.is_possible(bounds, self.hole.saturating_add(1), deviation);
+        if !is_plausible && !judged {
             // Nobody follows, so the setpoint may begin anew anywhere.
             *self = Self::at(self.track);
             self.adopt(next);
             return true;
         }
         self.track = expected;
-        if far {
-            self.doubt = Some(deviation);
-        } else {
+        if is_plausible {
             self.believe(deviation);
+        } else {
+            self.doubt = Some(deviation);
         }
-        !far
+        is_plausible
     }
 
     /// The track goes on without a setpoint.
@@ -217,12 +220,6 @@ impl Ingest {
         self.to_adopt = self.to_adopt.saturating_sub(1);
         self.hole = 0;
     }
-}
-
-/// How far off its extrapolation the axis can be after so many cycles: 2 a for a change from −a to a, times m (m + 1) / 2.
-fn reach(bounds: Bounds, cycles: u8) -> Way {
-    let cycles = i32::from(cycles);
-    bounds.acceleration.saturating_mul_int(cycles.saturating_mul(cycles.saturating_add(1)))
 }
 
 /// Parts of a deviation that are velocity and acceleration, after a hole of so many cycles.

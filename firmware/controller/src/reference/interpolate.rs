@@ -14,15 +14,12 @@ use fixed::types::I56F8;
 /// Most cycles from setpoint to setpoint.
 pub(super) const MOST_CYCLES: u8 = 20;
 
-/// 2²⁴ / n, to nearest: there is no division in the cycle.
-const SHARE: [i64; 21] = {
-    let (mut table, mut n) = ([ONE; 21], 1);
-    while n < 21 {
-        table[n as usize] = (2 * ONE + n) / (2 * n);
-        n += 1;
-    }
-    table
-};
+/// 2²⁴ / n, to nearest, for n = 0 (nothing), 1, 2…: there is no division in the cycle.
+const SHARE: [i64; 21] = [
+    0, 16_777_216, 8_388_608, 5_592_405, 4_194_304, 3_355_443, 2_796_203, 2_396_745, 2_097_152, 1_864_135, 1_677_722,
+    1_525_201, 1_398_101, 1_290_555, 1_198_373, 1_118_481, 1_048_576, 986_895, 932_068, 883_011, 838_861,
+];
+
 const ONE: i64 = 1 << 24;
 
 /// Memory of the interpolation: two ends of the present piece with their tangents, and the setpoint behind it.
@@ -75,4 +72,27 @@ impl Interpolation {
 fn times(way: i64, share: i64) -> i64 {
     let way = way.clamp(-(1 << 36), 1 << 36);
     way.wrapping_mul(share).wrapping_add(ONE / 2).wrapping_shr(24)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shares_are_the_quotients() {
+        for (n, share) in (1_i64..).zip(&SHARE[1..]) {
+            assert!((share * n - ONE).abs() <= n / 2 + 1, "n {n}");
+        }
+    }
+
+    #[test]
+    fn constant_acceleration_is_reproduced_to_a_bit() {
+        let parabola = |t: i64| 1000 * t * t / 64 - 77 * t;
+        let mut piece = Interpolation::at_rest(I56F8::from_bits(0));
+        (-1..3).for_each(|knot| piece.push(I56F8::from_bits(parabola(8 * knot))));
+        for phase in 1..=8 {
+            let got = piece.position(phase, 8).to_bits();
+            assert!((got - parabola(i64::from(phase))).abs() <= 2, "{phase}: {got}");
+        }
+    }
 }

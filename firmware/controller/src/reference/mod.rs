@@ -93,6 +93,7 @@ pub struct ReferenceInput {
 
 /// What the law follows in cycle k.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "what is true of one cycle, each apart")]
 pub struct Reference {
     /// Of cycle k, in time with its feedback.
     pub position: Position,
@@ -130,6 +131,8 @@ pub struct ReferenceState {
     smooth: I56F8,
     commanded: Track,
     caught_up: bool,
+    /// Velocity before the setpoints that are missing or in doubt at present.
+    before_extrapolation: Option<Way>,
 }
 
 impl Default for ReferenceState {
@@ -153,6 +156,7 @@ impl ReferenceState {
             smooth: position,
             commanded: track,
             caught_up: false,
+            before_extrapolation: None,
         }
     }
 
@@ -214,7 +218,8 @@ impl ReferenceState {
         let next = self.advance(config, &limits, input.mode, target);
         self.commanded = next;
         let mut reference = self.accelerated(config, &now, &next, &taken);
-        if is_plain(config) && taken.extrapolated && turns_round(&now, &next) {
+        let confirmed = self.confirmed_velocity(taken.extrapolated, now.velocity);
+        if is_plain(config) && taken.extrapolated && turns_round(confirmed, next.velocity) {
             reference.next_velocity = Velocity::ZERO;
         }
         reference.limited = !self.caught_up && input.mode == Mode::Follow;
@@ -222,6 +227,13 @@ impl ReferenceState {
         reference.refused = taken.refused;
         reference.bridged = taken.bridged;
         reference
+    }
+
+    /// The last velocity that setpoints confirmed.
+    fn confirmed_velocity(&mut self, is_extrapolated: bool, now: Way) -> Way {
+        let confirmed = self.before_extrapolation.unwrap_or(now);
+        self.before_extrapolation = is_extrapolated.then_some(confirmed);
+        confirmed
     }
 
     /// The commanded track one cycle on.
@@ -358,8 +370,8 @@ fn bounds_of(config: &ReferenceConfig) -> Bounds {
 /// In 10 nm.
 const MICROMETRE: Way = Way::from_bits(100 << 8);
 
-fn turns_round(now: &Track, next: &Track) -> bool {
-    next.velocity > Way::ZERO && now.velocity <= Way::ZERO || next.velocity < Way::ZERO && now.velocity >= Way::ZERO
+fn turns_round(now: Way, next: Way) -> bool {
+    next > Way::ZERO && now <= Way::ZERO || next < Way::ZERO && now >= Way::ZERO
 }
 
 /// Position and velocities of a cycle.
