@@ -30,6 +30,7 @@
     )
 )]
 
+pub mod conversion;
 pub mod drive;
 pub mod encoders;
 pub mod inbox;

@@ -2,7 +2,7 @@
 //!
 //! A person commissions an axis in physical units, so a parameter is an integer number of decimal steps: 5 m/s² is 5 000 000 steps of
 //! 1 µm/s². A write is checked against its range before it is acknowledged and goes into the *staged* set only. [`COMMIT`] turns the
-//! staged set into machine units of its own cycle time ([`crate::settings`]) and makes it active as a whole.
+//! staged set into machine units of its own cycle time ([`crate::conversion`]) and makes it active as a whole.
 //!
 //! All parameters are INTEGER32, also where CiA 402 has UNSIGNED32, UNSIGNED8 or INTEGER16: a client writes four bytes everywhere. Indices
 //! are those of CiA 301 and CiA 402-2 where these have the object, 2xxxh elsewhere.
