@@ -262,6 +262,7 @@ mod tests {
         axis.gains.position_gain_per_s = 10.0;
         let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
         assert!(error.to_string().starts_with("velocity_m_per_s: the drive cannot hold"), "{error}");
+        axis.limits.velocity_m_per_s = 0.1;
         axis.gains.position_gain_per_s = 100.0;
         let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
         assert!(error.to_string().starts_with("position_gain_per_s: the drive cannot hold"), "{error}");

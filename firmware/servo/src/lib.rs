@@ -11,7 +11,7 @@
 //! SYNC goes on by its own timer. Time is an argument: the clock, lock-step bus time or virtual time, as the leaf has it.
 //!
 //! Where to look: the states of the drive in [`drive`], the power stage in [`stage`], one control cycle in [`axis`], what makes a cycle begin and
-//! close in `cycle`, its times in [`timing`], parameters in [`objects`], [`parameters`] and [`settings`].
+//! close in `cycle`, its times in [`timing`], parameters in [`objects`], [`parameters`], [`conversion`] and [`settings`].
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(
@@ -35,6 +35,7 @@
 )]
 
 pub mod axis;
+pub mod conversion;
 mod cycle;
 pub mod drive;
 pub mod encoders;

@@ -2,7 +2,7 @@
 //!
 //! A person commissions an axis in physical units, so a parameter is an integer number of decimal steps: 5 m/s² is 5 000 000 steps of
 //! 1 µm/s². A write is checked against its range before it is acknowledged and goes into the *staged* set only. [`COMMIT`] turns the
-//! staged set into machine units of its own cycle time ([`crate::settings`]) and makes it active as a whole.
+//! staged set into machine units of its own cycle time ([`crate::conversion`]) and makes it active as a whole.
 //!
 //! All parameters are INTEGER32, also where CiA 402 has UNSIGNED32, UNSIGNED8 or INTEGER16: a client writes four bytes everywhere. Indices
 //! are those of CiA 301 and CiA 402-2 where these have the object, 2xxxh elsewhere.
@@ -176,7 +176,8 @@ parameters! {
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
     QuickStopDeceleration = (0x6085, 0), "deceleration of the quick-stop ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
     RampJerk = (0x60A4, 1), "jerk of both ramps (0 not limited)", MILLIMETRE_PER_S3, POSITIVE, 0;
-    StepJerk = (0x2114, 0), "jerk of a path above which the acceleration makes a step", MILLIMETRE_PER_S3, (1, i32::MAX), 200_000;
+    // The geometric mean of a smooth path (50 m/s^3) and of a step of 5 m/s^2 within 1 ms; fits the machine units at 20 ms too.
+    StepJerk = (0x2114, 0), "jerk of a path above which the acceleration makes a step", MILLIMETRE_PER_S3, (1, i32::MAX), 500_000;
     PositionMin = (0x607D, 1), "software position limit, lower (INTEGER32 minimum: none)", COUNT, EVERY, i32::MIN;
     PositionMax = (0x607D, 2), "software position limit, upper (INTEGER32 maximum: none)", COUNT, EVERY, i32::MAX;
     SetpointPeriod = (0x60C2, 1), "setpoint period (0: every cycle)", NUMBER, (0, 255), 0;

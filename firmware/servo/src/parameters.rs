@@ -1,5 +1,6 @@
 //! A parameter set: one raw number for each row of the object table, in physical steps.
 
+use crate::conversion;
 use crate::objects::{DEFAULTS, PARAMETERS, Parameter};
 use crate::settings::Settings;
 
@@ -36,7 +37,7 @@ impl ParameterSet {
     /// # Errors
     /// [`SetError`] where values that are fine one by one do not go together, or do not fit the machine units.
     pub fn settings(&self) -> Result<Settings, SetError> {
-        Settings::of(self)
+        conversion::settings(self)
     }
 
     /// Whether two sets read the encoders alike and run at the same cycle time: only such a set may become active in motion.

@@ -68,7 +68,7 @@ pub struct SdoServer {
 pub enum Effect {
     /// Nothing that the drive has to know.
     None,
-    /// A new set becomes active at the next cycle.
+    /// A new set becomes active at the next cycle. For uploads it is the active one from now on.
     Commit(Settings),
 }
 
