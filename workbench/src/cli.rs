@@ -186,15 +186,6 @@ impl PaceArguments {
             Pace::Clock => quadrant_host::Pace::Clock,
         }
     }
-
-    /// SYNC timeout of the nodes after reset, µs.
-    #[must_use]
-    pub const fn sync_timeout_us(self) -> u32 {
-        match self.pace {
-            Pace::Lockstep => 1_000_000,
-            Pace::Clock => 20_000,
-        }
-    }
 }
 
 /// Arguments of `plant`.

@@ -27,7 +27,7 @@ fn ids(servo: u8, plant: u8) -> Outcome<AxisIds> {
 /// Where the interface cannot be opened or goes away.
 pub fn servo(arguments: &cli::Servo) -> Outcome<()> {
     let ids = ids(arguments.node, arguments.plant_node)?;
-    let servo = servo::Servo::new(ids).with_sync_timeout_us(arguments.pace.sync_timeout_us());
+    let servo = servo::Servo::new(ids);
     let receiver = Receiver { interface: &arguments.can, node: ids.servo, heard: &HEARD_BY_SERVO };
     receiver.run(Box::new(servo), arguments.pace.chosen(), arguments.faults)
 }
@@ -53,9 +53,7 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
     };
     refuse_overload(&machine, arguments.pace.chosen())?;
     let ids = ids(arguments.node - 0x10, arguments.node)?;
-    let timeout_us = u64::from(arguments.pace.sync_timeout_us());
-    let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index))
-        .with_sync_timeout_us(timeout_us);
+    let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index));
     let receiver = Receiver { interface: &arguments.can, node: ids.plant, heard: &HEARD_BY_PLANT };
     receiver.run(Box::new(plant), arguments.pace.chosen(), arguments.faults)
 }
