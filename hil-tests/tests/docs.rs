@@ -5,6 +5,9 @@ use std::path::Path;
 use protocol::cob::AxisIds;
 use protocol::table::{FRAMES, Rate};
 
+/// How the frames follow each other, written by hand.
+const CYCLE: &str = include_str!("docs/cycle.md");
+
 fn check(name: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
     if std::env::var_os("QUADRANT_BLESS").is_some() {
@@ -74,7 +77,7 @@ fn reason_rows() -> String {
 fn the_list_of_frames_is_the_table_of_the_protocol() {
     let ids = AxisIds::of_axis(0).unwrap();
     let mut text = String::from(
-        "# Frames\n\nMade from `protocol/src/table.rs` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`; identifiers of the first axis \
+        "# Frames\n\nWhat the nodes say (this table), and [when](#the-cycle). Made from `protocol/src/table.rs` and `hil-tests/tests/docs/cycle.md` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`; identifiers of the first axis \
          (servo 0x01, plant 0x11). `protocol/quadrant.dbc` is made from the same table.\n\n\
          | identifier | frame | sender | bytes | rate | signals (first bit, bits, weight) |\n|---|---|---|---|---|---|\n",
     );
@@ -98,5 +101,7 @@ fn the_list_of_frames_is_the_table_of_the_protocol() {
             signals.join("; ")
         );
     }
+    text += "\n";
+    text += CYCLE;
     check("frames.md", &text);
 }

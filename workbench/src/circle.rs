@@ -25,7 +25,7 @@ pub fn machine(arguments: &MachineArguments) -> Outcome<(Machine, Place)> {
         Some(path) => Machine::read(path)?,
         None => Machine::reference(),
     };
-    let pace = arguments.timing.pace();
+    let pace = arguments.pace.chosen();
     let place = arguments.can.clone().map_or(Place::InProcess, |names| Place::Can { names, pace });
     if arguments.can.is_some() {
         refuse_overload(&machine, pace)?;

@@ -44,7 +44,7 @@ pub struct MachineArguments {
     pub can: Option<String>,
     #[command(flatten)]
     #[expect(missing_docs, reason = "flattened")]
-    pub timing: Timing,
+    pub pace: PaceArguments,
 }
 
 /// Arguments of `commission`.
@@ -158,7 +158,7 @@ pub enum Pace {
 
 /// How a run on CAN interfaces is paced.
 #[derive(Clone, Copy, Debug, clap::Args)]
-pub struct Timing {
+pub struct PaceArguments {
     /// Who beats the time on CAN interfaces
     #[arg(long, value_enum, default_value_t = Pace::Lockstep)]
     pub pace: Pace,
@@ -171,16 +171,16 @@ pub struct Timing {
 /// Long, because on a busy machine a process may have to wait for its turn.
 const DEADLINE_MS: u64 = 1000;
 
-impl Default for Timing {
+impl Default for PaceArguments {
     fn default() -> Self {
         Self { pace: Pace::Lockstep, deadline_ms: DEADLINE_MS }
     }
 }
 
-impl Timing {
+impl PaceArguments {
     /// The pace of nodes and workbench.
     #[must_use]
-    pub const fn pace(self) -> quadrant_host::Pace {
+    pub const fn chosen(self) -> quadrant_host::Pace {
         match self.pace {
             Pace::Lockstep => quadrant_host::Pace::Lockstep { deadline: Duration::from_millis(self.deadline_ms) },
             Pace::Clock => quadrant_host::Pace::Clock,
@@ -202,7 +202,7 @@ pub struct Plant {
     pub can: String,
     #[command(flatten)]
     #[expect(missing_docs, reason = "flattened")]
-    pub timing: Timing,
+    pub pace: PaceArguments,
     /// Inject faults into the receiving port, for tests: seed,lost,doubled,late,corrupted[,from cycle] (the shares per mille)
     #[arg(long, hide = true, value_parser = fault_plan)]
     pub faults: Option<bus::FaultPlan>,
@@ -222,7 +222,7 @@ pub struct Servo {
     pub can: String,
     #[command(flatten)]
     #[expect(missing_docs, reason = "flattened")]
-    pub timing: Timing,
+    pub pace: PaceArguments,
     /// Inject faults into the receiving port, for tests: seed,lost,doubled,late,corrupted[,from cycle] (the shares per mille)
     #[arg(long, hide = true, value_parser = fault_plan)]
     pub faults: Option<bus::FaultPlan>,

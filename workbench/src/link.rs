@@ -10,7 +10,7 @@ use protocol::CanFrame;
 use protocol::cob::AxisIds;
 use quadrant_host::Pace;
 
-use crate::cli::Timing;
+use crate::cli::PaceArguments;
 use crate::error::{Failure, Outcome};
 
 /// The buses of a machine, seen by the workbench.
@@ -210,7 +210,7 @@ impl Interfaces {
             logging: false,
             begun: Instant::now(),
             now_us: 0,
-            pace: Timing::default().pace(),
+            pace: PaceArguments::default().chosen(),
             cycle_end: None,
         })
     }

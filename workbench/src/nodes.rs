@@ -29,7 +29,7 @@ pub fn servo(arguments: &cli::Servo) -> Outcome<()> {
     let ids = ids(arguments.node, arguments.plant_node)?;
     let servo = servo::Servo::new(ids);
     let receiver = Receiver { interface: &arguments.can, node: ids.servo, heard: &HEARD_BY_SERVO };
-    receiver.run(Box::new(servo), arguments.timing.pace(), arguments.faults)
+    receiver.run(Box::new(servo), arguments.pace.chosen(), arguments.faults)
 }
 
 /// Runs the plant node of an axis until it is ended.
@@ -51,11 +51,11 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
             0x10 + machine.axes.len()
         )));
     };
-    refuse_overload(&machine, arguments.timing.pace())?;
+    refuse_overload(&machine, arguments.pace.chosen())?;
     let ids = ids(arguments.node - 0x10, arguments.node)?;
     let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index));
     let receiver = Receiver { interface: &arguments.can, node: ids.plant, heard: &HEARD_BY_PLANT };
-    receiver.run(Box::new(plant), arguments.timing.pace(), arguments.faults)
+    receiver.run(Box::new(plant), arguments.pace.chosen(), arguments.faults)
 }
 
 /// Where a node listens, and to what.

@@ -1,6 +1,6 @@
 //! One station at one port: what delivers its frames and tells it the time.
 //!
-//! - *Lock-step*: time is [bus time](crate::bus_time). Where no frame comes for the deadline, the station does what is due next. After three
+//! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline, the station does what is due next. After three
 //!   deadlines in a row the partner is gone, and time follows the clock until a frame comes again.
 //! - *Clock pace*: time is the clock, and the station wakes when it is due.
 
@@ -13,7 +13,7 @@ use embassy_time::{Duration, Instant, Timer};
 use protocol::message::{self, Decoded};
 use protocol::{AxisIds, CanFrame, Message, Station, SyncCounter};
 
-use crate::bus_time::BusTime;
+use crate::lockstep_time::LockstepTime;
 use crate::port::Port;
 
 /// Deadlines in a row after which the partner counts as gone. One is a lost frame, two are a lost frame and the one that it would have caused.
@@ -29,17 +29,17 @@ pub(crate) struct Leaf {
     port: Port,
     faults: Option<FaultyPort>,
     received: Vec<CanFrame>,
-    time: BusTime,
+    time: LockstepTime,
 }
 
 /// The clock, counted on from a bus time.
 #[derive(Clone, Copy)]
-struct Clock {
+struct ClockTime {
     from: Instant,
     from_us: u64,
 }
 
-impl Clock {
+impl ClockTime {
     fn from(now_us: u64) -> Self {
         Self { from: Instant::now(), from_us: now_us }
     }
@@ -56,7 +56,7 @@ impl Clock {
 impl Leaf {
     pub(crate) fn new(station: Box<dyn Station>, port: Port, faults: Option<FaultyPort>) -> Self {
         let ids = station.ids();
-        Self { station, ids, port, faults, received: Vec::new(), time: BusTime::default() }
+        Self { station, ids, port, faults, received: Vec::new(), time: LockstepTime::default() }
     }
 
     /// The boot-up message.
@@ -86,7 +86,7 @@ impl Leaf {
 
     /// Runs by the clock until the port fails.
     pub(crate) async fn by_the_clock(&mut self) -> io::Result<Infallible> {
-        let clock = Clock::from(self.time.now_us());
+        let clock = ClockTime::from(self.time.now_us());
         loop {
             if let Some(frame) = self.frame_or_wake(clock).await? {
                 self.time.reach(clock.now_us());
@@ -97,7 +97,7 @@ impl Leaf {
 
     /// Nobody is there: time follows the clock until a frame comes.
     async fn alone(&mut self) -> io::Result<()> {
-        let clock = Clock::from(self.time.now_us());
+        let clock = ClockTime::from(self.time.now_us());
         loop {
             if let Some(frame) = self.frame_or_wake(clock).await? {
                 self.time.reach(clock.now_us());
@@ -107,7 +107,7 @@ impl Leaf {
     }
 
     /// The next frame; `None` where the station was due before one came, and did what was due.
-    async fn frame_or_wake(&mut self, clock: Clock) -> io::Result<Option<CanFrame>> {
+    async fn frame_or_wake(&mut self, clock: ClockTime) -> io::Result<Option<CanFrame>> {
         let Some(due_us) = self.station.wake_at_us() else { return self.port.receive(None).await };
         match select(self.port.receive(None), Timer::at(clock.at(due_us))).await {
             Either::First(received) => received,

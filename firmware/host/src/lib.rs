@@ -7,9 +7,9 @@
 //!    ▲ ppoll                          ▲ bus time, or the clock
 //! ```
 
-pub mod bus_time;
 pub mod idle;
 mod leaf;
+pub mod lockstep_time;
 pub mod port;
 pub mod termination;
 

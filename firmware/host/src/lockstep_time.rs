@@ -9,12 +9,12 @@ use protocol::{SyncCounter, SyncEvent, SyncTracker};
 
 /// Bus time of one node, µs.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct BusTime {
+pub struct LockstepTime {
     now_us: u64,
     sync: SyncTracker,
 }
 
-impl BusTime {
+impl LockstepTime {
     /// The present time.
     #[must_use]
     pub const fn now_us(&self) -> u64 {
@@ -58,7 +58,7 @@ mod tests {
 
     /// Times after each of these SYNC counters, for a node that expects each cycle 1000 µs after the one before.
     fn times(counters: &[u8]) -> Vec<u64> {
-        let mut time = BusTime::default();
+        let mut time = LockstepTime::default();
         let mut due = None;
         let step = |counter: &u8| {
             time.sync(count(*counter), due);
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn a_sync_whose_cycle_was_begun_without_it_moves_nothing() {
-        let mut time = BusTime::default();
+        let mut time = LockstepTime::default();
         time.sync(count(1), None);
         time.reach(1300);
         time.without_sync(Some(1000), Some(2000));
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn closing_a_cycle_at_its_deadline_does_not_hide_the_next_sync() {
-        let mut time = BusTime::default();
+        let mut time = LockstepTime::default();
         time.sync(count(1), None);
         time.reach(600);
         time.without_sync(Some(1000), Some(1000));
