@@ -7,3 +7,5 @@ pub mod golden;
 pub mod plans;
 pub mod records;
 pub mod rig;
+
+pub use scope::{Scope, on_all_cores};
