@@ -7,5 +7,6 @@ pub mod golden;
 pub mod plans;
 pub mod records;
 pub mod rig;
+pub mod targets;
 
 pub use scope::{Scope, on_all_cores};
