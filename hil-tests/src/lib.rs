@@ -5,6 +5,7 @@
 
 pub mod golden;
 pub mod plans;
+pub mod program;
 pub mod records;
 pub mod rig;
 pub mod targets;
