@@ -8,7 +8,8 @@
 //! | `cargo test` | [`Scope::Test`] | every claim, with at least one row, seed or machine of each |
 //! | `cargo certify` | [`Scope::Certify`] | everything: all rows, all seeds, millions of ticks |
 //!
-//! The command sets `QUADRANT_SCOPE`; tests ask [`Scope::now`] when they run, so nothing is compiled twice. A test says what each scope runs in one line:
+//! The alias sets `PROPTEST_CASES` (32 and 10 000 random cases; without it proptest takes its own 256) and `QUADRANT_SCOPE`. Tests ask
+//! [`Scope::now`] when they run, so nothing is compiled twice. A test says what each scope runs in one line:
 //!
 //! ```
 //! use scope::Scope;

@@ -116,7 +116,7 @@ fn input(setpoint: f64, motor: f64, load: f64) -> Input {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn fixed_point_and_floating_point_agree_within_the_bound(
