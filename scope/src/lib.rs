@@ -99,6 +99,14 @@ impl Scope {
         (0..wanted).filter_map(|place| rows.get(place * rows.len() / wanted)).collect()
     }
 
+    /// Whether this is `quick` and another test has this table's row already; prints which.
+    pub fn leaves_row_to(self, other: &str) -> bool {
+        if self == Self::Quick {
+            println!("nothing here (scope {self:?}): the row of this table runs in {other}");
+        }
+        self == Self::Quick
+    }
+
     /// Whether this scope runs everything.
     pub fn is_complete(self) -> bool {
         self == Self::Certify
