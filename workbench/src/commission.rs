@@ -15,7 +15,7 @@ use crate::master::AxisCycle;
 use crate::model_file::{self, Known};
 use crate::plots::{self, Curve, Trace};
 use crate::progress;
-use crate::recording;
+use crate::recording::{self, AxisRecord};
 use crate::report::{self, Page};
 use crate::run::{Place, Session};
 use crate::trajectory::{Circle, Move};
@@ -93,7 +93,11 @@ fn fitting_circle(machine: &Machine) -> Circle {
     Circle { radius_m, feed_m_per_s, ..CIRCLE }
 }
 
-fn identify_axes(machine: &Machine, place: &Place, out: &Path) -> Outcome<Vec<Identification>> {
+/// Records the axes of a machine and identifies them: the first half of the job. Writes the records below `out`.
+///
+/// # Errors
+/// Where a file or the machine is wrong.
+pub fn identify_axes(machine: &Machine, place: &Place, out: &Path) -> Outcome<Vec<Identification>> {
     progress::step("recording: slow and fast runs, reversals");
     let none = vec![AxisCompensation::default(); machine.axes.len()];
     let mut session = Session::open(machine, place, &none, 1)?;
@@ -101,18 +105,36 @@ fn identify_axes(machine: &Machine, place: &Place, out: &Path) -> Outcome<Vec<Id
     progress::step("recording the validation record");
     let validate = recording::record(&mut session, machine, true)?;
     circle::write_logs(&out.join("records.candump.log"), &session.close()?)?;
-    let mut results = Vec::new();
-    for (index, axis) in machine.axes.iter().enumerate() {
-        let folder = out.join(format!("records-{}", axis.name));
-        recording::write_dataset(&folder, machine, axis, &train[index], &validate[index])?;
-        let dataset = Dataset::read(&folder, None, None)?;
-        progress::step(&format!("identifying axis {}", axis.name));
-        let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
+    let results = on_a_core_each(machine, out, &train, &validate)?;
+    for (axis, result) in machine.axes.iter().zip(&results) {
         println!("axis {}:", axis.name);
-        identify::print(&result);
-        results.push(result);
+        identify::print(result);
     }
     Ok(results)
+}
+
+/// Identifies every axis in a thread of its own: their records have nothing in common.
+fn on_a_core_each(
+    machine: &Machine,
+    out: &Path,
+    train: &[AxisRecord],
+    validate: &[AxisRecord],
+) -> Outcome<Vec<Identification>> {
+    std::thread::scope(|scope| {
+        let records = machine.axes.iter().zip(train.iter().zip(validate));
+        let threads: Vec<_> = records
+            .map(|(axis, (train, validate))| {
+                let folder = out.join(format!("records-{}", axis.name));
+                scope.spawn(move || {
+                    recording::write_dataset(&folder, machine, axis, train, validate)?;
+                    let dataset = Dataset::read(&folder, None, None)?;
+                    let mut say = |text: &str| progress::step(&format!("axis {}: {text}", axis.name));
+                    Ok(identification::identify(&dataset, &mut say)?)
+                })
+            })
+            .collect();
+        threads.into_iter().map(|axis| axis.join().unwrap_or_else(|why| std::panic::resume_unwind(why))).collect()
+    })
 }
 
 struct Job<'a> {

@@ -159,7 +159,7 @@ fn torque(config: &Config, stage: &mut ReferenceState, law: &mut State, preview:
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn fixed_point_and_floating_point_agree_within_the_bound(
