@@ -18,7 +18,7 @@ use crate::progress;
 use crate::recording::{self, AxisRecord};
 use crate::report::{self, Page};
 use crate::run::{Place, Session};
-use crate::trajectory::{Circle, Move};
+use crate::trajectory::Circle;
 use crate::tune::{self, Tuned};
 
 /// The circle of commissioning: R 100 mm, F 2000 mm/min.
@@ -281,20 +281,19 @@ pub fn reversal_rows(
     circle: &Circle,
 ) -> Outcome<Vec<(f64, AxisCycle)>> {
     let mut session = Session::open(machine, place, compensation, 2)?;
+    // One turn is enough, and it ends at rest.
+    let circle = Circle { turns: 1, ..*circle };
     let rest = vec![0.0; machine.axes.len() - 1];
     let setpoints = |x: f64| [vec![x], rest.clone()].concat();
     let omega = circle.feed_m_per_s / circle.radius_m;
     session.go_to(&setpoints(circle.at(0.0)[0]))?;
-    // To the second reversal of X (three quarters of a turn), and a little on.
-    let reaches = |turns: f64| {
-        let mut milliseconds = (0_u32..1_000_000).map(|i| 1.0e-3 * f64::from(i));
-        milliseconds.find(|t| circle.angle_rad(*t) > turns * std::f64::consts::TAU).unwrap_or(0.0)
-    };
-    let (reversal_s, end_s) = (reaches(0.75), reaches(0.875));
+    // The second reversal of X is at three quarters of a turn.
+    let mut milliseconds = (0_u32..1_000_000).map(|i| 1.0e-3 * f64::from(i));
+    let reversal_s = milliseconds.find(|t| circle.angle_rad(*t) > 0.75 * std::f64::consts::TAU).unwrap_or(0.0);
     let window_s = (0.25 / omega).min(0.6);
     let mut rows = Vec::new();
     session.follow(
-        end_s,
+        circle.duration_s(),
         |time_s| setpoints(circle.at(time_s)[0]),
         |time_s, axes| {
             if (time_s - reversal_s).abs() <= window_s {
@@ -302,8 +301,6 @@ pub fn reversal_rows(
             }
         },
     )?;
-    let back = Move::new(&setpoints(circle.at(end_s)[0]), &setpoints(0.0), 0.1, 1.0);
-    session.follow(back.duration_s(), |time_s| back.at(time_s), |_, _| ())?;
     session.close()?;
     Ok(rows)
 }
