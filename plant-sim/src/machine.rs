@@ -397,17 +397,7 @@ impl Source<'_> {
         self.check_drive(part, &encoders, &actuator, &limits, &gains)?;
         self.check_sub_step(part, &mechanics, &actual.friction)?;
         self.check_increments(part, &mechanics, &encoders, &limits)?;
-        self.check_mounting(part, &mechanics, &encoders, &limits)?;
-        model.brake.map_or(Ok(()), |brake| self.check_brake(part, &brake))?;
-        model.stops.map_or(Ok(()), |stops| self.check_stops(part, &stops, &mechanics, &limits))?;
-        let mounting = Mounting {
-            gravity_n: mechanics.gravity_n,
-            brake: model.brake,
-            stops: model.stops.map(|form| form.stops(limits.travel_m)),
-            start_m: mechanics.start_m,
-            motor_zero_m: encoders.motor_zero_m,
-            load_zero_m: encoders.load_zero_m,
-        };
+        let mounting = self.mounting(part, &mechanics, &encoders, &limits, (model.brake, model.stops))?;
         self.check_declared(part, &declared)?;
         Ok(MachineAxis {
             name: own.name.clone(),
@@ -571,17 +561,28 @@ impl Source<'_> {
         ))
     }
 
-    fn check_mounting(
+    fn mounting(
         &self,
         part: &Range<usize>,
         mechanics: &MechanicsForm,
         encoders: &EncodersForm,
         limits: &Limits,
-    ) -> Result<(), MachineError> {
+        (brake, stops): (Option<BrakeParameters>, Option<StopsForm>),
+    ) -> Result<Mounting, MachineError> {
         self.range(part, "gravity_n", mechanics.gravity_n, -1.0e6, 1.0e6)?;
         self.range(part, "start_m", mechanics.start_m, -limits.travel_m, limits.travel_m)?;
         self.range(part, "motor_zero_m", encoders.motor_zero_m, -100.0, 100.0)?;
-        self.range(part, "load_zero_m", encoders.load_zero_m, -100.0, 100.0)
+        self.range(part, "load_zero_m", encoders.load_zero_m, -100.0, 100.0)?;
+        brake.map_or(Ok(()), |brake| self.check_brake(part, &brake))?;
+        stops.map_or(Ok(()), |stops| self.check_stops(part, &stops, mechanics, limits))?;
+        Ok(Mounting {
+            gravity_n: mechanics.gravity_n,
+            brake,
+            stops: stops.map(|form| form.stops(limits.travel_m)),
+            start_m: mechanics.start_m,
+            motor_zero_m: encoders.motor_zero_m,
+            load_zero_m: encoders.load_zero_m,
+        })
     }
 
     fn check_brake(&self, part: &Range<usize>, brake: &BrakeParameters) -> Result<(), MachineError> {

@@ -14,8 +14,8 @@
 //! The states of the power stage are in [`stage`]. What a control word changes (torque zero, brake) counts from the begin of the cycle in which it came.
 //!
 //! NMT stop, pre-operational and reset wait until torque no longer acts. A reset is the node's, not the machine's: an axis that moves goes on moving, its encoders
-//! counting and its noise going on. Only an axis at rest starts over from its start position, with its noise from the beginning, so that a run that
-//! begins with a reset is the same run every time.
+//! counting and its noise going on, and so does one whose reset had to wait. Only an axis that stands without torque when the reset comes starts over from its
+//! start position, with its noise from the beginning, so that a run that begins with a reset is the same run every time.
 
 use protocol::cob::{AxisIds, FrameKind, NodeId};
 use protocol::counter::SYNC_OVERFLOW;
@@ -399,9 +399,12 @@ impl PlantNode {
         self.deferred = None;
         if self.stage.is_enabled() && command != NmtCommand::StartRemoteNode {
             self.deferred = Some(command);
-        } else {
-            self.obey_nmt(command, now_us, send);
+            return;
         }
+        if matches!(command, NmtCommand::ResetNode | NmtCommand::ResetCommunication) && !self.moves() {
+            self.axis.start_over();
+        }
+        self.obey_nmt(command, now_us, send);
     }
 
     fn obey_nmt(&mut self, command: NmtCommand, now_us: u64, send: Send<'_>) {
@@ -431,14 +434,13 @@ impl PlantNode {
         self.axis.command_brake(false);
     }
 
-    /// The node starts again; the machine only where it stands.
+    /// The node starts again; the machine is where it is.
     fn reset(&mut self, now_us: u64, send: Send<'_>) {
         self.leave_operational(NmtState::PreOperational);
         self.stage.reset();
         self.sync = SyncTracker::default();
         self.torque = TorqueInput::default();
         if !self.moves() {
-            self.axis.start_over();
             self.time.stop();
         }
         self.boot(send);

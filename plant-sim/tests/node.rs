@@ -6,6 +6,7 @@ use plant_sim::brake::BrakeParameters;
 use plant_sim::mechanics::Motion;
 use plant_sim::node::{TorqueDrive, Truth};
 use plant_sim::{AxisParameters, Machine, PlantNode};
+use proptest::prelude::*;
 use protocol::message::{Decoded, Feedback, NmtCommand, NmtState, PlantStatus, Torque, decode};
 use protocol::states::{BrakeState, ControlWord, DriveState};
 use protocol::weight::TorqueMicroNm;
@@ -369,6 +370,17 @@ fn a_reset_in_motion_resets_the_node_and_not_the_machine() {
 }
 
 #[test]
+fn a_reset_that_waited_for_the_servo_leaves_the_axis_where_it_stopped() {
+    let mut bench = Bench::enabled(Mounting { load_zero_m: 0.02, ..Mounting::default() });
+    bench.node.place(Motion { motor_m: 0.1, table_m: 0.1, ..Motion::default() });
+    bench.nmt(NmtCommand::ResetNode);
+    bench.cycle(0.0, ControlWord::SHUTDOWN);
+    assert_eq!((bench.node.nmt(), bench.truth().table_m), (NmtState::PreOperational, 0.1));
+    bench.nmt(NmtCommand::ResetNode);
+    assert_eq!(bench.truth().table_m, 0.0, "the next one finds it standing without torque and starts over");
+}
+
+#[test]
 fn a_run_that_begins_with_a_reset_at_rest_is_the_same_run_every_time() {
     let mut bench = Bench::new(Mounting::default(), 4.5);
     let mut run = |pause_us: u64| {
@@ -529,6 +541,83 @@ fn the_feedback_wraps_at_32_bits_and_goes_on() {
     let wraps = bench.sent.windows(2).count() > 0 && before.unwrap() < 0;
     assert!(wraps, "2048 revolutions of 2^20 increments are 2^31");
     assert!((way as f64 / 1_048_576.0 * 0.010 - 19.0 * 0.4e-3).abs() < 2.0e-4, "{way} increments");
+}
+
+/// What a bad bus and a bad master may do in a cycle.
+#[derive(Clone, Copy, Debug)]
+enum Event {
+    Sync { lost: bool },
+    Stray(u8),
+    Torque { force_n: f64, control: u16, behind: u8 },
+    Nmt(NmtCommand),
+    Pause { us: u64 },
+    DropOut,
+    Restore,
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let control = prop_oneof![
+        Just(0_u16),
+        Just(2),
+        Just(6),
+        Just(7),
+        Just(15),
+        Just(0x80),
+        Just(0x80F),
+        Just(0x80F),
+        0..=u16::MAX
+    ];
+    let behind = prop_oneof![8 => Just(0_u8), 1 => 0..240_u8];
+    let nmt = prop_oneof![
+        6 => Just(NmtCommand::StartRemoteNode),
+        1 => Just(NmtCommand::StopRemoteNode),
+        1 => Just(NmtCommand::EnterPreOperational),
+        1 => Just(NmtCommand::ResetNode),
+    ];
+    prop_oneof![
+        30 => prop::bool::weighted(0.1).prop_map(|lost| Event::Sync { lost }),
+        1 => (1..=240_u8).prop_map(Event::Stray),
+        30 => (-9000.0..9000.0, control, behind).prop_map(|(force_n, control, behind)| Event::Torque { force_n, control, behind }),
+        3 => nmt.prop_map(Event::Nmt),
+        1 => (0..20_000_u64).prop_map(|us| Event::Pause { us }),
+        1 => Just(Event::DropOut),
+        2 => Just(Event::Restore),
+    ]
+}
+
+fn happen(bench: &mut Bench, event: Event) {
+    match event {
+        Event::Sync { lost } => bench.sync_unless(lost),
+        Event::Stray(counter) => bench.sync_frame(count(counter)),
+        Event::Torque { force_n, control, behind } => {
+            let counter = u8::try_from((u16::from(bench.counter.get()) + 239 - u16::from(behind)) % 240 + 1).unwrap();
+            bench.torque(force_n, ControlWord(control), count(counter));
+        }
+        Event::Nmt(command) => bench.nmt(command),
+        Event::Pause { us } => bench.pass_to(bench.now_us + us),
+        Event::DropOut => bench.node.drop_out(),
+        Event::Restore => bench.node.restore_supply(),
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_sequence_of_frames_commands_and_pauses_leaves_torque_or_an_open_brake_without_an_enabled_stage(
+        events in prop::collection::vec(event(), 1..400)
+    ) {
+        let brake = BrakeParameters { open_s: 0.0, close_s: 0.0, ..BRAKE };
+        let mut bench = Bench::new(Mounting { brake: Some(brake), ..Mounting::default() }, 4.5);
+        bench.nmt(NmtCommand::StartRemoteNode);
+        for event in events {
+            happen(&mut bench, event);
+            let enabled = bench.node.drive() == TorqueDrive::OperationEnabled && bench.node.nmt() == NmtState::Operational;
+            prop_assert!(enabled || bench.node.commanded_n() == 0.0, "{event:?}: torque in {:?}", bench.node.drive());
+            prop_assert!(enabled || bench.truth().brake == BrakeState::Closed, "{event:?}: {:?}", bench.truth().brake);
+            prop_assert!(bench.node.bridged() <= 3);
+            let counters = bench.node.counters();
+            prop_assert_eq!(counters.computed + counters.bridged + counters.refused, counters.cycles);
+        }
+    }
 }
 
 #[test]
