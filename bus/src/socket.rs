@@ -70,6 +70,18 @@ impl CanPort {
         self.try_receive()
     }
 
+    /// The same with a timeout that several calls share.
+    ///
+    /// # Errors
+    /// The kernel's.
+    pub fn receive_within(&self, left: &mut Duration) -> io::Result<Option<CanFrame>> {
+        if let Some(frame) = self.try_receive()? {
+            return Ok(Some(frame));
+        }
+        wait_within(&mut [readable(self.as_raw_fd())], left)?;
+        self.try_receive()
+    }
+
     /// Sends a frame; waits where the interface's queue is full.
     ///
     /// # Errors
@@ -150,20 +162,40 @@ pub const fn readable(fd: RawFd) -> libc::pollfd {
 
 /// Waits until a descriptor is ready (its `revents` tell which), or the timeout is over; without a timeout for as long as it takes.
 ///
-/// `ppoll`, not `poll`: the latter counts in milliseconds.
-///
 /// # Errors
 /// The kernel's.
 pub fn wait(entries: &mut [libc::pollfd], timeout: Option<Duration>) -> io::Result<Waited> {
-    let limit = timeout.map(|timeout| libc::timespec {
+    poll(entries, timeout.map(timespec).as_mut())
+}
+
+/// The same with a timeout from which the time of the waiting is taken, so that several waits share it without a look at the clock.
+///
+/// # Errors
+/// The kernel's.
+pub fn wait_within(entries: &mut [libc::pollfd], left: &mut Duration) -> io::Result<Waited> {
+    let mut limit = timespec(*left);
+    let waited = poll(entries, Some(&mut limit));
+    let nanos = u32::try_from(limit.tv_nsec).unwrap_or(0);
+    *left = Duration::new(u64::try_from(limit.tv_sec).unwrap_or(0), nanos);
+    waited
+}
+
+fn timespec(timeout: Duration) -> libc::timespec {
+    libc::timespec {
         tv_sec: libc::time_t::try_from(timeout.as_secs()).unwrap_or(libc::time_t::MAX),
         tv_nsec: libc::c_long::from(timeout.subsec_nanos()),
-    });
-    let limit = limit.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
-    let count = libc::nfds_t::try_from(entries.len()).unwrap_or(0);
-    #[expect(unsafe_code, reason = "ppoll has no safe wrapper here")]
-    // SAFETY: `entries` holds `count` valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long.
-    let ready = unsafe { libc::ppoll(entries.as_mut_ptr(), count, limit, std::ptr::null()) };
+    }
+}
+
+/// `ppoll`, not `poll`, which counts in milliseconds; and the system call itself, which writes the time that is left into the limit (ppoll(2), "C
+/// library/kernel differences").
+fn poll(entries: &mut [libc::pollfd], limit: Option<&mut libc::timespec>) -> io::Result<Waited> {
+    let limit = limit.map_or(std::ptr::null_mut(), std::ptr::from_mut);
+    let no_mask = std::ptr::null::<libc::sigset_t>();
+    #[expect(unsafe_code, reason = "the raw ppoll has no safe wrapper")]
+    // SAFETY: `entries` holds that number of valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long and is
+    // ours to be written; without a mask its size is not looked at.
+    let ready = unsafe { libc::syscall(libc::SYS_ppoll, entries.as_mut_ptr(), entries.len(), limit, no_mask, 0_usize) };
     match ready {
         -1 => {
             let error = io::Error::last_os_error();
@@ -171,5 +203,29 @@ pub fn wait(entries: &mut [libc::pollfd], timeout: Option<Duration>) -> io::Resu
         }
         0 => Ok(Waited::TimedOut),
         _ => Ok(Waited::Ready),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::net::UnixDatagram;
+
+    #[test]
+    fn waits_share_a_time_and_a_frame_does_not_start_it_anew() {
+        let (ours, theirs) = UnixDatagram::pair().unwrap();
+        let mut left = Duration::from_millis(60);
+        let sender = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(20));
+            theirs.send(&[1]).unwrap();
+            theirs
+        });
+        let mut entries = [readable(ours.as_raw_fd())];
+        assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::Ready);
+        assert!(left <= Duration::from_millis(41), "{left:?}");
+        ours.recv(&mut [0]).unwrap();
+        assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::TimedOut);
+        assert_eq!(left, Duration::ZERO);
+        drop(sender.join());
     }
 }

@@ -29,8 +29,8 @@ pub trait Link {
     /// # Errors
     /// Where the interface is gone.
     fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>>;
-    /// Waits for a frame of the present cycle; `None` when the cycle does not wait any longer: in process at its end, over interfaces when nothing
-    /// came for some time ([`Interfaces::with_pace`]).
+    /// Waits for a frame of the present cycle; `None` when the cycle does not wait any longer: in process and at clock pace at its end, in
+    /// lock-step over interfaces after some time ([`Interfaces::with_pace`]).
     ///
     /// # Errors
     /// Where the interface is gone.
@@ -177,6 +177,8 @@ pub struct Interfaces {
     now_us: u64,
     pace: Pace,
     cycle_end: Option<Instant>,
+    /// What is left of the patience of the present cycle.
+    left: Duration,
 }
 
 impl Interfaces {
@@ -212,6 +214,7 @@ impl Interfaces {
             now_us: 0,
             pace: PaceArguments::default().chosen(),
             cycle_end: None,
+            left: Duration::ZERO,
         })
     }
 
@@ -221,7 +224,7 @@ impl Interfaces {
         Self { pace, ..self }
     }
 
-    /// How long a cycle waits for its next frame. In lock-step half as long again as the nodes' deadline, so that a node that closes its cycle at the
+    /// How long a cycle waits for its frames. In lock-step half as long again as the nodes' deadline, so that a node that closes its cycle at the
     /// deadline is heard, and does not begin the next one by its own timer meanwhile.
     fn patience(&self) -> Duration {
         match self.pace {
@@ -273,7 +276,14 @@ impl Link for Interfaces {
     }
 
     fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<CanFrame>> {
-        self.receive(bus, self.patience())
+        if self.pace == Pace::Clock {
+            self.left = self.patience();
+        }
+        let received = self.ports[bus].receive_within(&mut self.left).map_err(|error| self.failed(bus, &error))?;
+        if let Some(frame) = received {
+            self.note(bus, &frame);
+        }
+        Ok(received)
     }
 
     /// The log's times are those of the begin of each cycle: reading the clock for every frame costs a third of a lock-step cycle where it is a system call.
@@ -281,6 +291,7 @@ impl Link for Interfaces {
         if self.pace == Pace::Clock {
             self.wait_for_the_clock(cycle);
         }
+        self.left = self.patience();
         self.now_us = micros(self.begun.elapsed());
     }
 
