@@ -164,7 +164,7 @@ mod tests {
     use controller::units::{Position, Velocity};
 
     fn stop() -> Stop {
-        Stop::from(Position::default(), Velocity::ZERO, 1)
+        Stop::within(1)
     }
 
     #[test]
