@@ -51,9 +51,10 @@ impl Limits {
             return left >= I56F8::ZERO;
         }
         // Whole counts, rounded down and at most 10 m: 2 a s stays within 62 bits with 8 of them fractional, the square within 62 with 16.
-        let counts = left.to_bits().wrapping_shr(8).min(LONGEST_COUNTS);
-        let allowed = i64::from(self.acceleration.to_bits()).wrapping_mul(counts).wrapping_mul(2);
-        let mean = i64::from(speed.to_bits()).wrapping_sub(i64::from(self.acceleration.to_bits().wrapping_shr(1)));
+        let counts = i32::try_from(left.to_bits().wrapping_shr(8)).unwrap_or(LONGEST_COUNTS).min(LONGEST_COUNTS);
+        let acceleration = self.acceleration.to_bits();
+        let allowed = i64::from(acceleration).wrapping_mul(i64::from(counts)).wrapping_mul(2);
+        let mean = i64::from(speed.to_bits().wrapping_sub(acceleration.wrapping_shr(1)));
         mean.wrapping_mul(mean).wrapping_shr(8) <= allowed
     }
 
@@ -77,7 +78,7 @@ impl Limits {
 }
 
 /// 10 m in counts of 10 nm.
-const LONGEST_COUNTS: i64 = 1_000_000_000;
+const LONGEST_COUNTS: i32 = 1_000_000_000;
 
 /// Where the setpoint is going.
 #[derive(Clone, Copy, Debug)]

@@ -93,8 +93,8 @@ impl Ingest {
     }
 
     /// The plain case: the next setpoint continues a settled track within `step`.
-    pub(super) fn continued(&self, step: Way, next: I56F8) -> Option<Track> {
-        let candidate = self.track.moved_to(next);
+    pub(super) fn continued(&self, step: Way, next: I56F8, velocity: Way) -> Option<Track> {
+        let candidate = self.track.moved_there(next, velocity);
         let jump = candidate.acceleration.saturating_sub(self.track.acceleration);
         (self.is_settled() && within(jump, step)).then_some(candidate)
     }

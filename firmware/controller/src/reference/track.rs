@@ -36,7 +36,11 @@ impl Track {
 
     /// The next cycle at a given position.
     pub(super) fn moved_to(self, position: I56F8) -> Self {
-        let velocity = way(self.position, position);
+        self.moved_there(position, way(self.position, position))
+    }
+
+    /// The same where the way to that position is known already.
+    pub(super) fn moved_there(self, position: I56F8, velocity: Way) -> Self {
         Self { position, velocity, acceleration: velocity.saturating_sub(self.velocity) }
     }
 
@@ -60,9 +64,14 @@ pub(super) fn way(from: I56F8, to: I56F8) -> Way {
     Way::saturating_from_num(to.saturating_sub(from))
 }
 
+/// The same where it is no farther than a way reaches. `from` is on the axis, within ±2⁵⁵ bits, so the difference cannot wrap round to a short way.
+pub(super) fn exact_way(from: I56F8, to: I56F8) -> Option<Way> {
+    i32::try_from(to.to_bits().wrapping_sub(from.to_bits())).ok().map(Way::from_bits)
+}
+
 /// Whether a magnitude is within a bound.
 pub(super) fn within(value: Way, bound: Way) -> bool {
-    value <= bound && value >= bound.saturating_neg()
+    value.saturating_abs() <= bound
 }
 
 /// `value` brought into `±bound`; a negative bound counts as zero.
