@@ -44,6 +44,8 @@ const Q24: u64 = 1 << 24;
 const Q32: u64 = 1 << 32;
 /// A position gain above one per cycle is not stable.
 const LARGEST_POSITION_GAIN: i32 = 1 << 24;
+/// 2⁻⁸ of 10 nm per cycle.
+const SMALLEST_LIMIT: Velocity = Velocity(I20F12::from_bits(16));
 /// SYNC may be silent for so many periods where the set does not say it.
 const SYNC_TIMEOUT_PERIODS: u64 = 5;
 /// The peer's heartbeat may be silent for so many periods where the set does not say it: two and a half heartbeats.
@@ -104,6 +106,12 @@ impl Reading<'_> {
         let numerator = [self.steps(parameter), time, COUNTS_PER_M, Q12];
         let bits = Self::held(parameter, &numerator, &[parameter.unit().per_si, MICROS.saturating_pow(order)])?;
         Ok(Velocity(I20F12::from_bits(if self.raw(parameter) < 0 { bits.saturating_neg() } else { bits })))
+    }
+
+    /// A limit of the reference stage, which counts 2⁻⁸ of 10 nm: what is less there would be none.
+    fn limit(&self, parameter: Parameter, order: u32) -> Result<Velocity, SetError> {
+        let limit = self.motion(parameter, order)?;
+        if self.steps(parameter) > 0 && limit < SMALLEST_LIMIT { Err(SetError::TooSmall(parameter)) } else { Ok(limit) }
     }
 
     /// A way given in counts; its row keeps it below what the type holds.
@@ -217,8 +225,8 @@ impl Reading<'_> {
         let half = Self::held(gap, &[self.steps(gap), COUNTS_PER_M, Q8], &[gap.unit().per_si, 2])?;
         Ok(BacklashConfig {
             half_gap: PositionError(I24F8::from_bits(half)),
-            velocity_limit: self.motion(Parameter::VelocityLimit, 1)?,
-            acceleration_limit: self.motion(Parameter::AccelerationLimit, 2)?,
+            velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
+            acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
     }
 
@@ -260,9 +268,9 @@ impl Reading<'_> {
             return Err(SetError::PositionLimitsCrossed(Parameter::PositionMin));
         }
         Ok(ReferenceConfig {
-            velocity_limit: self.motion(Parameter::VelocityLimit, 1)?,
-            acceleration_limit: self.motion(Parameter::AccelerationLimit, 2)?,
-            step: self.motion(Parameter::StepJerk, 3)?,
+            velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
+            acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
+            step: self.limit(Parameter::StepJerk, 3)?,
             position_min: if low == i32::MIN { Position(I56F8::MIN) } else { Position::from_counts(i64::from(low)) },
             position_max: if high == i32::MAX { Position(I56F8::MAX) } else { Position::from_counts(i64::from(high)) },
             quick_stop: self.ramp(Parameter::QuickStopDeceleration)?,
@@ -273,7 +281,7 @@ impl Reading<'_> {
     }
 
     fn ramp(&self, deceleration: Parameter) -> Result<Ramp, SetError> {
-        Ok(Ramp { deceleration: self.motion(deceleration, 2)?, jerk: self.motion(Parameter::RampJerk, 3)? })
+        Ok(Ramp { deceleration: self.limit(deceleration, 2)?, jerk: self.limit(Parameter::RampJerk, 3)? })
     }
 
     /// Object 60C2h, value · 10^exponent s, in cycles.
@@ -292,13 +300,18 @@ impl Reading<'_> {
 
 // Everything around the loop.
 impl Reading<'_> {
-    /// An axis that may have torque has limits, and nothing is beyond the torque limit.
+    /// An axis that may have torque has limits, its ramps keep them, and nothing is beyond the torque limit.
     fn check_limits(&self) -> Result<(), SetError> {
         let limit = self.steps(Parameter::TorqueLimit);
         let moves = limit > 0 || self.steps(Parameter::BacklashGap) > 0;
         for parameter in [Parameter::VelocityLimit, Parameter::AccelerationLimit] {
             if moves && self.steps(parameter) == 0 {
                 return Err(SetError::WithoutLimit(parameter));
+            }
+        }
+        for parameter in [Parameter::QuickStopDeceleration, Parameter::SlowDownDeceleration] {
+            if moves && self.steps(parameter) > self.steps(Parameter::AccelerationLimit) {
+                return Err(SetError::BeyondAcceleration(parameter));
             }
         }
         for parameter in [Parameter::CoulombTorque, Parameter::PresetTorque] {
@@ -499,7 +512,7 @@ mod tests {
                 prop_assert!(guilty, "{:?} is not too large", parameter);
             }
             Err(SetError::TooSmall(parameter)) => {
-                let guilty = exact(set).into_iter().any(|(of, exact)| of == parameter && exact.abs() <= 0.51);
+                let guilty = exact(set).into_iter().any(|(of, exact)| of == parameter && exact.abs() <= 15.51);
                 prop_assert!(guilty, "{:?} is not too small", parameter);
             }
             Err(_) => {}
@@ -637,10 +650,16 @@ mod tests {
     #[test]
     fn values_that_do_not_go_together_are_refused_with_their_parameter() {
         let limits = [(Parameter::VelocityLimit, 500_000), (Parameter::AccelerationLimit, 5_000_000)];
-        let rows: [(&[(Parameter, i32)], SetError); 12] = [
+        let rows: [(&[(Parameter, i32)], SetError); 14] = [
             (&[(Parameter::VelocityBandwidth, 300_000)], SetError::WithoutInertia(Parameter::Inertia)),
             (&[(Parameter::TorqueLimit, 1), limits[1]], SetError::WithoutLimit(Parameter::VelocityLimit)),
             (&[(Parameter::BacklashGap, 1000), limits[0]], SetError::WithoutLimit(Parameter::AccelerationLimit)),
+            (
+                &[(Parameter::TorqueLimit, 1), limits[0], limits[1], (Parameter::SlowDownDeceleration, 5_000_001)],
+                SetError::BeyondAcceleration(Parameter::SlowDownDeceleration),
+            ),
+            // 37 m/s³ at 10 kHz are less than the reference stage can count.
+            (&[(Parameter::CyclePeriod, 100), (Parameter::RampJerk, 37_000)], SetError::TooSmall(Parameter::RampJerk)),
             (&[(Parameter::PresetTorque, -1)], SetError::BeyondTorqueLimit(Parameter::PresetTorque)),
             (&[(Parameter::CoulombTorque, 1)], SetError::BeyondTorqueLimit(Parameter::CoulombTorque)),
             (&[(Parameter::PositionMin, i32::MAX)], SetError::PositionLimitsCrossed(Parameter::PositionMin)),

@@ -109,6 +109,7 @@ set_errors! {
     FilterPeriod = 9, "the torque filter is made for another cycle time than the set";
     SetpointPeriod = 10, "the setpoint period is not 1 to 20 cycles";
     TimeoutTooShort = 11, "the timeout is shorter than two periods of what it watches";
+    BeyondAcceleration = 12, "a ramp brakes harder than the axis' acceleration limit";
 }
 
 #[cfg(test)]
@@ -119,6 +120,6 @@ mod tests {
     fn every_reason_has_a_code_of_its_own() {
         let mut codes: Vec<u8> = SetError::REASONS.iter().map(|(code, _)| *code).collect();
         codes.dedup();
-        assert_eq!(codes, (1..=11).collect::<Vec<u8>>());
+        assert_eq!(codes, (1..=12).collect::<Vec<u8>>());
     }
 }

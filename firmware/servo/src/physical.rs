@@ -5,8 +5,8 @@
 //!
 //! | what | error |
 //! |---|---|
-//! | [`Fraction::nearest`] | half a unit of the result |
-//! | [`Fraction::up`] | exact, rounded up |
+//! | [`Fraction::nearest`] | half a unit of the result and a 2⁻⁶⁰ part of it |
+//! | [`Fraction::up`], [`Fraction::exact`] | none, for a denominator below 2⁶² |
 //! | [`decay`] | 2⁻³⁰, one unit of the result |
 
 /// The product of some numbers, over the product of others.
@@ -18,11 +18,18 @@ pub struct Fraction {
     denominator: u128,
 }
 
-/// What a division leaves.
+/// What a division leaves: denominator · whole + rest is the numerator.
 struct Quotient {
-    whole: u128,
-    rest: u128,
+    whole: u64,
+    rest: u64,
+    denominator: u64,
 }
+
+/// Bits that a denominator keeps for the division, so that twice the rest has room in 64.
+const DENOMINATOR_BITS: u32 = 62;
+
+/// No machine number is as large.
+const LARGEST_QUOTIENT: u64 = 1 << 63;
 
 impl Fraction {
     /// The fraction; `None` where a product does not fit 128 bits or the denominator is zero.
@@ -32,45 +39,68 @@ impl Fraction {
         (fraction.denominator > 0).then_some(fraction)
     }
 
-    /// Rounded to nearest, halves up; `None` where it does not fit.
+    /// Rounded to nearest, halves up; `None` from 2⁶³ on.
     #[must_use]
     pub fn nearest(self) -> Option<u64> {
-        let Quotient { whole, rest } = self.divided();
-        let up = rest >= self.denominator.saturating_sub(rest);
-        u64::try_from(whole.checked_add(u128::from(up))?).ok()
+        let Quotient { whole, rest, denominator } = self.divided()?;
+        Some(whole.saturating_add(u64::from(rest >= denominator.saturating_sub(rest))))
     }
 
-    /// Rounded up; `None` where it does not fit.
+    /// Rounded up; `None` from 2⁶³ on.
     #[must_use]
     pub fn up(self) -> Option<u64> {
-        let Quotient { whole, rest } = self.divided();
-        u64::try_from(whole.checked_add(u128::from(rest > 0))?).ok()
+        let Quotient { whole, rest, .. } = self.divided()?;
+        Some(whole.saturating_add(u64::from(rest > 0)))
     }
 
     /// The quotient where the division leaves no rest.
     #[must_use]
     pub fn exact(self) -> Option<u64> {
-        let Quotient { whole, rest } = self.divided();
-        if rest == 0 { u64::try_from(whole).ok() } else { None }
+        let Quotient { whole, rest, .. } = self.divided()?;
+        (rest == 0).then_some(whole)
     }
 
-    /// Long division: the denominator is shifted until its highest digit meets that of the numerator, and comes back digit by digit.
-    fn divided(self) -> Quotient {
-        let (mut rest, mut whole) = (self.numerator, 0_u128);
-        let Some(digits) = self.denominator.leading_zeros().checked_sub(rest.leading_zeros()) else {
-            return Quotient { whole, rest };
-        };
-        let mut part = self.denominator.wrapping_shl(digits);
-        for _ in 0..=digits {
-            whole = whole.wrapping_shl(1);
-            if let Some(left) = rest.checked_sub(part) {
-                rest = left;
-                whole |= 1;
-            }
-            part = part.wrapping_shr(1);
-        }
-        Quotient { whole, rest }
+    /// The same fraction with a denominator of 62 bits at most; the bits that fall off are a 2⁻⁶¹ part of it.
+    fn shortened(self) -> (u128, u64) {
+        let bits = u128::BITS.saturating_sub(self.denominator.leading_zeros());
+        let off = bits.saturating_sub(DENOMINATOR_BITS);
+        let denominator = self.denominator.wrapping_shr(off);
+        (self.numerator.wrapping_shr(off), u64::try_from(denominator).unwrap_or(u64::MAX))
     }
+
+    /// Long division: the head of the numerator is as long as the denominator; its tail comes down digit by digit. `None` beyond 64 digits.
+    fn divided(self) -> Option<Quotient> {
+        let (numerator, denominator) = self.shortened();
+        let digits = u128::from(denominator).leading_zeros().saturating_sub(numerator.leading_zeros());
+        if digits >= u64::BITS {
+            return None;
+        }
+        let mut rest = u64::try_from(numerator.wrapping_shr(digits)).ok()?;
+        let mut tail = low(numerator.wrapping_shl(u64::BITS.saturating_sub(digits)));
+        let mut whole = digit(&mut rest, denominator);
+        for _ in 0..digits {
+            rest = rest.wrapping_shl(1) | tail.wrapping_shr(63);
+            tail = tail.wrapping_shl(1);
+            whole = whole.wrapping_shl(1) | digit(&mut rest, denominator);
+        }
+        (whole < LARGEST_QUOTIENT).then_some(Quotient { whole, rest, denominator })
+    }
+}
+
+/// One binary digit of the quotient.
+fn digit(rest: &mut u64, denominator: u64) -> u64 {
+    match rest.checked_sub(denominator) {
+        Some(left) => {
+            *rest = left;
+            1
+        }
+        None => 0,
+    }
+}
+
+#[expect(clippy::as_conversions, reason = "the low half is meant")]
+const fn low(value: u128) -> u64 {
+    value as u64
 }
 
 fn product(factors: &[u64]) -> Option<u128> {
@@ -137,15 +167,31 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_quotient_is_that_of_the_compiler(numerator in any::<u64>(), factor in any::<u64>(), denominator in 1..=u64::MAX, shift in 0..64_u32) {
+        fn a_quotient_is_that_of_the_compiler(
+            numerator in any::<u64>(), factor in any::<u64>(), denominator in 1..1_u64 << 62, shift in 0..62_u32,
+        ) {
             let denominator = (denominator >> shift).max(1);
-            let (whole, rest) = (u128::from(numerator) * u128::from(factor) / u128::from(denominator),
-                u128::from(numerator) * u128::from(factor) % u128::from(denominator));
+            let product = u128::from(numerator) * u128::from(factor);
+            let (whole, rest) = (product / u128::from(denominator), product % u128::from(denominator));
             let fraction = Fraction::new(&[numerator, factor], &[denominator]).unwrap();
-            let nearest = whole + u128::from(2 * rest >= u128::from(denominator));
-            prop_assert_eq!(fraction.nearest(), u64::try_from(nearest).ok());
-            prop_assert_eq!(fraction.up(), u64::try_from(whole + u128::from(rest > 0)).ok());
-            prop_assert_eq!(fraction.exact(), u64::try_from(whole).ok().filter(|_| rest == 0));
+            let fits = u64::try_from(whole).ok().filter(|whole| *whole < LARGEST_QUOTIENT);
+            prop_assert_eq!(fraction.nearest(), fits.map(|w| w + u64::from(2 * rest >= u128::from(denominator))));
+            prop_assert_eq!(fraction.up(), fits.map(|whole| whole + u64::from(rest > 0)));
+            prop_assert_eq!(fraction.exact(), fits.filter(|_| rest == 0));
+        }
+
+        #[test]
+        fn a_long_denominator_costs_a_part_of_two_to_the_minus_sixty(
+            numerators in any::<[u64; 2]>(), denominators in any::<[u64; 2]>(), shifts in any::<[u8; 2]>(),
+        ) {
+            let denominators = [denominators[0] >> (shifts[0] % 64) | 1, denominators[1] >> (shifts[1] % 64) | 1];
+            let [numerator, denominator] =
+                [numerators, denominators].map(|[a, b]| u128::from(a) * u128::from(b));
+            let whole = numerator / denominator;
+            match Fraction::new(&numerators, &denominators).unwrap().nearest() {
+                Some(got) => prop_assert!(u128::from(got).abs_diff(whole) <= 1 + (whole >> 60), "{} {}", got, whole),
+                None => prop_assert!(whole >= u128::from(LARGEST_QUOTIENT - 16), "{}", whole),
+            }
         }
 
         #[test]
