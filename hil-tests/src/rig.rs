@@ -60,6 +60,29 @@ pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     ]
 }
 
+/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from zero.
+#[must_use]
+pub fn absolute_scale(table_m: f64) -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.mounting.start_m = table_m;
+        axis.actual.mounting.motor_zero_m = table_m;
+    }
+    machine
+}
+
+/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way, five times the 2^31 of the frame, within the
+/// 21.5 m that a setpoint can say.
+#[must_use]
+pub fn long_way() -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.lead_m_per_rev = 1.0e-3;
+        axis.limits.travel_m = 10.0;
+    }
+    machine
+}
+
 /// The paper's Fig. 4: a gap outside the position loop.
 #[must_use]
 pub fn gap_outside(gap_m: f64) -> Machine {

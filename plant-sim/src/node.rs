@@ -43,6 +43,8 @@ use torque::TorqueInput;
 
 /// An axis slower than this counts as standing, m/s: where a record counts a sample as moving, and a way of 1 µm for the reference axis to come to rest.
 const STANDING_M_PER_S: f64 = 1.0e-3;
+/// … for this long, so that a table which rings on its screw is not caught at its turning point: a period of 50 Hz, below the resonance of any screw drive.
+const STANDING_S: f64 = 0.020;
 
 /// Where a node puts its frames.
 type Send<'a> = &'a mut dyn FnMut(CanFrame);
@@ -84,6 +86,8 @@ pub struct PlantNode {
     stage: PowerStage,
     torque: TorqueInput,
     reported: Option<Reported>,
+    /// How long the axis has been slow enough to count as standing.
+    slow_s: f64,
     /// Cycles begun since NMT start.
     cycle: u32,
 }
@@ -106,6 +110,7 @@ impl PlantNode {
             stage: PowerStage::default(),
             torque: TorqueInput::default(),
             reported: None,
+            slow_s: STANDING_S,
             cycle: 0,
         }
     }
@@ -130,6 +135,12 @@ impl PlantNode {
             commanded_n: self.torque.due_n(),
             brake: self.axis.brake(),
         }
+    }
+
+    /// The axis itself; a clone of it shows what it would do if it were let alone from here on.
+    #[must_use]
+    pub const fn axis(&self) -> &Axis {
+        &self.axis
     }
 
     /// Puts the axis somewhere, in motion or not; for tests.
@@ -196,8 +207,18 @@ impl PlantNode {
 
     /// Whether the machine moves on by itself: speed, or a brake on its way.
     fn moves(&self) -> bool {
+        self.slow_s < STANDING_S || self.is_fast() || self.axis.brake() == BrakeState::Moving
+    }
+
+    fn is_fast(&self) -> bool {
         let Motion { motor_m_per_s, table_m_per_s, .. } = *self.axis.motion();
-        motor_m_per_s.abs().max(table_m_per_s.abs()) > STANDING_M_PER_S || self.axis.brake() == BrakeState::Moving
+        motor_m_per_s.abs().max(table_m_per_s.abs()) > STANDING_M_PER_S
+    }
+
+    /// The machine goes on for one period.
+    fn advance(&mut self) {
+        self.axis.advance(self.torque.due_n(), self.period_s);
+        self.slow_s = if self.is_fast() { 0.0 } else { self.slow_s + self.period_s };
     }
 }
 
@@ -308,11 +329,11 @@ impl PlantNode {
     fn integrate(&mut self, send: Send<'_>) {
         if !self.is_operational() {
             if self.moves() {
-                self.axis.advance(0.0, self.period_s);
+                self.advance();
             }
             return;
         }
-        self.axis.advance(self.torque.due_n(), self.period_s);
+        self.advance();
         if self.torque.close(self.stage.is_enabled()) {
             let gone = self.time.sync_is_gone();
             self.latch(if gone { Fault::SyncMissing } else { Fault::TorqueMissing }, send);
@@ -403,6 +424,7 @@ impl PlantNode {
         }
         if matches!(command, NmtCommand::ResetNode | NmtCommand::ResetCommunication) && !self.moves() {
             self.axis.start_over();
+            self.slow_s = STANDING_S;
         }
         self.obey_nmt(command, now_us, send);
     }
