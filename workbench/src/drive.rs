@@ -32,6 +32,7 @@ pub fn parameters(axis: &MachineAxis, period_s: f64, compensation: &AxisCompensa
     set.encoder(axis)?;
     set.filter(axis, period_s)?;
     set.limits(axis)?;
+    set.brake(axis)?;
     set.compensation(compensation)?;
     set.checked()
 }
@@ -127,6 +128,13 @@ impl Set {
         self.put(Parameter::PositionMax, "travel_m", limits.travel_m)?;
         self.put(Parameter::EncoderJumpLimit, "encoder jump", ENCODER_JUMP_M)?;
         self.put(Parameter::FollowingErrorWindow, "following error window", FOLLOWING_ERROR_M)
+    }
+
+    /// Without a brake both times are zero.
+    fn brake(&mut self, axis: &MachineAxis) -> Outcome<()> {
+        let times = axis.actual.mounting.brake.map_or((0.0, 0.0), |brake| (brake.open_s, brake.close_s));
+        self.put(Parameter::BrakeOpening, "open_s", times.0)?;
+        self.put(Parameter::BrakeClosing, "close_s", times.1)
     }
 
     fn compensation(&mut self, compensation: &AxisCompensation) -> Outcome<()> {

@@ -26,6 +26,8 @@ const ANSWER: Duration = Duration::from_secs(1);
 const FRAMES_PER_ANSWER: u32 = 20_000;
 /// Frames that may pass in a cycle.
 const FRAMES_PER_CYCLE: u32 = 4000;
+/// Cycles that a brake may take to open: the longest opening time of a parameter set, 2 s, at 1 ms.
+const CYCLES_TO_OPEN: u32 = 2000;
 /// A servo that is silent for longer is gone.
 const SILENT_CYCLES: u32 = 10;
 
@@ -285,7 +287,18 @@ impl<L: Link> Master<L> {
         for _ in 0..12 {
             self.cycle(&here)?;
         }
+        self.wait_for_brakes(&here)?;
         self.expect_enabled()
+    }
+
+    /// A drive whose brake is still opening stays `switched on`; its own patience ends that with a fault.
+    fn wait_for_brakes(&mut self, here: &[f64]) -> Outcome<()> {
+        let mut cycles = 0;
+        while cycles < CYCLES_TO_OPEN && self.axes.iter().any(AxisLink::is_coming_up) {
+            self.cycle(here)?;
+            cycles += 1;
+        }
+        Ok(())
     }
 
     /// Fails with what a drive reports, if it does not follow setpoints.
@@ -455,6 +468,10 @@ impl AxisLink {
             (LoadIncrements24::from_counts(counts), counts)
         });
         counts + i64::from(raw.step_to(load))
+    }
+
+    fn is_coming_up(&self) -> bool {
+        self.state == Some(DriveState::SwitchedOn) && self.fault.is_none() && self.silent_cycles <= SILENT_CYCLES
     }
 
     /// Where the axis stands, by the encoder that is nearest to the loop's; both agree to micrometres at rest.

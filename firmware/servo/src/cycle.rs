@@ -1,6 +1,6 @@
 //! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the deadline, the node's own timer.
 
-use protocol::SyncCounter;
+use protocol::{Fault, SyncCounter};
 use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::NmtState;
 
@@ -72,12 +72,16 @@ impl Servo {
             self.leave_the_cycle();
             return;
         }
-        if self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
-            self.latch(protocol::Fault::SyncMissing, out);
-        }
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false, out);
+        self.begin_without_sync(now_us, out);
+    }
+
+    /// The next cycle begins by the own timer, or because a frame shows that it is on although its SYNC did not come.
+    pub(crate) fn begin_without_sync(&mut self, now_us: u64, out: &mut Outbox) {
+        let Some(counter) = self.sync.begin_without_sync() else { return };
+        self.timing.begin_without_sync(now_us);
+        self.open(counter, false, out);
+        if self.axis.drive.is_energised() && self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
+            self.latch(Fault::SyncMissing, out);
         }
     }
 
@@ -87,14 +91,6 @@ impl Servo {
         self.sync = protocol::SyncTracker::default();
         self.inbox = crate::inbox::Inbox::default();
         self.axis.encoders.forget();
-    }
-
-    /// A frame shows that the next cycle is on although its SYNC did not come.
-    pub(crate) fn begin_by_evidence(&mut self, now_us: u64, out: &mut Outbox) {
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false, out);
-        }
     }
 
     pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64, out: &mut Outbox) {
