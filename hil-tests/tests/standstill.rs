@@ -201,7 +201,9 @@ fn stops_without_torque() -> Vec<Measured> {
         ("disable voltage", None, |master| master.command(ControlWord::DISABLE_VOLTAGE)),
         ("shutdown with the default", None, |master| master.command(ControlWord::SHUTDOWN)),
         ("servo dead", None, |master| master.link_mut().bus_mut(0).kill(SERVO)),
-        ("servo off the bus", Some(Fault::FeedbackMissing), |master| master.link_mut().bus_mut(0).connect(SERVO, false)),
+        ("servo off the bus", Some(Fault::FeedbackMissing), |master| {
+            master.link_mut().bus_mut(0).connect(SERVO, false)
+        }),
         ("plant off the bus", Some(Fault::FeedbackMissing), |master| {
             master.link_mut().bus_mut(0).connect(PLANT, false);
         }),

@@ -9,9 +9,9 @@ use hil_tests::golden::{self, Measured, row};
 use hil_tests::rig::{PLANT, SERVO, set, vertical_axes};
 use plant_sim::axis::Axis;
 use plant_sim::{Machine, PlantNode};
+use protocol::Fault;
 use protocol::cob::FrameKind;
 use protocol::states::{BrakeState, ControlWord, DriveState};
-use protocol::Fault;
 use servo::objects::Parameter;
 use workbench::compensation::AxisCompensation;
 use workbench::link::InProcess;
@@ -21,6 +21,8 @@ use workbench::master::Master;
 const HELD_UM: f64 = 10.0;
 /// The drive may drop farther than the plant by itself by this factor.
 const WORSE: f64 = 1.10;
+/// … and by one count of the scale: a brake of 0 ms holds the axis to nanometres, less than the loop had it moving.
+const RESOLUTION_UM: f64 = 0.010;
 const GRAVITY_N: f64 = 2500.0;
 const PERIOD_S: f64 = 1.0e-3;
 /// Longer than any brake and its margin.
@@ -52,11 +54,11 @@ fn table_m(plant: &PlantNode) -> f64 {
 }
 
 /// Farthest way of the table, µm, from now on.
-fn way_um(master: &mut Master<InProcess>, setpoint_m: f64) -> f64 {
+fn way_um(master: &mut Master<InProcess>) -> f64 {
     let plant = master.link_mut().plant(0);
     let from_m = table_m(&plant.borrow());
     (0..WATCHED_CYCLES).fold(0.0_f64, |way, _| {
-        master.cycle(&[setpoint_m]).unwrap();
+        master.cycle(&[0.0]).unwrap();
         way.max(1.0e6 * (table_m(&plant.borrow()) - from_m).abs())
     })
 }
@@ -66,7 +68,8 @@ fn enable(name: &str, machine: &Machine, preset: f64) -> Measured {
     let plant = master.link_mut().plant(0);
     let from_m = table_m(&plant.borrow());
     master.enable().unwrap();
-    let way = (1.0e6 * (table_m(&plant.borrow()) - from_m).abs()).max(way_um(&mut master, 0.0));
+    let up = 1.0e6 * (table_m(&plant.borrow()) - from_m).abs();
+    let way = up.max(way_um(&mut master));
     assert!(way <= HELD_UM, "{name}: {way} µm");
     row(name, way, "um")
 }
@@ -74,7 +77,7 @@ fn enable(name: &str, machine: &Machine, preset: f64) -> Measured {
 fn held(name: &str, machine: &Machine, event: fn(&mut Master<InProcess>), end: DriveState) -> Measured {
     let mut master = standing(machine);
     event(&mut master);
-    let way = way_um(&mut master, 0.0);
+    let way = way_um(&mut master);
     assert!(way <= HELD_UM, "{name}: {way} µm");
     let (servo, plant) = (master.link_mut().servo(0), master.link_mut().plant(0));
     assert_eq!(servo.borrow().drive().state(), end, "{name}");
@@ -108,7 +111,7 @@ fn dropped(name: &str, machine: &Machine, fault: Option<Fault>, event: fn(&mut M
         way = way.max(1.0e6 * (table_m(&plant.borrow()) - from_m).abs());
     }
     let alone = alone_um(alone);
-    assert!(way <= WORSE * alone, "{name}: {way} µm, the plant alone {alone} µm");
+    assert!(way <= WORSE * alone + RESOLUTION_UM, "{name}: {way} µm, the plant alone {alone} µm");
     assert_eq!(servo.borrow().drive().fault(), fault, "{name}");
     assert_eq!(plant.borrow().truth().brake, BrakeState::Closed, "{name}");
     [row(format!("{name}, drop"), way, "um"), row(format!("{name}, drop of the plant alone"), alone, "um")]
@@ -127,7 +130,12 @@ fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_
         for (what, preset) in [("enable", 1.0), ("enable, preset 10 % low", 0.9), ("enable, preset 10 % high", 1.1)] {
             rows.push(enable(&named(what), &machine, preset));
         }
-        rows.push(held(&named("disable operation"), &machine, |m| m.command(ControlWord::SWITCH_ON), DriveState::SwitchedOn));
+        rows.push(held(
+            &named("disable operation"),
+            &machine,
+            |m| m.command(ControlWord::SWITCH_ON),
+            DriveState::SwitchedOn,
+        ));
         rows.push(held(
             &named("quick stop"),
             &machine,

@@ -1,8 +1,8 @@
 //! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the deadline, the node's own timer.
 
-use protocol::{Fault, SyncCounter};
 use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::NmtState;
+use protocol::{Fault, SyncCounter};
 
 use crate::axis::{Circumstances, Notices};
 use crate::inbox::Contents;
