@@ -4,6 +4,7 @@ use hil_tests::golden::{self, row};
 use hil_tests::rig::quiet_reference;
 use workbench::ballbar::{self, CircleFigures};
 use workbench::compensation::{AxisCompensation, Compensation};
+use workbench::interrupt::Interrupt;
 use workbench::run::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 use workbench::tune;
@@ -31,7 +32,7 @@ fn run(circle: &Circle, compensation: &[AxisCompensation]) -> CircleFigures {
 #[test]
 fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_about_others() {
     let machine = quiet_reference();
-    let tuned = tune::pulse(&machine, &Place::InProcess, &circle(100.0, 2000.0), 0.0).unwrap();
+    let tuned = tune::pulse(&machine, &Place::InProcess, &circle(100.0, 2000.0), 0.0, &Interrupt::never()).unwrap();
     let none = vec![AxisCompensation::default(); 2];
     let coulomb = vec![AxisCompensation { reversal: Compensation::Coulomb { force_n: 400.0 }, backlash_m: 0.0 }; 2];
     let mut rows = Vec::new();

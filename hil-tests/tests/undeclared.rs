@@ -5,6 +5,7 @@
 use hil_tests::golden::{self, Measured, row};
 use workbench::cli::{Commission, MachineArguments};
 use workbench::commission;
+use workbench::interrupt::Interrupt;
 
 /// An axis: its effect, the keys that differ from the plain axis, and what it declares.
 struct Hidden {
@@ -112,7 +113,7 @@ fn commissioned(pair: &[Hidden]) -> (Vec<(String, Vec<String>)>, Vec<Measured>) 
     std::fs::write(&file, format!("name = \"{}\"\n{HEAD}{axes}", pair[0].effect)).unwrap();
     let out = folder.path().join("out");
     let machine = MachineArguments { machine: Some(file), can: None };
-    commission::command(&Commission { machine, out: out.clone() }).unwrap();
+    commission::command(&Commission { machine, out: out.clone() }, &Interrupt::never()).unwrap();
     let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut rows = Vec::new();

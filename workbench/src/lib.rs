@@ -12,6 +12,7 @@ pub mod drive;
 pub mod error;
 pub mod excitation;
 pub mod identify;
+pub mod interrupt;
 pub mod link;
 pub mod master;
 pub mod model_file;

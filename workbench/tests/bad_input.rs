@@ -122,7 +122,7 @@ fn impossible_options_say_what_was_wanted() {
         .replace("like = \"X\"", "like = \"X\"\ninterface = \"can0\"");
     let shared = file(folder.path(), "shared.toml", &shared);
     let clocked = ["plant", "--machine", &shared, "--can", "vcan0", "--pace", "clock"];
-    refused("two axes on one clock-paced bus", &clocked, &["88.4 %", "80 %"]);
+    refused("two axes on one clock-paced bus", &clocked, &["91.1 %", "80 %"]);
     refused("unknown command", &["dance"], &["dance"]);
     refused(
         "start delay beyond reason",

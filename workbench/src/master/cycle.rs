@@ -1,0 +1,73 @@
+//! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for the torque k of every axis.
+//!
+//! An axis that has been silent for [`SILENT_CYCLES`](super::SILENT_CYCLES) is waited for no longer than a period: the others must not starve
+//! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
+
+use std::time::Duration;
+
+use protocol::message::{Decoded, Setpoint, decode};
+use protocol::{CanFrame, Message, SyncCounter};
+
+use super::Master;
+use crate::error::Outcome;
+use crate::link::{Link, axis_ids};
+
+/// How long all torques of a cycle may take in lock-step.
+const PATIENCE: Duration = Duration::from_millis(200);
+/// Frames that may pass in a cycle: other people's traffic must not prolong it.
+const MOST_FRAMES: u32 = 4000;
+
+impl<L: Link> Master<L> {
+    /// One cycle; `next_m` are the setpoints of the cycle after it.
+    ///
+    /// # Errors
+    /// Where an interface is gone.
+    pub fn cycle(&mut self, next_m: &[f64]) -> Outcome<()> {
+        self.link.pass(self.period);
+        let counter = self.counter;
+        let sync = Message::Sync(counter).encode(axis_ids(0)?);
+        (0..self.link.buses()).try_for_each(|bus| self.link.send(bus, sync))?;
+        self.axes.iter_mut().zip(next_m).for_each(|(axis, next)| axis.begin(*next));
+        self.send_setpoints(counter.next())?;
+        (0..self.link.buses()).try_for_each(|bus| self.collect(bus, counter))?;
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            axis.end(self.link.truth(index));
+        }
+        self.counter = counter.next();
+        self.cycles += 1;
+        Ok(())
+    }
+
+    /// The setpoints of a cycle to come, with the present control word.
+    pub(super) fn send_setpoints(&mut self, counter: SyncCounter) -> Outcome<()> {
+        (0..self.axes.len()).try_for_each(|index| {
+            let position = self.axes[index].next;
+            self.send(index, Message::Setpoint(Setpoint { control: self.control, counter, position }))
+        })
+    }
+
+    fn collect(&mut self, bus: usize, counter: SyncCounter) -> Outcome<()> {
+        for _ in 0..MOST_FRAMES {
+            let Some(patience) = self.patience(bus) else { return Ok(()) };
+            let Some(frame) = self.link.receive(bus, patience)? else { break };
+            self.hear(bus, &frame, counter);
+        }
+        self.missed += 1;
+        Ok(())
+    }
+
+    /// How long to wait for the torques that are still missing on a bus; `None` where none is.
+    fn patience(&self, bus: usize) -> Option<Duration> {
+        let missing = self.axes.iter().filter(|axis| axis.bus == bus && !axis.has_answered());
+        missing.map(|axis| if axis.is_silent() { self.period } else { PATIENCE }).max()
+    }
+
+    fn hear(&mut self, bus: usize, frame: &CanFrame, counter: SyncCounter) {
+        for axis in self.axes.iter_mut().filter(|axis| axis.bus == bus) {
+            // Frames that cannot be decoded are the nodes' business; the workbench only listens here.
+            if let Ok(Decoded::Message(message)) = decode(axis.ids, frame) {
+                axis.take(message, counter);
+            }
+        }
+    }
+}
