@@ -103,8 +103,10 @@ impl<'a, L: Link> Session<'a, L> {
     /// Where a node does not answer, a drive does not come up, or the operator has interrupted.
     pub fn ready(&mut self, compensation: &[AxisCompensation]) -> Outcome<()> {
         self.interrupt.check()?;
-        self.master.find_nodes()?;
-        self.master.configure(self.machine, compensation)?;
+        let configured = self.master.find_nodes().and_then(|()| self.master.configure(self.machine, compensation));
+        // A signal ends the waiting for an answer too: that is no silence of the node.
+        self.interrupt.check()?;
+        configured?;
         self.master.enable()
     }
 
@@ -126,9 +128,11 @@ impl<'a, L: Link> Session<'a, L> {
         let disabled = self.master.disable();
         let logs = self.master.into_link().take_logs();
         let written = log.map_or(Ok(()), |path| write_logs(path, &logs));
-        match (outcome, written) {
-            (Err(failure), Err(lost)) => Err(Failure::new(format!("{failure}; and its log was lost: {lost}"))),
-            (outcome, written) => outcome.and_then(|done| disabled.and(written).map(|()| done)),
+        match (outcome, log, written) {
+            (Ok(done), _, written) => disabled.and(written).map(|()| done),
+            (Err(failure), None, _) => Err(failure),
+            (Err(failure), Some(path), Ok(())) => Err(Failure::new(format!("{failure}; log: {}", path.display()))),
+            (Err(failure), Some(_), Err(lost)) => Err(Failure::new(format!("{failure}; and its log was lost: {lost}"))),
         }
     }
 

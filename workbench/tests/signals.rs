@@ -5,17 +5,16 @@ use std::path::Path;
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::time::Duration;
 
-/// `quadrant commission`, with its progress lines on stderr.
-struct Commission {
+/// The program, with its progress lines on stderr.
+struct Program {
     child: Child,
     stderr: BufReader<ChildStderr>,
 }
 
-impl Commission {
-    fn start(out: &Path) -> Self {
+impl Program {
+    fn start(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_quadrant"))
-            .args(["commission", "--out"])
-            .arg(out)
+            .args(arguments)
             .env("QUADRANT_PROGRESS", "1")
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -23,6 +22,10 @@ impl Commission {
             .unwrap();
         let stderr = BufReader::new(child.stderr.take().unwrap());
         Self { child, stderr }
+    }
+
+    fn commission(out: &Path) -> Self {
+        Self::start(&["commission", "--out", out.to_str().unwrap()])
     }
 
     fn wait_for(&mut self, progress: &str) {
@@ -56,7 +59,7 @@ fn lines(path: &Path) -> usize {
 #[test]
 fn ctrl_c_while_recording_keeps_the_records_and_the_log_and_exits_with_130() {
     let out = tempfile::tempdir().unwrap();
-    let mut commission = Commission::start(out.path());
+    let mut commission = Program::commission(out.path());
     commission.wait_for("recording: slow and fast runs");
     std::thread::sleep(Duration::from_millis(200));
     commission.signal(libc::SIGINT);
@@ -77,7 +80,7 @@ fn ctrl_c_while_recording_keeps_the_records_and_the_log_and_exits_with_130() {
 #[test]
 fn sigterm_while_identifying_ends_at_once_with_143_and_whole_records() {
     let out = tempfile::tempdir().unwrap();
-    let mut commission = Commission::start(out.path());
+    let mut commission = Program::commission(out.path());
     commission.wait_for("identifying axis X");
     commission.signal(libc::SIGTERM);
     let (code, told) = commission.end();
@@ -91,9 +94,26 @@ fn sigterm_while_identifying_ends_at_once_with_143_and_whole_records() {
 }
 
 #[test]
+fn sigterm_on_a_circle_keeps_its_frames() {
+    let out = tempfile::tempdir().unwrap();
+    let log = out.path().join("circle.log");
+    let path = log.to_str().unwrap();
+    // At 10 mm/min three turns take a quarter of an hour, far more than the test gives them.
+    let mut circle = Program::start(&["circle", "--radius-mm", "10", "--feed-mm-min", "10", "--candump", path]);
+    circle.wait_for("circle R 10 mm");
+    std::thread::sleep(Duration::from_millis(200));
+    circle.signal(libc::SIGTERM);
+    let (code, told) = circle.end();
+    assert_eq!(code, Some(143), "{told:?}");
+    let wanted = format!("quadrant: interrupted by SIGTERM; all axes were stopped and disabled; log: {path}");
+    assert_eq!(told, [wanted]);
+    assert!(lines(&log) > 100);
+}
+
+#[test]
 fn a_second_signal_does_not_wait_for_the_machine() {
     let out = tempfile::tempdir().unwrap();
-    let mut commission = Commission::start(out.path());
+    let mut commission = Program::commission(out.path());
     commission.wait_for("recording: slow and fast runs");
     commission.signal(libc::SIGINT);
     commission.signal(libc::SIGTERM);

@@ -98,11 +98,15 @@ impl<L: Link> Master<L> {
         }
     }
 
-    /// Resets faults; the drives are disabled afterwards.
+    /// Resets faults; the drives are disabled afterwards, those that were in operation in a controlled way.
     ///
     /// # Errors
-    /// Where an interface is gone.
+    /// Where an interface is gone, or a drive does not confirm that its torque is off.
     pub fn reset_fault(&mut self) -> Outcome<()> {
+        let is_energised = |axis: &AxisLink| axis.state.is_some_and(|state| !is_without_torque(state));
+        if self.axes.iter().any(is_energised) {
+            self.disable()?;
+        }
         let rests = |axis: &AxisLink| axis.state.is_some_and(is_down);
         self.confirm(ControlWord::DISABLE_VOLTAGE, Hold::Actual, self.cycles_in(DISABLE_S), |master| {
             master.axes.iter().all(|axis| rests(axis) || axis.is_silent())
