@@ -6,6 +6,8 @@ use plant_sim::Machine;
 use plant_sim::machine::PositionSensor;
 use protocol::Fault;
 use protocol::states::DriveState;
+use workbench::cli::{Commission, MachineArguments};
+use workbench::commission;
 use workbench::compensation::AxisCompensation;
 use workbench::error::Failure;
 use workbench::interrupt::Interrupt;
@@ -198,4 +200,23 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
     let description = std::fs::read_to_string(folder.join("dataset.toml")).unwrap();
     assert!(description.starts_with("# validate.csv broke off: axis Y: "), "{description}");
     assert!(std::fs::read_to_string(&log).unwrap().lines().count() > 100_000);
+}
+
+#[test]
+fn a_fault_in_the_middle_of_commissioning_leaves_the_record_so_far_and_says_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().join("weak.toml"), folder.path().join("out"));
+    // The slow bursts need 520 N for friction; the fast ones 3.3 kN more, which the motor has not got.
+    let weak = Machine::reference_text().replace("force_limit_n = 9000.0", "force_limit_n = 1500.0");
+    std::fs::write(&path, weak).unwrap();
+    let arguments = Commission { machine: MachineArguments { machine: Some(path), can: None }, out: out.clone() };
+    let text = commission::command(&arguments, &Interrupt::never()).unwrap_err().to_string();
+    assert!(text.contains("FollowingError") && text.contains("; the other axes were stopped; "), "{text}");
+    let wanted = format!("what was recorded is in {}; log: {0}/records.candump.log", out.display());
+    assert!(text.contains("train.csv broke off after ") && text.ends_with(&wanted), "{text}");
+    for axis in ["records-X", "records-Y"] {
+        let rows = std::fs::read_to_string(out.join(axis).join("train.csv")).unwrap().lines().count() - 1;
+        assert!(text.contains(&format!("after {rows} rows")) && rows > 1000, "{text}");
+        assert!(!out.join(axis).join("validate.csv").exists());
+    }
 }

@@ -1,6 +1,6 @@
 //! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for the torque k of every axis.
 //!
-//! An axis that has been silent for [`SILENT_CYCLES`](super::SILENT_CYCLES) is waited for no longer than a period: the others must not starve
+//! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the others must not starve
 //! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
 
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! The machine stops as one: trouble of one axis, or the wish of the operator, brings all axes to rest.
 //!
 //! Trouble is a fault or an EMCY, a drive that left `operation enabled`, or a servo that sent no torque for
-//! [`SILENT_CYCLES`](super::SILENT_CYCLES). All drives get `quick stop` with the next setpoints, so within a cycle of noticing: an EMCY is noticed at once, silence after
+//! `SILENT_CYCLES`. All drives get `quick stop` with the next setpoints, so within a cycle of noticing: an EMCY is noticed at once, silence after
 //! three cycles, a mere change of state with the status, at most ten cycles later. Setpoints stay where they are; the cycle goes on until every
 //! motor stands and no drive is ramping any more, then the drives are disabled.
 
