@@ -17,7 +17,7 @@ mod halt;
 mod sdo_client;
 mod way;
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plant_sim::Machine;
 use protocol::cob::{AxisIds, FrameKind};
@@ -37,6 +37,24 @@ pub use axis_link::{AxisCycle, SILENT_CYCLES, fine};
 const ANSWER: Duration = Duration::from_secs(1);
 /// Frames that may pass while an answer is waited for: more than a full 1 Mbit/s bus carries in a second.
 const FRAMES_PER_ANSWER: u32 = 20_000;
+
+/// Waiting for an answer while others talk: heartbeats never go quiet, so that no time without frames ends it. It ends by the wall clock, or by the
+/// number of frames where time is virtual.
+struct Patience {
+    begun: Instant,
+    frames: u32,
+}
+
+impl Patience {
+    fn begin() -> Self {
+        Self { begun: Instant::now(), frames: 0 }
+    }
+
+    fn lasts(&mut self) -> bool {
+        self.frames += 1;
+        self.frames <= FRAMES_PER_ANSWER && self.begun.elapsed() < ANSWER
+    }
+}
 
 /// The workbench on the buses of a machine.
 pub struct Master<L: Link> {
@@ -152,10 +170,9 @@ impl<L: Link> Master<L> {
             missing.push((axis.ids, axis.name.clone(), FrameKind::PlantHeartbeat));
             missing.push((axis.ids, axis.name.clone(), FrameKind::ServoHeartbeat));
         }
-        let mut frames = 0;
+        let mut patience = Patience::begin();
         while let Some((ids, name, kind)) = missing.first() {
-            frames += 1;
-            let received = if frames > FRAMES_PER_ANSWER { None } else { self.link.receive(bus, ANSWER)? };
+            let received = if patience.lasts() { self.link.receive(bus, ANSWER)? } else { None };
             let Some(frame) = received else { return Err(no_boot_up(*ids, name, *kind)) };
             missing.retain(|(ids, _, kind)| !is_boot_up(*ids, *kind, &frame));
         }

@@ -27,6 +27,9 @@ struct Drive {
     commands: Vec<ControlWord>,
     written: Vec<(Address, u32)>,
     out: VecDeque<CanFrame>,
+    /// The servo is dead; its plant goes on by its own timer, and its heartbeats never end.
+    is_dead: bool,
+    received: u32,
 }
 
 impl Drive {
@@ -41,6 +44,8 @@ impl Drive {
             commands: Vec::new(),
             written: Vec::new(),
             out: VecDeque::new(),
+            is_dead: false,
+            received: 0,
         }
     }
 
@@ -51,6 +56,10 @@ impl Drive {
     fn cycle(&mut self, counter: SyncCounter) {
         let (motor, load) = (MotorIncrements(0), LoadIncrements24::from_counts(0));
         self.say(Message::Feedback(Feedback { motor, load, counter }));
+        if self.is_dead {
+            self.say(Message::PlantHeartbeat(NmtState::Operational));
+            return self.say(Message::Feedback(Feedback { motor, load, counter: counter.next() }));
+        }
         let (torque, control) = (TorqueMicroNm(0), ControlWord::DISABLE_VOLTAGE);
         let following_error = FollowingError24::saturating(0);
         let status = StatusWord::of(self.state);
@@ -95,6 +104,9 @@ impl Drive {
     }
 
     fn answer(&mut self, request: Request) {
+        if self.is_dead {
+            return;
+        }
         let response = match request {
             Request::Download(address, data) => {
                 self.written.push((address, data.to_u32()));
@@ -136,6 +148,10 @@ impl Link for Drive {
     }
 
     fn receive(&mut self, _bus: usize, _timeout: Duration) -> Outcome<Option<CanFrame>> {
+        self.received += 1;
+        if self.is_dead && self.out.is_empty() {
+            self.say(Message::PlantHeartbeat(NmtState::Operational));
+        }
         Ok(self.out.pop_front())
     }
 
@@ -216,4 +232,26 @@ fn the_sync_period_is_declared_before_the_set_and_a_drive_without_the_object_is_
     assert_eq!(written[0], (Address::new(0x2102, 0), 1000));
     assert_eq!(written.last().unwrap().0, servo::objects::COMMIT);
     assert!(written.len() > 10);
+}
+
+#[test]
+fn a_plant_that_has_begun_the_next_cycle_by_itself_ends_the_waiting_for_a_dead_servo() {
+    let mut master = Master::start(Drive::new(0, None), &one_axis()).unwrap();
+    master.enable().unwrap();
+    master.link_mut().is_dead = true;
+    for _ in 0..3 {
+        master.link_mut().received = 0;
+        master.cycle(&[0.0]).unwrap();
+        assert_eq!(master.link_mut().received, 3, "feedback k, a heartbeat, feedback k + 1");
+    }
+    assert_eq!(master.missed(), 3);
+    assert!(master.has_lost_a_servo());
+}
+
+#[test]
+fn a_servo_that_does_not_answer_is_given_up_although_its_plant_goes_on_talking() {
+    let mut drive = Drive::new(0, None);
+    drive.is_dead = true;
+    let text = Master::start(drive, &one_axis()).err().unwrap().to_string();
+    assert!(text.contains("the servo (node 1) does not answer"), "{text}");
 }

@@ -1,5 +1,8 @@
 //! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for the torque k of every axis.
 //!
+//! A wait ends with the torques, after a time without any frame, or with evidence that a node has begun the next cycle by its own timer: heartbeats
+//! and feedback of others never go quiet, so silence alone would not end it.
+//!
 //! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the others must not starve
 //! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
 
@@ -50,9 +53,11 @@ impl<L: Link> Master<L> {
         for _ in 0..MOST_FRAMES {
             let Some(patience) = self.patience(bus) else { return Ok(()) };
             let Some(frame) = self.link.receive(bus, patience)? else { break };
-            self.hear(bus, &frame, counter);
+            if self.hear(bus, &frame, counter) {
+                break;
+            }
         }
-        self.missed += 1;
+        self.missed += u32::from(self.patience(bus).is_some());
         Ok(())
     }
 
@@ -62,12 +67,25 @@ impl<L: Link> Master<L> {
         missing.map(|axis| if axis.is_silent() { self.period } else { PATIENCE }).max()
     }
 
-    fn hear(&mut self, bus: usize, frame: &CanFrame, counter: SyncCounter) {
+    /// Takes a frame; tells whether it shows that the next cycle is on already: a node goes on by its own timer, and SYNC is overdue.
+    fn hear(&mut self, bus: usize, frame: &CanFrame, counter: SyncCounter) -> bool {
+        let mut is_overdue = false;
         for axis in self.axes.iter_mut().filter(|axis| axis.bus == bus) {
             // Frames that cannot be decoded are the nodes' business; the workbench only listens here.
             if let Ok(Decoded::Message(message)) = decode(axis.ids, frame) {
+                is_overdue |= cycle_of(&message) == Some(counter.next());
                 axis.take(message, counter);
             }
         }
+        is_overdue
+    }
+}
+
+/// The cycle that a node says is on.
+const fn cycle_of(message: &Message) -> Option<SyncCounter> {
+    match message {
+        Message::Feedback(feedback) => Some(feedback.counter),
+        Message::Torque(torque) => Some(torque.counter),
+        _ => None,
     }
 }

@@ -8,7 +8,7 @@ use protocol::message::{Decoded, decode};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use servo::objects;
 
-use super::{ANSWER, FRAMES_PER_ANSWER, Master};
+use super::{ANSWER, Master, Patience};
 use crate::compensation::AxisCompensation;
 use crate::drive;
 use crate::error::{Failure, Outcome};
@@ -70,7 +70,8 @@ impl<L: Link> Master<L> {
     fn ask(&mut self, index: usize, request: Request) -> Outcome<Response> {
         self.send(index, Message::SdoRequest(request))?;
         let (bus, ids) = (self.axes[index].bus, self.axes[index].ids);
-        for _ in 0..FRAMES_PER_ANSWER {
+        let mut patience = Patience::begin();
+        while patience.lasts() {
             let Some(frame) = self.link.receive(bus, ANSWER)? else { break };
             if let Ok(Decoded::Message(Message::SdoResponse(response))) = decode(ids, &frame) {
                 return Ok(response);
