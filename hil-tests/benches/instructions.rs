@@ -21,9 +21,9 @@ use embedded_can::{Frame, Id};
 use hil_tests::rig::SERVO;
 use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
-use protocol::{CanFrame, Station};
 use protocol::cob::{AxisIds, FrameKind};
 use protocol::sdo::Expedited;
+use protocol::{CanFrame, Station};
 use serde::Deserialize;
 use servo::Servo;
 use servo::objects::{self, Parameter};
@@ -119,19 +119,19 @@ impl Station for Tap {
     }
 
     fn boot(&mut self, send: &mut dyn FnMut(CanFrame)) {
-        let answers = self.servo.boot();
+        let answers = self.servo.boot().to_vec();
         self.note(Class::Boot, 0, [0; FRAME], &answers);
         answers.into_iter().for_each(send);
     }
 
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        let answers = self.servo.on_frame(frame, now_us);
+        let answers = self.servo.on_frame(frame, now_us).to_vec();
         self.note(self.class(frame), now_us, bytes(frame), &answers);
         answers.into_iter().for_each(send);
     }
 
     fn time(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        let answers = self.servo.on_time(now_us);
+        let answers = self.servo.on_time(now_us).to_vec();
         self.note(Class::Time, now_us, [0; FRAME], &answers);
         answers.into_iter().for_each(send);
     }

@@ -30,7 +30,7 @@ use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hio;
 use protocol::CanFrame;
 use protocol::cob::AxisIds;
-use servo::{Outbox, Servo};
+use servo::Servo;
 
 use recording::{Class, Event, Events, FRAME};
 
@@ -103,7 +103,7 @@ fn measured(servo: &Servo, event: &Event<'_>) -> u32 {
 }
 
 /// Ticks in which an event happens to [`REPEATS`] copies of a servo.
-fn ticks(servo: &Servo, event: impl Fn(&mut Servo) -> Outbox) -> u32 {
+fn ticks(servo: &Servo, event: impl Fn(&mut Servo) -> &[CanFrame]) -> u32 {
     let mut copies: [Servo; REPEATS] = core::array::from_fn(|_| servo.clone());
     let begin = SYST::get_current();
     for copy in &mut copies {
@@ -115,21 +115,21 @@ fn ticks(servo: &Servo, event: impl Fn(&mut Servo) -> Outbox) -> u32 {
 
 /// The event that costs nothing: what is left is the harness.
 #[inline(never)]
-fn nothing(_: &mut Servo, _: &CanFrame, _: u64) -> Outbox {
-    Outbox::new()
+fn nothing<'a>(_: &'a mut Servo, _: &CanFrame, _: u64) -> &'a [CanFrame] {
+    &[]
 }
 
 #[inline(never)]
-fn takes(servo: &mut Servo, frame: &CanFrame, now_us: u64) -> Outbox {
+fn takes<'a>(servo: &'a mut Servo, frame: &CanFrame, now_us: u64) -> &'a [CanFrame] {
     servo.on_frame(frame, now_us)
 }
 
 #[inline(never)]
-fn time(servo: &mut Servo, now_us: u64) -> Outbox {
+fn time(servo: &mut Servo, now_us: u64) -> &[CanFrame] {
     servo.on_time(now_us)
 }
 
-fn happens(servo: &mut Servo, event: &Event<'_>) -> Outbox {
+fn happens<'a>(servo: &'a mut Servo, event: &Event<'_>) -> &'a [CanFrame] {
     match event.class {
         Class::Boot => servo.boot(),
         Class::Time => time(servo, event.now_us),
@@ -141,7 +141,7 @@ fn frame_of(event: &Event<'_>) -> CanFrame {
     recording::from_bytes(event.frame).expect("the recording holds frames")
 }
 
-fn is_as_recorded(out: &Outbox, answers: &[[u8; FRAME]]) -> bool {
+fn is_as_recorded(out: &[CanFrame], answers: &[[u8; FRAME]]) -> bool {
     out.len() == answers.len()
         && out.iter().zip(answers).all(|(frame, answer)| recording::to_bytes(frame) == Some(*answer))
 }
