@@ -1,19 +1,21 @@
-//! How servo, plant and workbench meet.
+//! How the nodes meet.
 //!
-//! - [`station`]: what every sans-I/O node looks like from the bus.
+//! The crate knows frames and [`protocol::Station`], and nobody who implements it.
+//!
 //! - [`in_process`]: a bus in one thread and virtual time; the default of the workbench.
 //! - [`socketcan`](mod@socket): a port on a CAN interface of the kernel.
-//! - [`faults`]: a wrapper around any receiving port that loses, delays, doubles and corrupts frames.
+//! - [`faults`]: a wrapper around any receiving port that loses, doubles, delays and corrupts frames.
+//! - [`shared`]: a station that others can look at while it is on the bus.
 //! - [`log`]: candump logs.
 
 pub mod faults;
 pub mod in_process;
 pub mod log;
+pub mod shared;
 pub mod socket;
-pub mod station;
 
-pub use faults::{FaultPlan, FaultyPort};
+pub use faults::{Corruption, Damage, FaultPlan, FaultyPort};
 pub use in_process::InProcessBus;
 pub use log::BusLog;
+pub use shared::Shared;
 pub use socket::CanPort;
-pub use station::{Received, Station};

@@ -58,7 +58,7 @@ impl CanPort {
         }
     }
 
-    /// Waits for a frame; `None` after the timeout.
+    /// Waits for a frame; `None` after the timeout, or where a signal came first.
     ///
     /// # Errors
     /// The kernel's.
@@ -66,7 +66,19 @@ impl CanPort {
         if let Some(frame) = self.try_receive()? {
             return Ok(Some(frame));
         }
-        wait_readable(&[self.as_raw_fd()], Some(timeout))?;
+        wait(&mut [readable(self.as_raw_fd())], Some(timeout))?;
+        self.try_receive()
+    }
+
+    /// The same with a timeout that several calls share.
+    ///
+    /// # Errors
+    /// The kernel's.
+    pub fn receive_within(&self, left: &mut Duration) -> io::Result<Option<CanFrame>> {
+        if let Some(frame) = self.try_receive()? {
+            return Ok(Some(frame));
+        }
+        wait_within(&mut [readable(self.as_raw_fd())], left)?;
         self.try_receive()
     }
 
@@ -131,28 +143,89 @@ fn to_socket(frame: &CanFrame) -> io::Result<socketcan::CanFrame> {
     made.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "not a classic CAN frame"))
 }
 
-/// Waits until one of the descriptors is readable, or the timeout is over; tells whether one is.
+/// How a waiting ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waited {
+    /// A descriptor is readable, or its other end is gone.
+    Ready,
+    /// The timeout is over.
+    TimedOut,
+    /// A signal came.
+    Interrupted,
+}
+
+/// Asks [`wait`] for a descriptor that is readable.
+#[must_use]
+pub const fn readable(fd: RawFd) -> libc::pollfd {
+    libc::pollfd { fd, events: libc::POLLIN, revents: 0 }
+}
+
+/// Waits until a descriptor is ready (its `revents` tell which), or the timeout is over; without a timeout for as long as it takes.
 ///
 /// # Errors
 /// The kernel's.
-pub fn wait_readable(descriptors: &[RawFd], timeout: Option<Duration>) -> io::Result<bool> {
-    let entry = |fd: &RawFd| libc::pollfd { fd: *fd, events: libc::POLLIN, revents: 0 };
-    let mut entries: Vec<libc::pollfd> = descriptors.iter().map(entry).collect();
-    let limit = timeout.map(|timeout| libc::timespec {
+pub fn wait(entries: &mut [libc::pollfd], timeout: Option<Duration>) -> io::Result<Waited> {
+    poll(entries, timeout.map(timespec).as_mut())
+}
+
+/// The same with a timeout from which the time of the waiting is taken, so that several waits share it without a look at the clock.
+///
+/// # Errors
+/// The kernel's.
+pub fn wait_within(entries: &mut [libc::pollfd], left: &mut Duration) -> io::Result<Waited> {
+    let mut limit = timespec(*left);
+    let waited = poll(entries, Some(&mut limit));
+    let nanos = u32::try_from(limit.tv_nsec).unwrap_or(0);
+    *left = Duration::new(u64::try_from(limit.tv_sec).unwrap_or(0), nanos);
+    waited
+}
+
+fn timespec(timeout: Duration) -> libc::timespec {
+    libc::timespec {
         tv_sec: libc::time_t::try_from(timeout.as_secs()).unwrap_or(libc::time_t::MAX),
         tv_nsec: libc::c_long::from(timeout.subsec_nanos()),
-    });
-    let limit = limit.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
-    let count = libc::nfds_t::try_from(entries.len()).unwrap_or(0);
-    #[expect(unsafe_code, reason = "ppoll has no safe wrapper here")]
-    // SAFETY: `entries` holds `count` valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long.
-    let ready = unsafe { libc::ppoll(entries.as_mut_ptr(), count, limit, std::ptr::null()) };
+    }
+}
+
+/// `ppoll`, not `poll`, which counts in milliseconds; and the system call itself, which writes the time that is left into the limit (ppoll(2), "C
+/// library/kernel differences").
+fn poll(entries: &mut [libc::pollfd], limit: Option<&mut libc::timespec>) -> io::Result<Waited> {
+    let limit = limit.map_or(std::ptr::null_mut(), std::ptr::from_mut);
+    let no_mask = std::ptr::null::<libc::sigset_t>();
+    #[expect(unsafe_code, reason = "the raw ppoll has no safe wrapper")]
+    // SAFETY: `entries` holds that number of valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long and is
+    // ours to be written; without a mask its size is not looked at.
+    let ready = unsafe { libc::syscall(libc::SYS_ppoll, entries.as_mut_ptr(), entries.len(), limit, no_mask, 0_usize) };
     match ready {
         -1 => {
             let error = io::Error::last_os_error();
-            if error.kind() == ErrorKind::Interrupted { Ok(false) } else { Err(error) }
+            if error.kind() == ErrorKind::Interrupted { Ok(Waited::Interrupted) } else { Err(error) }
         }
-        0 => Ok(false),
-        _ => Ok(true),
+        0 => Ok(Waited::TimedOut),
+        _ => Ok(Waited::Ready),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::net::UnixDatagram;
+
+    #[test]
+    fn waits_share_a_time_and_a_frame_does_not_start_it_anew() {
+        let (ours, theirs) = UnixDatagram::pair().unwrap();
+        let mut left = Duration::from_millis(60);
+        let sender = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(20));
+            theirs.send(&[1]).unwrap();
+            theirs
+        });
+        let mut entries = [readable(ours.as_raw_fd())];
+        assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::Ready);
+        assert!(left <= Duration::from_millis(41), "{left:?}");
+        ours.recv(&mut [0]).unwrap();
+        assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::TimedOut);
+        assert_eq!(left, Duration::ZERO);
+        drop(sender.join());
     }
 }

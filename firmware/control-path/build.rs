@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 /// Entry points of the control path, as `src/main.rs` exports them.
-const ENTRIES: [&str; 5] = ["entry_new", "entry_boot", "entry_frame", "entry_lost", "entry_time"];
+const ENTRIES: [&str; 5] = ["entry_new", "entry_boot", "entry_frame", "entry_time", "entry_due"];
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));

@@ -11,7 +11,7 @@ use bus::CanPort;
 use embedded_can::{Frame, Id, StandardId};
 use hil_tests::rig::shared_bus;
 use protocol::CanFrame;
-use protocol::cob::{AxisIds, FrameKind};
+use protocol::cob::{AxisIds, FrameKind, HEARD_BY_PLANT, HEARD_BY_SERVO};
 use workbench::compensation::AxisCompensation;
 use workbench::link::{Interfaces, axis_ids};
 use workbench::master::Master;
@@ -128,10 +128,8 @@ fn relay_node(node: &str) {
     let ids = ids(axis.parse().expect("an axis index"));
     let id = |kind: FrameKind| ids.identifier(kind);
     // The same filters as the real nodes.
-    let accepted: Vec<StandardId> = match role {
-        "p" => [FrameKind::Nmt, FrameKind::Sync, FrameKind::Torque].map(id).to_vec(),
-        _ => quadrant_host::accepted(ids).to_vec(),
-    };
+    let heard = if role == "p" { &HEARD_BY_PLANT[..] } else { &HEARD_BY_SERVO[..] };
+    let accepted: Vec<StandardId> = heard.iter().map(|kind| id(*kind)).collect();
     let port = CanPort::open("vcan0", &accepted).expect("vcan0 is there");
     let (mut feedbacks, mut answers) = (0_u32, Vec::new());
     while let Ok(received) = port.receive(PATIENCE) {

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
-use plant_sim::axis::{Axis, AxisParameters, Reading};
+use plant_sim::axis::{Axis, AxisParameters, Mounting, Reading};
 use plant_sim::effects::{Effects, FrictionDrift, PitchError, TorqueRipple};
 use plant_sim::friction::{Law, Sliding};
 use plant_sim::mechanics::Mechanics;
@@ -184,6 +184,7 @@ fn axis(plan: &Plan, source: &mut Source) -> AxisParameters {
         current_loop_time_constant_s: 2.0e-5,
         force_limit_n: 1.0e4,
         force_noise_n: 0.3 * plan.noise_n,
+        mounting: Mounting::default(),
     };
     plan.hidden.iter().for_each(|hidden| hide(*hidden, &mut parameters));
     parameters

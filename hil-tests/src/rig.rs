@@ -1,6 +1,7 @@
 //! The rig: machines for scenarios, and a master on the in-process bus whose plugs can be pulled.
 
 use plant_sim::Machine;
+use plant_sim::brake::BrakeParameters;
 use plant_sim::friction::Law;
 use plant_sim::machine::PositionSensor;
 use workbench::compensation::AxisCompensation;
@@ -32,6 +33,59 @@ pub fn one_axis() -> Machine {
     machine
 }
 
+/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens
+/// in 30 ms and bites after 40 ms.
+#[must_use]
+pub fn vertical() -> Machine {
+    vertical_with_brake(0.030, 0.040)
+}
+
+/// The vertical axis with a faster or slower brake.
+#[must_use]
+pub fn vertical_with_brake(open_s: f64, close_s: f64) -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.mounting.gravity_n = -2500.0;
+        axis.actual.mounting.brake = Some(BrakeParameters { rated_force_n: 4000.0, open_s, close_s, rise_s: 0.0 });
+    }
+    machine
+}
+
+/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in
+/// 8 ms.
+#[must_use]
+pub fn vertical_axes() -> [(&'static str, Machine); 3] {
+    [
+        ("brake of 0 ms", vertical_with_brake(0.0, 0.0)),
+        ("brake of 10 ms", vertical_with_brake(0.008, 0.010)),
+        ("brake of 40 ms", vertical()),
+    ]
+}
+
+/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from
+/// zero.
+#[must_use]
+pub fn absolute_scale(table_m: f64) -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.mounting.start_m = table_m;
+        axis.actual.mounting.motor_zero_m = table_m;
+    }
+    machine
+}
+
+/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way,
+/// five times the 2^31 of the frame, within the 21.5 m that a setpoint can say.
+#[must_use]
+pub fn long_way() -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.lead_m_per_rev = 1.0e-3;
+        axis.limits.travel_m = 10.0;
+    }
+    machine
+}
+
 /// The paper's Fig. 4: a gap outside the position loop.
 #[must_use]
 pub fn gap_outside(gap_m: f64) -> Machine {
@@ -43,7 +97,8 @@ pub fn gap_outside(gap_m: f64) -> Machine {
     machine
 }
 
-/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the prototype's figures.
+/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the
+/// prototype's figures.
 #[must_use]
 pub fn gap_inside(gap_m: f64) -> Machine {
     let mut machine = quiet_reference();

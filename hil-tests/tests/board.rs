@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hil_tests::targets;
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, elf};
 use serde::Deserialize;
 
@@ -13,9 +14,7 @@ fn root() -> PathBuf {
 /// Builds a leaf for a Cortex-M target, in a target folder of its own so that it does not wait for the tests' lock; gives the image.
 fn build(package: &str, target: &str, profile: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("cortex-m");
-    let added =
-        Command::new("rustup").args(["target", "add", target]).output().expect("rustup is part of the toolchain");
-    assert!(added.status.success(), "rustup target add {target}: {}", String::from_utf8_lossy(&added.stderr));
+    targets::install(target);
     let built = Command::new(env!("CARGO"))
         .args(["build", "--locked", "--package", package, "--target", target, "--profile", profile, "--target-dir"])
         .arg(&folder)
@@ -88,7 +87,7 @@ fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
     let bytes = std::fs::read(&image).unwrap();
     let file = object::File::parse(&*bytes).unwrap();
     let names: Vec<&str> = file.symbols().filter_map(|symbol| symbol.name().ok()).collect();
-    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_lost", "entry_time"] {
+    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_time", "entry_due"] {
         assert!(names.contains(&entry), "{entry} is not in the image");
     }
     let soft = |name: &&&str| {
@@ -113,7 +112,7 @@ fn the_proof_would_notice_a_panic() {
                 #[unsafe(no_mangle)] extern \"C\" fn entry(data: &[u8; 4], at: usize) -> u8 { data[at] }\n";
     std::fs::write(&source, body).unwrap();
     let target = "thumbv7em-none-eabi";
-    assert!(Command::new("rustup").args(["target", "add", target]).output().unwrap().status.success());
+    targets::install(target);
     let linked = Command::new("rustc")
         .args([
             "--edition=2024",

@@ -10,7 +10,7 @@ use workbench::interrupt::Interrupt;
 #[test]
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     let out = tempfile::tempdir().unwrap();
-    let machine = MachineArguments { machine: None, can: None };
+    let machine = MachineArguments::default();
     commission::command(&Commission { machine, out: out.path().to_path_buf() }, &Interrupt::never()).unwrap();
 
     let text = std::fs::read_to_string(out.path().join("summary.json")).unwrap();

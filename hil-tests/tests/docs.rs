@@ -5,6 +5,9 @@ use std::path::Path;
 use protocol::cob::AxisIds;
 use protocol::table::{FRAMES, Rate};
 
+/// How the frames follow each other, written by hand.
+const CYCLE: &str = include_str!("docs/cycle.md");
+
 fn check(name: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
     if std::env::var_os("QUADRANT_BLESS").is_some() {
@@ -16,28 +19,65 @@ fn check(name: &str, text: &str) {
 
 #[test]
 fn the_list_of_objects_is_the_table_of_the_drive() {
-    let mut text = String::from(
-        "# Objects of the drive\n\nMade from `firmware/servo/src/objects.rs` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`.\n\n\
-         Parameters are INTEGER32, read and write. A write is checked against its range before it is acknowledged and staged; writing \"cmit\" \
-         (0x74696D63) to 2F00h makes the staged set active as a whole. Read only: 1000h device type, 1001h error register, 6041h status word, \
-         6061h mode (8), 6064h position, 60F4h following error, 2200h:1-5 frames lost, stale, malformed, implausible, doubled.\n\n\
-         | object | name | unit of the raw number | min | max | after reset |\n|---|---|---|---|---|---|\n",
-    );
-    for entry in &servo::objects::TABLE {
+    let text = [OBJECTS_HEAD.to_owned(), parameter_rows(), reading_rows(), reason_rows()].concat();
+    check("objects.md", &text);
+}
+
+const OBJECTS_HEAD: &str = "# Objects of the drive\n\n\
+    Made from `firmware/servo/src/objects.rs` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`.\n\n\
+    ## Parameters\n\n\
+    A parameter is an INTEGER32 that counts steps of a physical unit: 5 m/s² in steps of 1 um/s^2 are 5000000. All of them are read and written \
+    with four bytes. A write is checked against its range before it is acknowledged, and staged. Writing \"cmit\" (0x74696D63) to 2F00h:0 turns \
+    the staged set into machine units of its own cycle time (1006h) and makes it active as a whole. A commit is refused with 0604 0043h where \
+    the values do not go together or do not fit the machine units at that cycle time. 2F02h:1 then gives the row of the parameter to look at \
+    first, 2F02h:2 the reason. With torque on the axis, cycle time (1006h), position source (2100h:1), feed constant (6092h), encoder resolution \
+    (608Fh) and the scale's offset (2103h:1) have to stay: 0800 0022h. 2F01h chooses which set uploads read.\n\n\
+    A row with \"choice\" takes the codes that its name lists, and no others. Torque is that of the motor, ways and velocities are those of \
+    the table, inertia is motor torque per acceleration at the table: mass · lead / 2 pi.\n\n\
+    The setpoint period (60C2h) is value · 10^exponent seconds, and 1 to 20 whole cycles. Q29 coefficients of the torque filter \
+    are raw numbers for one cycle time, which 2120h:6 states.\n\n";
+
+fn parameter_rows() -> String {
+    let mut text =
+        String::from("| row | object | parameter | step | min | max | after reset |\n|---|---|---|---|---|---|---|\n");
+    for (place, entry) in servo::objects::TABLE.iter().enumerate() {
         let (index, subindex) = (entry.address.index, entry.address.subindex);
         text += &format!(
-            "| {index:04X}h:{subindex} | {} | {} | {} | {} | {} |\n",
-            entry.name, entry.unit, entry.min, entry.max, entry.default
+            "| {} | {index:04X}h:{subindex} | {} | {} | {} | {} | {} |\n",
+            place + 1,
+            entry.name,
+            entry.unit.text,
+            entry.min,
+            entry.max,
+            entry.default
         );
     }
-    check("objects.md", &text);
+    text
+}
+
+fn reading_rows() -> String {
+    let mut rows = servo::objects::READINGS;
+    rows.sort_unstable();
+    let mut text = String::from("\n## What else can be read\n\n| object | value |\n|---|---|\n");
+    for (address, name) in rows {
+        text += &format!("| {:04X}h:{} | {name} |\n", address.index, address.subindex);
+    }
+    text
+}
+
+fn reason_rows() -> String {
+    let mut text = String::from("\n## Reasons of a refused commit (2F02h:2)\n\n| code | reason |\n|---|---|\n");
+    for (code, reason) in servo::parameters::SetError::REASONS {
+        text += &format!("| {code} | {reason} |\n");
+    }
+    text
 }
 
 #[test]
 fn the_list_of_frames_is_the_table_of_the_protocol() {
     let ids = AxisIds::of_axis(0).unwrap();
     let mut text = String::from(
-        "# Frames\n\nMade from `protocol/src/table.rs` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`; identifiers of the first axis \
+        "# Frames\n\nWhat the nodes say (this table), and [when](#the-cycle). Made from `protocol/src/table.rs` and `hil-tests/tests/docs/cycle.md` by `QUADRANT_BLESS=1 cargo test -p hil-tests --test docs`; identifiers of the first axis \
          (servo 0x01, plant 0x11). `protocol/quadrant.dbc` is made from the same table.\n\n\
          | identifier | frame | sender | bytes | rate | signals (first bit, bits, weight) |\n|---|---|---|---|---|---|\n",
     );
@@ -61,5 +101,7 @@ fn the_list_of_frames_is_the_table_of_the_protocol() {
             signals.join("; ")
         );
     }
+    text += "\n";
+    text += CYCLE;
     check("frames.md", &text);
 }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use identification::{Dataset, identify};
+use scope::{Scope, on_all_cores};
 
 const PERIOD_S: f64 = 1.0e-3;
 
@@ -69,20 +70,21 @@ fn found(made: &Made) -> (Vec<String>, String) {
 
 #[test]
 fn nothing_is_found_where_nothing_is_missing() {
-    for seed in 1..=4 {
-        assert_eq!(found(&Made { seed, ..NOTHING }).0, Vec::<String>::new(), "seed {seed}");
-    }
+    on_all_cores(Scope::now().rows("seeds of empty records", &[1, 2, 3, 4], 1, 1), |seed| {
+        assert_eq!(found(&Made { seed: *seed, ..NOTHING }).0, Vec::<String>::new(), "seed {seed}");
+    });
 }
 
 #[test]
 fn each_effect_is_found_alone() {
-    for (wanted, made) in [
-        ("viscous_asymmetry", Made { asymmetry: 120.0, ..NOTHING }),
+    let effects = [
         ("stribeck", Made { stribeck: 100.0, ..NOTHING }),
-        ("torque_ripple", Made { ripple: 15.0, ..NOTHING }),
         ("delay", Made { delay_s: 1.2e-3, ..NOTHING }),
-    ] {
-        let (found, verdict) = found(&made);
-        assert_eq!((found, verdict.as_str()), (vec![wanted.to_owned()], "explained"));
-    }
+        ("viscous_asymmetry", Made { asymmetry: 120.0, ..NOTHING }),
+        ("torque_ripple", Made { ripple: 15.0, ..NOTHING }),
+    ];
+    on_all_cores(Scope::now().rows("synthetic effects", &effects, 1, 2), |(wanted, made)| {
+        let (found, verdict) = found(made);
+        assert_eq!((found, verdict.as_str()), (vec![(*wanted).to_owned()], "explained"));
+    });
 }

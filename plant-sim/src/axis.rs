@@ -4,12 +4,44 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
+use protocol::states::BrakeState;
+
+use crate::brake::{Brake, BrakeParameters};
 use crate::effects::Effects;
 use crate::friction::{Friction, Law, Sliding};
 use crate::mechanics::{Drive, Mechanics, Motion};
+use crate::stops::Stops;
 
 /// Sub-step of the integration: halving it changes a free run of 8 mm by less than 10⁻⁵ of it (`tests/mechanics.rs`).
 pub const SUB_STEP_S: f64 = 1.0e-3 / 16.0;
+
+/// How an axis is mounted: what pulls at it, what holds it, where it ends and where it stands when it is switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mounting {
+    /// Force of gravity on the table towards positive position, N: −2500 where positive is up. Identification finds it
+    /// as an `offset` of the opposite sign, because an offset is counted against positive motion.
+    pub gravity_n: f64,
+    /// Brake on the motor.
+    pub brake: Option<BrakeParameters>,
+    /// End stops at the table.
+    pub stops: Option<Stops>,
+    /// Where the table stands when the axis is switched on, m.
+    pub start_m: f64,
+    /// Motor position at the table where the motor encoder reads zero, m.
+    pub motor_zero_m: f64,
+    /// Table position where the load scale reads zero, m.
+    pub load_zero_m: f64,
+}
+
+impl Mounting {
+    /// The axis at rest in its start position, the table hanging on the screw where gravity pulls.
+    #[must_use]
+    pub fn start(&self, mechanics: &Mechanics) -> Motion {
+        let hang_m = -self.gravity_n / mechanics.screw_stiffness_n_per_m;
+        let gap_m = if self.gravity_n == 0.0 { 0.0 } else { -0.5 * mechanics.backlash_m * self.gravity_n.signum() };
+        Motion { motor_m: self.start_m + gap_m + hang_m, table_m: self.start_m, ..Motion::default() }
+    }
+}
 
 /// Everything that an axis really is.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +66,8 @@ pub struct AxisParameters {
     pub force_limit_n: f64,
     /// Noise of the force that really acts, N, one value a cycle.
     pub force_noise_n: f64,
+    /// How it is mounted.
+    pub mounting: Mounting,
 }
 
 impl AxisParameters {
@@ -59,28 +93,40 @@ pub struct Axis {
     parameters: AxisParameters,
     motion: Motion,
     friction: Friction,
+    brake: Option<Brake>,
     force_n: f64,
     delayed_n: f64,
     time_s: f64,
     noise: ChaCha8Rng,
+    seed: u64,
     sub_step_s: f64,
 }
 
 impl Axis {
-    /// An axis at rest at position zero.
+    /// An axis at rest in its start position, its brake closed.
     #[must_use]
     pub fn new(parameters: AxisParameters, seed: u64) -> Self {
         let friction = Friction::new(parameters.sliding, parameters.law.clone());
+        let motion = parameters.mounting.start(&parameters.mechanics);
+        let brake = parameters.mounting.brake.map(Brake::new);
         Self {
             parameters,
-            motion: Motion::default(),
+            motion,
             friction,
+            brake,
             force_n: 0.0,
             delayed_n: 0.0,
             time_s: 0.0,
             noise: ChaCha8Rng::seed_from_u64(seed),
+            seed,
             sub_step_s: SUB_STEP_S,
         }
+    }
+
+    /// The axis as it was when it was switched on, its noise from the beginning.
+    pub fn start_over(&mut self) {
+        let sub_step_s = self.sub_step_s;
+        *self = Self::new(self.parameters.clone(), self.seed).with_sub_step(sub_step_s);
     }
 
     /// The same axis with another sub-step; for convergence tests.
@@ -101,6 +147,19 @@ impl Axis {
         self.motion = motion;
     }
 
+    /// Tells the brake, if there is one, to open or to close.
+    pub fn command_brake(&mut self, release: bool) {
+        if let Some(brake) = &mut self.brake {
+            brake.command(release);
+        }
+    }
+
+    /// Where the brake stands.
+    #[must_use]
+    pub fn brake(&self) -> BrakeState {
+        self.brake.as_ref().map_or(BrakeState::NotFitted, Brake::state)
+    }
+
     /// Force that the motor delivers at present, N.
     #[must_use]
     pub const fn force_n(&self) -> f64 {
@@ -118,10 +177,12 @@ impl Axis {
     pub fn read(&self) -> Reading {
         let parameters = &self.parameters;
         let counts_per_m = f64::from(parameters.motor_encoder_counts_per_rev) / parameters.lead_m_per_rev;
-        let scale_m = self.motion.table_m + parameters.effects.scale_error_m(self.motion.table_m);
+        let mounting = &parameters.mounting;
+        let scale_m =
+            self.motion.table_m + parameters.effects.scale_error_m(self.motion.table_m) - mounting.load_zero_m;
         let resolution = parameters.load_encoder_resolution_m;
         Reading {
-            motor_increments: floor(self.motion.motor_m * counts_per_m),
+            motor_increments: floor((self.motion.motor_m - mounting.motor_zero_m) * counts_per_m),
             load_10_nm: floor((scale_m / resolution).floor() * resolution / 1.0e-8 + 0.5),
         }
     }
@@ -157,10 +218,18 @@ impl Axis {
         let middle = self.motion.motor_m + 0.5 * dt_s * self.motion.motor_m_per_s;
         let drive = Drive {
             motor_n: mean_n + disturbance_n + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
-            table_n: -effects.offset_n,
+            table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) - effects.offset_n,
             friction_factor: effects.friction_factor(self.motion.table_m, self.time_s),
+            brake_n: self.brake.as_mut().map_or(0.0, |brake| brake.pass(dt_s)),
         };
         self.parameters.mechanics.advance(&mut self.motion, &mut self.friction, drive, dt_s);
+    }
+
+    /// Force of an end stop on the table in the middle of a sub-step.
+    fn stop_n(&self, dt_s: f64) -> f64 {
+        let Motion { table_m, table_m_per_s, .. } = self.motion;
+        let force = |stops: Stops| stops.force_n(table_m + 0.5 * dt_s * table_m_per_s, table_m_per_s);
+        self.parameters.mounting.stops.map_or(0.0, force)
     }
 }
 
@@ -174,7 +243,8 @@ fn lag_share(dt_s: f64, time_constant_s: f64) -> f64 {
     if time_constant_s > 0.0 { -(-dt_s / time_constant_s).exp_m1() } else { 1.0 }
 }
 
-/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at once.
+/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at
+/// once.
 fn mean_share(lag: f64) -> f64 {
     if lag >= 1.0 { 0.0 } else { lag / -(-lag).ln_1p() }
 }

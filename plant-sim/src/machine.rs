@@ -1,7 +1,7 @@
 //! Machine files: TOML in SI units, actual and declared effects apart.
 //!
-//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and impossible values are errors that name key
-//! and line. An axis may say `like = "X"` and leave out everything else.
+//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and impossible values are errors
+//! that name key and line. An axis may say `like = "X"` and leave out everything else.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,9 +9,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::AxisParameters;
+use crate::axis::{AxisParameters, Mounting};
+use crate::brake::BrakeParameters;
 use crate::effects::Effects;
 use crate::friction::{Law, Sliding};
+use crate::stops::StopsForm;
 
 /// Why a machine file cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -159,6 +161,8 @@ struct AxisForm {
     mechanics: Option<MechanicsForm>,
     encoders: Option<EncodersForm>,
     actuator: Option<ActuatorForm>,
+    brake: Option<BrakeParameters>,
+    stops: Option<StopsForm>,
     limits: Option<Limits>,
     gains: Option<Gains>,
     actual: Option<ActualForm>,
@@ -177,6 +181,10 @@ struct MechanicsForm {
     screw_stiffness_n_per_m: f64,
     screw_damping_n_s_per_m: f64,
     backlash_m: f64,
+    #[serde(default)]
+    gravity_n: f64,
+    #[serde(default)]
+    start_m: f64,
 }
 
 #[derive(Clone, Deserialize)]
@@ -184,6 +192,10 @@ struct MechanicsForm {
 struct EncodersForm {
     motor_counts_per_rev: u32,
     load_resolution_m: f64,
+    #[serde(default)]
+    motor_zero_m: f64,
+    #[serde(default)]
+    load_zero_m: f64,
 }
 
 #[derive(Clone, Deserialize)]
@@ -209,6 +221,9 @@ struct ActualForm {
 struct DeclaredForm {
     effects: Vec<String>,
 }
+
+/// Longest control cycle of a machine file.
+const LONGEST_PERIOD_S: f64 = 0.02;
 
 /// Names that `[axis.declared] effects` may list.
 pub const DECLARABLE: [&str; 17] = [
@@ -270,7 +285,7 @@ impl Machine {
         let source = Source { file, text };
         let form: FileForm = toml::from_str(text).map_err(|error| source.syntax(&error))?;
         let everywhere = 0..text.len();
-        source.range(&everywhere, "period_s", form.timing.period_s, 1.0e-4, 0.02)?;
+        source.range(&everywhere, "period_s", form.timing.period_s, 1.0e-4, LONGEST_PERIOD_S)?;
         if form.axis.is_empty() || form.axis.len() > 16 {
             return Err(source.error(&everywhere, "axis", "a machine has 1 to 16 [[axis]] tables"));
         }
@@ -382,11 +397,12 @@ impl Source<'_> {
         self.check_drive(part, &encoders, &actuator, &limits, &gains)?;
         self.check_sub_step(part, &mechanics, &actual.friction)?;
         self.check_increments(part, &mechanics, &encoders, &limits)?;
+        let mounting = self.mounting(part, &mechanics, &encoders, &limits, (model.brake, model.stops))?;
         self.check_declared(part, &declared)?;
         Ok(MachineAxis {
             name: own.name.clone(),
             interface: own.interface.clone(),
-            actual: parameters(&mechanics, &encoders, &actuator, actual),
+            actual: parameters(&mechanics, &encoders, &actuator, actual, mounting),
             force_record_noise_n: actuator.force_record_noise_n,
             limits,
             gains,
@@ -410,6 +426,8 @@ impl Source<'_> {
             mechanics: own.mechanics.or_else(|| model.mechanics.clone()),
             encoders: own.encoders.or_else(|| model.encoders.clone()),
             actuator: own.actuator.or_else(|| model.actuator.clone()),
+            brake: own.brake.or(model.brake),
+            stops: own.stops.or(model.stops),
             limits: own.limits.or(model.limits),
             gains: own.gains.or(model.gains),
             actual: own.actual.or_else(|| model.actual.clone()),
@@ -522,7 +540,8 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// Increments over the travel have to fit the feedback frame.
+    /// The feedback carries the low 32 bits of the increments and the drive unwraps them: one cycle at the velocity
+    /// limit, 20 ms at most, has to stay below half of that.
     fn check_increments(
         &self,
         part: &Range<usize>,
@@ -530,15 +549,63 @@ impl Source<'_> {
         encoders: &EncodersForm,
         limits: &Limits,
     ) -> Result<(), MachineError> {
-        let increments = limits.travel_m / mechanics.lead_m_per_rev * f64::from(encoders.motor_counts_per_rev);
+        let counts_per_m = f64::from(encoders.motor_counts_per_rev) / mechanics.lead_m_per_rev;
+        let increments = limits.velocity_m_per_s * LONGEST_PERIOD_S * counts_per_m;
         if increments < f64::from(i32::MAX) {
             return Ok(());
         }
         Err(self.error(
             part,
             "motor_counts_per_rev",
-            format!("{increments:.3e} increments over the travel do not fit the 32 bits of the feedback"),
+            format!("{increments:.3e} increments in 20 ms at the velocity limit: the drive cannot unwrap the 32 bits of the feedback"),
         ))
+    }
+
+    fn mounting(
+        &self,
+        part: &Range<usize>,
+        mechanics: &MechanicsForm,
+        encoders: &EncodersForm,
+        limits: &Limits,
+        (brake, stops): (Option<BrakeParameters>, Option<StopsForm>),
+    ) -> Result<Mounting, MachineError> {
+        self.range(part, "gravity_n", mechanics.gravity_n, -1.0e6, 1.0e6)?;
+        self.range(part, "start_m", mechanics.start_m, -limits.travel_m, limits.travel_m)?;
+        self.range(part, "motor_zero_m", encoders.motor_zero_m, -100.0, 100.0)?;
+        self.range(part, "load_zero_m", encoders.load_zero_m, -100.0, 100.0)?;
+        brake.map_or(Ok(()), |brake| self.check_brake(part, &brake))?;
+        stops.map_or(Ok(()), |stops| self.check_stops(part, &stops, mechanics, limits))?;
+        Ok(Mounting {
+            gravity_n: mechanics.gravity_n,
+            brake,
+            stops: stops.map(|form| form.stops(limits.travel_m)),
+            start_m: mechanics.start_m,
+            motor_zero_m: encoders.motor_zero_m,
+            load_zero_m: encoders.load_zero_m,
+        })
+    }
+
+    fn check_brake(&self, part: &Range<usize>, brake: &BrakeParameters) -> Result<(), MachineError> {
+        self.range(part, "rated_force_n", brake.rated_force_n, 1.0e-3, 1.0e6)?;
+        self.range(part, "open_s", brake.open_s, 0.0, 1.0)?;
+        self.range(part, "close_s", brake.close_s, 0.0, 1.0)?;
+        self.range(part, "rise_s", brake.rise_s, 0.0, brake.close_s)
+    }
+
+    /// The sub-step has to resolve the stop as well: ω · dt below one half, and no more than half of the velocity
+    /// damped away in one.
+    fn check_stops(
+        &self,
+        part: &Range<usize>,
+        form: &StopsForm,
+        mechanics: &MechanicsForm,
+        limits: &Limits,
+    ) -> Result<(), MachineError> {
+        let (mass, dt_s) = (mechanics.table_mass_kg, crate::axis::SUB_STEP_S);
+        self.range(part, "stop_m", form.position_m(limits.travel_m), mechanics.start_m.abs(), 10.1)?;
+        let stiffest = 0.25 * mass / (dt_s * dt_s);
+        self.range(part, "stop_stiffness_n_per_m", form.stop_stiffness_n_per_m, 1.0e3, stiffest)?;
+        self.range(part, "stop_damping_n_s_per_m", form.stop_damping_n_s_per_m, 0.0, 0.5 * mass / dt_s)
     }
 
     fn check_maxwell(&self, part: &Range<usize>, stiffness: &[f64], share: &[f64]) -> Result<(), MachineError> {
@@ -589,6 +656,7 @@ fn parameters(
     encoders: &EncodersForm,
     actuator: &ActuatorForm,
     actual: ActualForm,
+    mounting: Mounting,
 ) -> AxisParameters {
     AxisParameters {
         mechanics: crate::mechanics::Mechanics {
@@ -607,6 +675,7 @@ fn parameters(
         current_loop_time_constant_s: actuator.current_loop_time_constant_s,
         force_limit_n: actuator.force_limit_n,
         force_noise_n: actuator.force_noise_n,
+        mounting,
     }
 }
 
@@ -625,7 +694,36 @@ mod tests {
         let machine = Machine::reference();
         assert_eq!(machine.axes.len(), 2);
         assert_eq!(machine.axes[0].actual, machine.axes[1].actual);
-        assert_eq!((machine.axes_per_bus(), machine.bus_load_per_mille()), (1, 474));
+        assert_eq!((machine.axes_per_bus(), machine.bus_load_per_mille()), (1, 488));
+    }
+
+    #[test]
+    fn a_vertical_axis_says_so_in_its_file() {
+        let text = Machine::reference_text()
+            .replacen("backlash_m = 0.0", "backlash_m = 0.0\ngravity_n = -2500.0\nstart_m = 0.1", 1)
+            .replacen("[axis.actuator]", "[axis.brake]\nrated_force_n = 4000.0\n[axis.stops]\n[axis.actuator]", 1);
+        let machine = Machine::parse("m.toml", &text).unwrap();
+        let mounting = machine.axes[0].actual.mounting;
+        let brake = BrakeParameters { rated_force_n: 4000.0, open_s: 0.030, close_s: 0.040, rise_s: 0.0 };
+        assert_eq!((mounting.gravity_n, mounting.start_m, mounting.brake), (-2500.0, 0.1, Some(brake)));
+        assert_eq!(mounting.stops.map(|stops| stops.position_m), Some(0.255), "5 mm behind the travel");
+        assert_eq!(machine.axes[1].actual.mounting, mounting, "Y is like X");
+        assert_eq!(Machine::reference().axes[0].actual.mounting, Mounting::default());
+    }
+
+    #[test]
+    fn a_brake_or_a_stop_that_cannot_be_is_an_error_with_key_and_line() {
+        let with = |lines: &str| error_of("[axis.actuator]", &format!("{lines}\n[axis.actuator]"));
+        let at = Machine::reference_text().lines().position(|line| line == "[axis.actuator]").unwrap() + 1;
+        let brake = with("[axis.brake]\nrated_force_n = 0.0");
+        assert!(brake.starts_with(&format!("m.toml:{}: rated_force_n: must be 0.001 to", at + 1)), "{brake}");
+        assert!(with("[axis.brake]\nrated_force_n = 1.0\nrise_s = 0.05").contains("rise_s: must be 0 to 0.04"));
+        assert!(with("[axis.brake]\nrated_force_n = 1.0\nopens_s = 0.05").contains("unknown field `opens_s`"));
+        assert!(with("[axis.brake]").contains("missing field `rated_force_n`"));
+        assert!(with("[axis.stops]\nstop_stiffness_n_per_m = 1e12").contains(": stop_stiffness_n_per_m: must be 1000"));
+        assert!(error_of("backlash_m = 0.0", "backlash_m = 0.0\nstart_m = 0.3").contains("start_m: must be -0.25"));
+        assert!(error_of("backlash_m = 0.0", "backlash_m = 0.0\ngravity_n = 1e7").contains("gravity_n: must be"));
+        assert!(error_of("1048576", "1048576\nload_zero_m = 1e3").contains("load_zero_m: must be -100 to 100"));
     }
 
     #[test]

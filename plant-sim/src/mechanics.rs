@@ -1,14 +1,15 @@
 //! Two masses on a ball screw, everything expressed at the table in SI units.
 //!
 //! ```text
-//! M1 ẍ1 = F − Fs − F_ripple(x1) − F_offset            motor, coupling, screw
-//! M2 ẍ2 = Fs − F_friction                             table
+//! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; the brake is on the shaft
+//! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table
 //! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: only pushing where there is a gap, and damping only in contact
 //! ```
 //!
-//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken implicitly. The screw is
-//! integrated at second order, the bristles' coefficients lag by half a sub-step and make the whole first order: 6·10⁻⁵ of the way at the sub-step that is
-//! used (`tests/mechanics.rs`, against a high-accuracy integration).
+//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken
+//! implicitly. The screw is integrated at second order, the bristles' coefficients lag by half a sub-step and make the
+//! whole first order: 6·10⁻⁵ of the way at the sub-step that is used (`tests/mechanics.rs`, against a high-accuracy
+//! integration).
 
 use crate::friction::{Friction, Table};
 
@@ -49,6 +50,8 @@ pub struct Drive {
     pub table_n: f64,
     /// Factor on the friction level at the table.
     pub friction_factor: f64,
+    /// Force up to which a brake holds the motor, N; zero without one.
+    pub brake_n: f64,
 }
 
 impl Mechanics {
@@ -90,8 +93,7 @@ impl Mechanics {
         }
     }
 
-    /// Velocities after the kick: damping trapezoidal, friction as its law says. Eliminating the motor leaves one equation for the table with an
-    /// effective mass and a free velocity.
+    /// Velocities after the kick: damping trapezoidal, friction as its law says, the brake as [`Kick::braked`] does.
     fn solve(
         &self,
         motion: &mut Motion,
@@ -108,12 +110,56 @@ impl Mechanics {
         // m1 v1' = p1 − half (v1' − v2'),  m2 v2' = p2 + half (v1' − v2') − friction
         let p1 = m1 * motion.motor_m_per_s + dt_s * (drive.motor_n - spring) - half * relative;
         let p2 = m2 * motion.table_m_per_s + dt_s * (spring + drive.table_n) + half * relative;
+        let kick = Kick { m1, m2, p1, p2, half, factor: drive.friction_factor, dt_s };
+        if drive.brake_n == 0.0 {
+            kick.free(motion, friction);
+        } else {
+            kick.braked(motion, friction, drive.brake_n);
+        }
+    }
+}
+
+/// One sub-step's equations for the two velocities: masses, momenta with everything explicit in them, implicit damping.
+#[derive(Clone, Copy)]
+struct Kick {
+    m1: f64,
+    m2: f64,
+    p1: f64,
+    p2: f64,
+    half: f64,
+    factor: f64,
+    dt_s: f64,
+}
+
+impl Kick {
+    /// Eliminating the motor leaves one equation for the table with an effective mass and a free velocity.
+    fn free(self, motion: &mut Motion, friction: &mut Friction) {
+        let Self { m1, m2, p1, p2, half, .. } = self;
         let mass = m2 + half * m1 / (m1 + half);
         let free = (p2 + half * p1 / (m1 + half)) / mass;
-        let factor = drive.friction_factor;
-        let table = Table { velocity: motion.table_m_per_s, free_velocity: free, mass_kg: mass, dt_s, factor };
-        motion.table_m_per_s = friction.advance(table);
+        motion.table_m_per_s = friction.advance(self.table(motion.table_m_per_s, free, mass));
         motion.motor_m_per_s = (p1 + half * motion.table_m_per_s) / (m1 + half);
+    }
+
+    /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its force; else it slips
+    /// against that force. The motor's velocity grows with its momentum, so a slipping shaft keeps its direction.
+    fn braked(self, motion: &mut Motion, friction: &mut Friction, brake_n: f64) {
+        let bristles = friction.state();
+        let mass = self.m2 + self.half;
+        let held = friction.advance(self.table(motion.table_m_per_s, self.p2 / mass, mass));
+        let stopping = self.p1 + self.half * held;
+        let most = brake_n * self.dt_s;
+        if stopping.abs() <= most {
+            motion.table_m_per_s = held;
+            motion.motor_m_per_s = 0.0;
+            return;
+        }
+        friction.restore(bristles);
+        Self { p1: self.p1 - most * stopping.signum(), ..self }.free(motion, friction);
+    }
+
+    fn table(&self, velocity: f64, free_velocity: f64, mass_kg: f64) -> Table {
+        Table { velocity, free_velocity, mass_kg, dt_s: self.dt_s, factor: self.factor }
     }
 }
 

@@ -36,7 +36,8 @@ fn push(
 ) {
     let steps = (seconds / dt_s).round() as usize;
     for step in 0..steps {
-        let drive = Drive { motor_n: force((step as f64 + 0.5) * dt_s), table_n: 0.0, friction_factor: 1.0 };
+        let drive =
+            Drive { motor_n: force((step as f64 + 0.5) * dt_s), table_n: 0.0, friction_factor: 1.0, brake_n: 0.0 };
         m.advance(motion, friction, drive, dt_s);
     }
 }

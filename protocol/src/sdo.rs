@@ -202,6 +202,8 @@ pub enum AbortCode {
     LengthTooLow = 0x0607_0013,
     /// Subindex does not exist.
     SubindexMissing = 0x0609_0011,
+    /// Value within its range, but not valid.
+    ValueInvalid = 0x0609_0030,
     /// Value above its range.
     ValueTooHigh = 0x0609_0031,
     /// Value below its range.
@@ -214,7 +216,7 @@ pub enum AbortCode {
 
 impl AbortCode {
     /// All codes that the servo sends.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::CommandUnknown,
         Self::WriteOnly,
         Self::ReadOnly,
@@ -223,6 +225,7 @@ impl AbortCode {
         Self::LengthTooHigh,
         Self::LengthTooLow,
         Self::SubindexMissing,
+        Self::ValueInvalid,
         Self::ValueTooHigh,
         Self::ValueTooLow,
         Self::GeneralError,
@@ -248,6 +251,7 @@ impl AbortCode {
             Some(Self::LengthTooHigh) => "value has too many bytes",
             Some(Self::LengthTooLow) => "value has too few bytes",
             Some(Self::SubindexMissing) => "subindex does not exist",
+            Some(Self::ValueInvalid) => "value not supported",
             Some(Self::ValueTooHigh) => "value above its range",
             Some(Self::ValueTooLow) => "value below its range",
             Some(Self::GeneralError) => "general error",

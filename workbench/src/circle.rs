@@ -11,6 +11,7 @@ use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::{Failure, Outcome};
 use crate::identify::write;
 use crate::interrupt::Interrupt;
+use crate::nodes::refuse_overload;
 use crate::plots::{self, Trace};
 use crate::progress;
 use crate::recording::{self, Part};
@@ -27,7 +28,11 @@ pub fn machine(arguments: &MachineArguments) -> Outcome<(Machine, Place)> {
         Some(path) => Machine::read(path)?,
         None => Machine::reference(),
     };
-    let place = arguments.can.clone().map_or(Place::InProcess, Place::Can);
+    let pace = arguments.pace.chosen();
+    let place = arguments.can.clone().map_or(Place::InProcess, |names| Place::Can { names, pace });
+    if arguments.can.is_some() {
+        refuse_overload(&machine, pace)?;
+    }
     Ok((machine, place))
 }
 

@@ -1,10 +1,12 @@
 //! `quadrant commission`: the main job, from recording to the circle with compensation.
 
 use std::path::{Path, PathBuf};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
-use identification::{Dataset, Identification};
+use identification::{Dataset, Identification, IdentificationError};
 use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
 use serde::Serialize;
 
 use crate::circle::{self, CircleReport, CircleRun};
@@ -20,7 +22,7 @@ use crate::progress;
 use crate::recording::{self, Part};
 use crate::report::{self, Page};
 use crate::run::{Place, Session};
-use crate::trajectory::{Circle, Move};
+use crate::trajectory::Circle;
 use crate::tune::{self, Tuned};
 
 /// The circle of commissioning: R 100 mm, F 2000 mm/min.
@@ -131,26 +133,49 @@ impl Bench<'_> {
         self.out.join(format!("records-{axis}"))
     }
 
+    /// Identifies every axis in a thread of its own: their records have nothing in common.
     fn identify(&self) -> Outcome<Vec<Identification>> {
-        let mut results = Vec::new();
-        for axis in &self.machine.axes {
-            let dataset = Dataset::read(&self.records(&axis.name), None, None)?;
-            progress::step(&format!("identifying axis {}", axis.name));
-            let result = identify_unless(self.interrupt, dataset)?;
+        let begin = |axis: &MachineAxis| Ok(begin(&axis.name, Dataset::read(&self.records(&axis.name), None, None)?));
+        let works = self.machine.axes.iter().map(begin).collect::<Outcome<Vec<_>>>()?;
+        let results = works.into_iter().map(|work| end(work, self.interrupt)).collect::<Outcome<Vec<_>>>()?;
+        for (axis, result) in self.machine.axes.iter().zip(&results) {
             println!("axis {}:", axis.name);
-            identify::print(&result);
-            results.push(result);
+            identify::print(result);
         }
         Ok(results)
     }
 }
 
+/// Records the axes of a machine and identifies them: the first half of the job. Writes the records below `out`.
+///
+/// # Errors
+/// Where a file or the machine is wrong, or the operator interrupts.
+pub fn identify_axes(
+    machine: &Machine,
+    place: &Place,
+    out: &Path,
+    interrupt: &Interrupt,
+) -> Outcome<Vec<Identification>> {
+    let bench = Bench { machine, place, circle: &fitting_circle(machine), out, interrupt };
+    bench.record()?;
+    bench.identify()
+}
+
+/// An identification that is being computed.
+type Work = JoinHandle<Result<Identification, IdentificationError>>;
+
+fn begin(axis: &str, dataset: Dataset) -> Work {
+    let axis = axis.to_owned();
+    std::thread::spawn(move || {
+        identification::identify(&dataset, &mut |text| progress::step(&format!("axis {axis}: {text}")))
+    })
+}
+
 /// How often the computation is asked whether it is done, and the operator whether he still wants it.
 const ASK_EVERY: Duration = Duration::from_millis(50);
 
-/// Identifies in a thread of its own: nothing moves meanwhile, so an interruption need not wait for the result.
-fn identify_unless(interrupt: &Interrupt, dataset: Dataset) -> Outcome<Identification> {
-    let work = std::thread::spawn(move || identification::identify(&dataset, &mut |text| progress::step(text)));
+/// Waits for a result. Nothing moves meanwhile, so an interruption need not wait for it.
+fn end(work: Work, interrupt: &Interrupt) -> Outcome<Identification> {
     while !work.is_finished() {
         interrupt.check()?;
         std::thread::sleep(ASK_EVERY);
@@ -322,20 +347,19 @@ pub fn reversal_rows(
 }
 
 fn about_reversal(session: &mut Session<'_>, machine: &Machine, circle: &Circle) -> Outcome<Vec<(f64, AxisCycle)>> {
+    // One turn is enough, and it ends at rest.
+    let circle = Circle { turns: 1, ..*circle };
     let rest = vec![0.0; machine.axes.len() - 1];
     let setpoints = |x: f64| [vec![x], rest.clone()].concat();
     let omega = circle.feed_m_per_s / circle.radius_m;
     session.go_to(&setpoints(circle.at(0.0)[0]))?;
-    // To the second reversal of X (three quarters of a turn), and a little on.
-    let reaches = |turns: f64| {
-        let mut milliseconds = (0_u32..1_000_000).map(|i| 1.0e-3 * f64::from(i));
-        milliseconds.find(|t| circle.angle_rad(*t) > turns * std::f64::consts::TAU).unwrap_or(0.0)
-    };
-    let (reversal_s, end_s) = (reaches(0.75), reaches(0.875));
+    // The second reversal of X is at three quarters of a turn.
+    let mut milliseconds = (0_u32..1_000_000).map(|i| 1.0e-3 * f64::from(i));
+    let reversal_s = milliseconds.find(|t| circle.angle_rad(*t) > 0.75 * std::f64::consts::TAU).unwrap_or(0.0);
     let window_s = (0.25 / omega).min(0.6);
     let mut rows = Vec::new();
     session.follow(
-        end_s,
+        circle.duration_s(),
         |time_s| setpoints(circle.at(time_s)[0]),
         |time_s, axes| {
             if (time_s - reversal_s).abs() <= window_s {
@@ -343,8 +367,6 @@ fn about_reversal(session: &mut Session<'_>, machine: &Machine, circle: &Circle)
             }
         },
     )?;
-    let back = Move::new(&setpoints(circle.at(end_s)[0]), &setpoints(0.0), 0.1, 1.0);
-    session.follow(back.duration_s(), |time_s| back.at(time_s), |_, _| ())?;
     Ok(rows)
 }
 

@@ -1,12 +1,14 @@
-//! From SI gains to the drive's fixed-point parameters: the one place where physical units meet machine units.
+//! From SI to the drive's parameters: integer steps of physical units, as the object table states them.
 //!
-//! Position counts are 10 nm, time is the control cycle, torque is µN·m at the motor: `T = F · lead / 2π`. Every value is rounded to nearest
-//! and checked against the range of its object, so that a gain that the drive cannot hold is an error that names the key of the machine file.
+//! The drive itself turns them into machine units of the set's cycle time. Forces become motor torques here, `T = F · lead / 2π`. Every value
+//! is rounded to its step and checked against the range of its object, and the whole set against the drive's own check, so that a value that the
+//! drive cannot hold is an error that names the key of the machine file.
 
 use std::f64::consts::TAU;
 
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use servo::objects::{Entry, Parameter, TABLE};
+use servo::parameters::ParameterSet;
 
 use crate::compensation::{AxisCompensation, Compensation};
 use crate::error::{Failure, Outcome};
@@ -19,88 +21,154 @@ pub const FINE_PER_COUNT: f64 = 256.0;
 /// Raw values of a parameter set, in the order of download.
 pub type Download = Vec<(&'static Entry, i32)>;
 
-struct Scaling {
-    period_s: f64,
-    micro_nm_per_newton: f64,
-}
-
-impl Scaling {
-    /// 10 nm per cycle, in m/s.
-    fn velocity(&self, m_per_s: f64) -> f64 {
-        m_per_s * self.period_s / COUNT_M
-    }
-
-    fn acceleration(&self, m_per_s2: f64) -> f64 {
-        m_per_s2 * self.period_s * self.period_s / COUNT_M
-    }
-
-    fn torque(&self, newton: f64) -> f64 {
-        newton * self.micro_nm_per_newton
-    }
-}
-
 /// The whole parameter set of an axis.
 ///
 /// # Errors
 /// [`Failure`] that names the key of the machine file or of the compensation whose value the drive cannot hold.
 pub fn parameters(axis: &MachineAxis, period_s: f64, compensation: &AxisCompensation) -> Outcome<Download> {
-    let scaling = Scaling { period_s, micro_nm_per_newton: 1.0e6 * axis.actual.lead_m_per_rev / TAU };
-    let mut set = Vec::new();
-    loop_gains(&mut set, axis, &scaling)?;
-    encoder(&mut set, axis)?;
-    filter(&mut set, axis, period_s)?;
-    limits(&mut set, axis, &scaling)?;
-    compensation_values(&mut set, compensation, &scaling)?;
-    Ok(set)
+    let mut set = Set { values: Vec::new(), torque_per_newton: axis.actual.lead_m_per_rev / TAU };
+    set.cycle_time(period_s)?;
+    set.loop_gains(axis, period_s)?;
+    set.encoder(axis)?;
+    set.filter(axis, period_s)?;
+    set.limits(axis)?;
+    set.compensation(compensation)?;
+    set.checked()
 }
 
-fn loop_gains(set: &mut Download, axis: &MachineAxis, scaling: &Scaling) -> Outcome<()> {
-    let gains = &axis.gains;
-    let inertia = axis.actual.mechanics.motor_inertia_kg + axis.actual.mechanics.table_mass_kg;
-    let source = match gains.position_sensor {
-        PositionSensor::Motor => 0.0,
-        PositionSensor::Load => 1.0,
-    };
-    // N per m/s, as torque per count and cycle.
-    let velocity_gain = scaling.torque(inertia * TAU * gains.velocity_bandwidth_hz) * COUNT_M / scaling.period_s;
-    let integral = velocity_gain * TAU * gains.velocity_integral_hz * scaling.period_s;
-    let acceleration = scaling.torque(inertia) * COUNT_M / (scaling.period_s * scaling.period_s);
-    put(set, Parameter::PositionSource, "position_sensor", source)?;
-    put(
-        set,
-        Parameter::PositionGain,
-        "position_gain_per_s",
-        gains.position_gain_per_s * scaling.period_s * two_to(24),
-    )?;
-    put(set, Parameter::VelocityGain, "velocity_bandwidth_hz", velocity_gain * two_to(12))?;
-    put(set, Parameter::IntegralGain, "velocity_integral_hz", integral * two_to(12))?;
-    put(set, Parameter::AccelerationGain, "motor_inertia_kg", acceleration * two_to(8))?;
-    put(set, Parameter::VelocityFilter, "velocity_filter", gains.velocity_filter * two_to(30))?;
-    put(set, Parameter::TorqueLimit, "force_limit_n", scaling.torque(axis.actual.force_limit_n))?;
-    put(set, Parameter::RatedTorque, "force_limit_n", (scaling.torque(axis.actual.force_limit_n) / 1000.0).max(1.0))
+/// A set that is being made: each value with the key that it comes from.
+struct Set {
+    values: Vec<(&'static Entry, &'static str, i32)>,
+    torque_per_newton: f64,
 }
 
-fn encoder(set: &mut Download, axis: &MachineAxis) -> Outcome<()> {
-    let way = axis.actual.lead_m_per_rev / f64::from(axis.actual.motor_encoder_counts_per_rev) / COUNT_M;
-    put(set, Parameter::WayWhole, "motor_counts_per_rev", way.floor())?;
-    put(set, Parameter::WayFraction, "motor_counts_per_rev", (way.fract() * two_to(31)).min(two_to(31) - 1.0))
+impl Set {
+    /// Takes a value in SI units.
+    fn put(&mut self, parameter: Parameter, key: &'static str, si: f64) -> Outcome<()> {
+        let entry = TABLE.iter().find(|entry| entry.parameter == parameter);
+        let entry = entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
+        let rounded = (si * entry.unit.per_si as f64).round();
+        if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
+            return Err(Failure::new(format!(
+                "{key}: the drive cannot hold this value ({} [{}] takes {} to {}, wanted {rounded}); choose another one",
+                entry.name, entry.unit.text, entry.min, entry.max
+            )));
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "within an i32 range, checked above")]
+        self.values.push((entry, key, rounded as i32));
+        Ok(())
+    }
+
+    /// Asks the drive's own code whether the set goes together and fits its machine units.
+    fn checked(self) -> Outcome<Download> {
+        let mut set = ParameterSet::default();
+        for (entry, _, value) in &self.values {
+            set.set(entry.parameter, *value);
+        }
+        if let Err(error) = set.settings() {
+            let guilty = self.values.iter().find(|(entry, ..)| entry.parameter == error.parameter());
+            let key = guilty.map_or("parameter set", |(_, key, _)| key);
+            return Err(Failure::new(format!("{key}: the drive cannot hold this value: {}", error.text())));
+        }
+        Ok(self.values.into_iter().map(|(entry, _, value)| (entry, value)).collect())
+    }
+
+    /// The drive counts whole µs.
+    fn cycle_time(&mut self, period_s: f64) -> Outcome<()> {
+        let period_us = period_s * 1.0e6;
+        if (period_us - period_us.round()).abs() > 1.0e-3 {
+            return Err(Failure::new(format!("period_s: {period_us} us is not a whole number of microseconds")));
+        }
+        self.put(Parameter::CyclePeriod, "period_s", period_s)
+    }
+
+    fn loop_gains(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
+        let gains = &axis.gains;
+        let inertia_kg = axis.actual.mechanics.motor_inertia_kg + axis.actual.mechanics.table_mass_kg;
+        let source = match gains.position_sensor {
+            PositionSensor::Motor => 0.0,
+            PositionSensor::Load => 1.0,
+        };
+        let limit_nm = axis.actual.force_limit_n * self.torque_per_newton;
+        let filter_s = filter_time_constant(gains.velocity_filter, period_s);
+        self.put(Parameter::PositionSource, "position_sensor", source)?;
+        self.put(Parameter::PositionGain, "position_gain_per_s", gains.position_gain_per_s)?;
+        self.put(Parameter::Inertia, "motor_inertia_kg", inertia_kg * self.torque_per_newton)?;
+        self.put(Parameter::VelocityBandwidth, "velocity_bandwidth_hz", gains.velocity_bandwidth_hz)?;
+        self.put(Parameter::IntegralCorner, "velocity_integral_hz", gains.velocity_integral_hz)?;
+        self.put(Parameter::VelocityFilterTime, "velocity_filter", filter_s)?;
+        self.put(Parameter::TorqueLimit, "force_limit_n", limit_nm)?;
+        self.put(Parameter::RatedTorque, "force_limit_n", limit_nm.max(1.0e-3))
+    }
+
+    fn encoder(&mut self, axis: &MachineAxis) -> Outcome<()> {
+        let increments = f64::from(axis.actual.motor_encoder_counts_per_rev);
+        self.put(Parameter::Feed, "lead_m_per_rev", axis.actual.lead_m_per_rev)?;
+        self.put(Parameter::EncoderIncrements, "motor_counts_per_rev", increments)
+    }
+
+    fn filter(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
+        let (coefficients, key) = torque_filter(axis, period_s)?;
+        let places =
+            [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
+        places.into_iter().zip(coefficients).try_for_each(|(place, value)| self.put(place, key, value))?;
+        self.put(Parameter::FilterPeriod, key, period_s)
+    }
+
+    /// The ramps brake as hard as the axis may; the travel is the software limit.
+    fn limits(&mut self, axis: &MachineAxis) -> Outcome<()> {
+        let limits = &axis.limits;
+        let (acceleration, key) = (limits.acceleration_m_per_s2, "acceleration_m_per_s2");
+        self.put(Parameter::VelocityLimit, "velocity_m_per_s", limits.velocity_m_per_s)?;
+        self.put(Parameter::AccelerationLimit, key, acceleration)?;
+        self.put(Parameter::QuickStopDeceleration, key, acceleration)?;
+        self.put(Parameter::SlowDownDeceleration, key, acceleration)?;
+        self.put(Parameter::PositionMin, "travel_m", -limits.travel_m)?;
+        self.put(Parameter::PositionMax, "travel_m", limits.travel_m)?;
+        self.put(Parameter::EncoderJumpLimit, "encoder jump", ENCODER_JUMP_M)?;
+        self.put(Parameter::FollowingErrorWindow, "following error window", FOLLOWING_ERROR_M)
+    }
+
+    fn compensation(&mut self, compensation: &AxisCompensation) -> Outcome<()> {
+        let (mut coulomb_n, mut height, mut constant_s, mut delay_s) = (0.0, 0.0, 0.0, 0.0);
+        match compensation.reversal {
+            Compensation::None => {}
+            Compensation::Coulomb { force_n } => coulomb_n = force_n,
+            Compensation::Pulse(pulse) => {
+                (height, constant_s, delay_s) = (pulse.height_m_per_s, pulse.time_constant_s, pulse.start_delay_s);
+            }
+        }
+        self.put(Parameter::CoulombTorque, "coulomb force_n", coulomb_n * self.torque_per_newton)?;
+        self.put(Parameter::PulseHeight, "pulse height_m_per_s", height)?;
+        self.put(Parameter::PulseTime, "pulse time_constant_s", constant_s)?;
+        self.put(Parameter::PulseStartDelay, "pulse start_delay_s", delay_s)?;
+        self.put(Parameter::BacklashGap, "backlash_m", compensation.backlash_m)
+    }
 }
+
+/// An encoder may jump by this without being implausible: it leaves room for a gap that closes.
+const ENCODER_JUMP_M: f64 = 1.0e-4;
+/// Following error window.
+const FOLLOWING_ERROR_M: f64 = 2.0e-3;
+
+/// The machine file gives the velocity filter as share α of the new value: α = 1 − exp(−T/τ), so τ = −T / ln(1 − α). No filter: zero.
+fn filter_time_constant(share: f64, period_s: f64) -> f64 {
+    if share < 1.0 { -period_s / (-share).ln_1p() } else { 0.0 }
+}
+
+/// Coefficients `[b0, b1, b2, a1, a2]` of the torque filter, with the key that asks for it.
+type TorqueFilter = ([f64; 5], &'static str);
 
 /// Second-order filter by the bilinear transform: low-pass with Q = 1/√2, notch with Q = 1 (RBJ audio EQ cookbook).
-fn filter(set: &mut Download, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
-    let (coefficients, key) = match (axis.gains.torque_low_pass_hz, axis.gains.torque_notch_hz) {
-        (None, None) => return Ok(()),
+fn torque_filter(axis: &MachineAxis, period_s: f64) -> Outcome<TorqueFilter> {
+    match (axis.gains.torque_low_pass_hz, axis.gains.torque_notch_hz) {
+        (None, None) => Ok(([1.0, 0.0, 0.0, 0.0, 0.0], "torque filter")),
         (Some(_), Some(_)) => {
-            return Err(Failure::new(
-                "torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one",
-            ));
+            Err(Failure::new("torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one"))
         }
-        (Some(hz), None) => (low_pass(hz, period_s), "torque_low_pass_hz"),
-        (None, Some(hz)) => (notch(hz, period_s), "torque_notch_hz"),
-    };
-    let places =
-        [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
-    places.into_iter().zip(coefficients).try_for_each(|(place, value)| put(set, place, key, value * two_to(29)))
+        (Some(hz), None) => Ok((low_pass(hz, period_s), "torque_low_pass_hz")),
+        (None, Some(hz)) => Ok((notch(hz, period_s), "torque_notch_hz")),
+    }
 }
 
 fn low_pass(hz: f64, period_s: f64) -> [f64; 5] {
@@ -117,97 +185,93 @@ fn notch(hz: f64, period_s: f64) -> [f64; 5] {
     [1.0 / a0, -2.0 * cos / a0, 1.0 / a0, 2.0 * cos / a0, (alpha - 1.0) / a0]
 }
 
-/// An encoder may jump by this without being implausible: it leaves room for a gap that closes.
-const ENCODER_JUMP_M: f64 = 1.0e-4;
-/// Following error window.
-const FOLLOWING_ERROR_M: f64 = 2.0e-3;
-
-fn limits(set: &mut Download, axis: &MachineAxis, scaling: &Scaling) -> Outcome<()> {
-    let limits = &axis.limits;
-    let stop_cycles = 1.5 * limits.velocity_m_per_s / limits.acceleration_m_per_s2 / scaling.period_s;
-    put(set, Parameter::VelocityLimit, "velocity_m_per_s", scaling.velocity(limits.velocity_m_per_s) * two_to(12))?;
-    put(
-        set,
-        Parameter::AccelerationLimit,
-        "acceleration_m_per_s2",
-        scaling.acceleration(limits.acceleration_m_per_s2) * two_to(12),
-    )?;
-    put(
-        set,
-        Parameter::StopDeceleration,
-        "acceleration_m_per_s2",
-        scaling.acceleration(limits.acceleration_m_per_s2) * two_to(12),
-    )?;
-    put(set, Parameter::StopCycles, "velocity_m_per_s", stop_cycles.min(10_000.0))?;
-    put(set, Parameter::EncoderJumpLimit, "encoder jump", ENCODER_JUMP_M / COUNT_M)?;
-    put(set, Parameter::FollowingErrorWindow, "following error window", FOLLOWING_ERROR_M / COUNT_M)
-}
-
-fn compensation_values(set: &mut Download, compensation: &AxisCompensation, scaling: &Scaling) -> Outcome<()> {
-    let (mut coulomb, mut height, mut decay, mut delay) = (0.0, 0.0, 0.0, 0.0);
-    match compensation.reversal {
-        Compensation::None => {}
-        Compensation::Coulomb { force_n } => coulomb = scaling.torque(force_n),
-        Compensation::Pulse(pulse) => {
-            height = scaling.velocity(pulse.height_m_per_s) * two_to(12);
-            decay = (-scaling.period_s / pulse.time_constant_s).exp() * two_to(30);
-            delay = pulse.start_delay_s / scaling.period_s;
-        }
-    }
-    put(set, Parameter::CoulombTorque, "coulomb force_n", coulomb)?;
-    put(set, Parameter::PulseAmplitude, "pulse height_m_per_s", height)?;
-    put(set, Parameter::PulseDecay, "pulse time_constant_s", decay)?;
-    put(set, Parameter::PulseStartDelay, "pulse start_delay_s", delay)?;
-    let half_gap = 0.5 * compensation.backlash_m / COUNT_M * FINE_PER_COUNT;
-    put(set, Parameter::BacklashHalfGap, "backlash_m", half_gap)
-}
-
-fn two_to(bits: i32) -> f64 {
-    2.0_f64.powi(bits)
-}
-
-fn put(set: &mut Download, parameter: Parameter, key: &str, value: f64) -> Outcome<()> {
-    let entry = TABLE.iter().find(|entry| entry.parameter == parameter);
-    let entry = entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
-    let rounded = value.round();
-    if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
-        return Err(Failure::new(format!(
-            "{key}: the drive cannot hold this value ({} [{}] takes {} to {}, wanted {rounded}); choose a smaller one, or other units",
-            entry.name, entry.unit, entry.min, entry.max
-        )));
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "within an i32 range, checked above")]
-    set.push((entry, rounded as i32));
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use plant_sim::Machine;
+    use servo::settings::Settings;
 
-    fn raw(set: &Download, parameter: Parameter) -> f64 {
-        f64::from(set.iter().find(|(entry, _)| entry.parameter == parameter).unwrap().1)
+    fn settings(machine: &Machine, compensation: &AxisCompensation) -> Settings {
+        let mut set = ParameterSet::default();
+        for (entry, value) in parameters(&machine.axes[0], machine.period_s, compensation).unwrap() {
+            set.set(entry.parameter, value);
+        }
+        set.settings().unwrap()
+    }
+
+    fn assert_same(what: &str, got: f64, wanted: f64) {
+        assert!((got / wanted - 1.0).abs() < 1.0e-6, "{what}: {got}, wanted {wanted}");
     }
 
     #[test]
     fn the_reference_gains_survive_fixed_point_to_a_millionth() {
         let machine = Machine::reference();
-        let set = parameters(&machine.axes[0], machine.period_s, &AxisCompensation::default()).unwrap();
-        // Back to SI: N per (m/s) and kg.
+        let cascade = settings(&machine, &AxisCompensation::default()).config.cascade;
+        // Back to SI: N per (m/s), kg.
         let newton_per_micro_nm = TAU / 0.010 / 1.0e6;
-        let kp = raw(&set, Parameter::VelocityGain) / two_to(12) * newton_per_micro_nm * 1.0e-3 / COUNT_M;
-        let kg = raw(&set, Parameter::AccelerationGain) / two_to(8) * newton_per_micro_nm * 1.0e-6 / COUNT_M;
-        assert!((kp / (931.65 * TAU * 30.0) - 1.0).abs() < 1.0e-6, "{kp}");
-        assert!((kg / 931.65 - 1.0).abs() < 1.0e-6, "{kg}");
-        assert!((raw(&set, Parameter::PositionGain) / two_to(24) - 0.040).abs() < 1.0e-7);
+        let per_velocity = newton_per_micro_nm * machine.period_s / COUNT_M;
+        let kp = cascade.velocity_gain.0.to_num::<f64>() * per_velocity;
+        let ki = cascade.integral_gain.0.to_num::<f64>() * per_velocity / machine.period_s;
+        let kg = cascade.acceleration_gain.0.to_num::<f64>() * per_velocity * machine.period_s;
+        assert_same("Kp", kp, 931.65 * TAU * 30.0);
+        assert_same("Ki", ki, 931.65 * TAU * 30.0 * TAU * 7.5);
+        assert_same("Ja", kg, 931.65);
+        assert_same("Kv", cascade.position_gain.0.to_num::<f64>() / machine.period_s, 40.0);
+        assert_same("velocity filter", cascade.velocity_filter.to_num(), 0.6);
+        assert_same("torque limit", cascade.torque_limit.0.to_num::<f64>() * newton_per_micro_nm, 9000.0);
     }
 
     #[test]
-    fn a_gain_that_the_drive_cannot_hold_names_its_key() {
+    fn the_same_machine_keeps_its_si_gains_at_any_period() {
+        let mut machine = Machine::reference();
+        for period_s in [2.5e-4, 5.0e-4, 1.0e-3, 2.0e-3, 4.0e-3] {
+            machine.period_s = period_s;
+            let settings = settings(&machine, &AxisCompensation::default());
+            let per_velocity = TAU / 0.010 / 1.0e6 * period_s / COUNT_M;
+            let kp = settings.config.cascade.velocity_gain.0.to_num::<f64>() * per_velocity;
+            assert!((kp / (931.65 * TAU * 30.0) - 1.0).abs() < 2.0e-6, "{kp} at {period_s}");
+            let deceleration = settings.config.reference.quick_stop.deceleration.0.to_num::<f64>();
+            assert!((deceleration * COUNT_M / period_s / period_s / 5.0 - 1.0).abs() < 1.0e-5, "{deceleration}");
+        }
+    }
+
+    #[test]
+    fn the_pulse_is_that_of_the_file() {
+        let pulse = crate::compensation::Pulse { height_m_per_s: 1.0e-3, time_constant_s: 0.02, start_delay_s: 0.003 };
+        let compensation = AxisCompensation { reversal: Compensation::Pulse(pulse), backlash_m: 4.0e-5 };
+        let config = settings(&Machine::reference(), &compensation).config;
+        assert_same("height", config.pulse.amplitude.0.to_num(), 100.0);
+        assert_same("decay", config.pulse.decay.to_num(), (-0.05_f64).exp());
+        assert_eq!(config.pulse.start_delay_cycles, 3);
+        assert_same("half gap", config.backlash.half_gap.0.to_num(), 2000.0);
+    }
+
+    #[test]
+    fn a_value_beyond_the_range_of_its_object_names_its_key() {
         let mut machine = Machine::reference();
         machine.axes[0].gains.velocity_bandwidth_hz = 1.0e6;
         let error = parameters(&machine.axes[0], machine.period_s, &AxisCompensation::default()).unwrap_err();
         assert!(error.to_string().starts_with("velocity_bandwidth_hz: the drive cannot hold"), "{error}");
+    }
+
+    #[test]
+    fn a_value_beyond_the_machine_units_names_its_key() {
+        let machine = Machine::reference();
+        // 0.5 m/s are 10⁶ counts in 20 ms: more than the drive's velocities hold.
+        let mut axis = machine.axes[0].clone();
+        axis.gains.position_gain_per_s = 10.0;
+        let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
+        assert!(error.to_string().starts_with("velocity_m_per_s: the drive cannot hold"), "{error}");
+        axis.limits.velocity_m_per_s = 0.1;
+        axis.gains.position_gain_per_s = 100.0;
+        let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
+        assert!(error.to_string().starts_with("position_gain_per_s: the drive cannot hold"), "{error}");
+    }
+
+    #[test]
+    fn a_period_that_is_no_whole_number_of_microseconds_is_refused() {
+        let machine = Machine::reference();
+        let error = parameters(&machine.axes[0], 1.0e-3 / 3.0, &AxisCompensation::default()).unwrap_err();
+        assert!(error.to_string().starts_with("period_s: "), "{error}");
     }
 }

@@ -1,16 +1,16 @@
 //! The workbench's end of the buses: one trait, in process or on CAN interfaces.
 
-use std::cell::RefCell;
 use std::io;
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use bus::{BusLog, CanPort, InProcessBus};
+use bus::{BusLog, CanPort, InProcessBus, Shared};
 use plant_sim::node::Truth;
 use plant_sim::{Machine, PlantNode};
 use protocol::CanFrame;
 use protocol::cob::AxisIds;
+use quadrant_host::Pace;
 
+use crate::cli::PaceArguments;
 use crate::error::{Failure, Outcome};
 
 /// The buses of a machine, seen by the workbench.
@@ -29,7 +29,14 @@ pub trait Link {
     /// # Errors
     /// Where the interface is gone.
     fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>>;
-    /// A cycle begins: time passes.
+    /// Waits for a frame of the present cycle; `None` when the cycle does not wait any longer: in process and at clock pace at its end, in
+    /// lock-step over interfaces after some time ([`Interfaces::with_pace`]). Where nobody but silent nodes is waited for, `most` ends the wait
+    /// earlier.
+    ///
+    /// # Errors
+    /// Where the interface is gone.
+    fn receive_in_cycle(&mut self, bus: usize, most: Option<Duration>) -> Outcome<Option<CanFrame>>;
+    /// The next cycle begins.
     fn pass(&mut self, cycle: Duration);
     /// What the axis truly does, where an instrument can see it; `None` over a cable.
     fn truth(&self, axis: usize) -> Option<Truth>;
@@ -52,8 +59,9 @@ pub fn axis_ids(index: usize) -> Outcome<AxisIds> {
 pub struct InProcess {
     buses: Vec<InProcessBus>,
     bus_of: Vec<usize>,
-    plants: Vec<Rc<RefCell<PlantNode>>>,
-    servos: Vec<Rc<RefCell<servo::Servo>>>,
+    plants: Vec<Shared<PlantNode>>,
+    servos: Vec<Shared<servo::Servo>>,
+    period_us: u64,
 }
 
 impl InProcess {
@@ -62,7 +70,9 @@ impl InProcess {
     /// # Errors
     /// Beyond 16 axes.
     pub fn new(machine: &Machine, run: u64) -> Outcome<Self> {
-        let mut link = Self { buses: Vec::new(), bus_of: Vec::new(), plants: Vec::new(), servos: Vec::new() };
+        let period_us = micros(Duration::from_secs_f64(machine.period_s));
+        let mut link =
+            Self { buses: Vec::new(), bus_of: Vec::new(), plants: Vec::new(), servos: Vec::new(), period_us };
         let mut names: Vec<Option<&str>> = Vec::new();
         for (index, axis) in machine.axes.iter().enumerate() {
             let shared = names.iter().position(|name| name.is_some() && *name == axis.interface.as_deref());
@@ -74,10 +84,10 @@ impl InProcess {
             let ids = axis_ids(index)?;
             let plant =
                 PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, run, index));
-            let plant = Rc::new(RefCell::new(plant));
-            let servo = Rc::new(RefCell::new(servo::Servo::new(ids)));
-            link.buses[bus].add(Box::new(Rc::clone(&plant)));
-            link.buses[bus].add(Box::new(Rc::clone(&servo)));
+            let plant = Shared::new(plant);
+            let servo = Shared::new(servo::Servo::new(ids));
+            link.buses[bus].add(Box::new(plant.clone()));
+            link.buses[bus].add(Box::new(servo.clone()));
             link.plants.push(plant);
             link.servos.push(servo);
             link.bus_of.push(bus);
@@ -92,15 +102,19 @@ impl InProcess {
 
     /// The servo of an axis.
     #[must_use]
-    pub fn servo(&self, axis: usize) -> Rc<RefCell<servo::Servo>> {
-        Rc::clone(&self.servos[axis])
+    pub fn servo(&self, axis: usize) -> Shared<servo::Servo> {
+        self.servos[axis].clone()
     }
 
     /// The plant of an axis.
     #[must_use]
-    pub fn plant(&self, axis: usize) -> Rc<RefCell<PlantNode>> {
-        Rc::clone(&self.plants[axis])
+    pub fn plant(&self, axis: usize) -> Shared<PlantNode> {
+        self.plants[axis].clone()
     }
+}
+
+fn micros(duration: Duration) -> u64 {
+    u64::try_from(duration.as_micros()).unwrap_or(u64::MAX)
 }
 
 /// Seed of a plant's noise: the same for a plant process of its own, so that runs over vcan repeat those in process.
@@ -125,13 +139,18 @@ impl Link for InProcess {
     }
 
     fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>> {
-        let us = u64::try_from(timeout.as_micros()).unwrap_or(u64::MAX);
-        Ok(self.buses[bus].receive(us))
+        Ok(self.buses[bus].receive(micros(timeout)))
+    }
+
+    /// The end of the cycle is patience enough: nobody is late in process.
+    fn receive_in_cycle(&mut self, bus: usize, _most: Option<Duration>) -> Outcome<Option<CanFrame>> {
+        let bus = &mut self.buses[bus];
+        let begun_us = bus.cycle_start_us().unwrap_or(bus.now_us());
+        Ok(bus.receive_until(begun_us.saturating_add(self.period_us)))
     }
 
     fn pass(&mut self, cycle: Duration) {
-        let us = u64::try_from(cycle.as_micros()).unwrap_or(u64::MAX);
-        self.buses.iter_mut().for_each(|bus| bus.pass(us));
+        self.buses.iter_mut().for_each(|bus| bus.pass(micros(cycle)));
     }
 
     fn truth(&self, axis: usize) -> Option<Truth> {
@@ -158,6 +177,10 @@ pub struct Interfaces {
     logging: bool,
     begun: Instant,
     now_us: u64,
+    pace: Pace,
+    cycle_end: Option<Instant>,
+    /// What is left of the patience of the present cycle.
+    left: Duration,
 }
 
 impl Interfaces {
@@ -183,7 +206,41 @@ impl Interfaces {
         }
         let open = |name: &String| CanPort::open(name, &[]).map_err(|error| Failure::new(error.to_string()));
         let ports = names.iter().map(open).collect::<Outcome<Vec<_>>>()?;
-        Ok(Self { ports, names, bus_of, logs: Vec::new(), logging: false, begun: Instant::now(), now_us: 0 })
+        Ok(Self {
+            ports,
+            names,
+            bus_of,
+            logs: Vec::new(),
+            logging: false,
+            begun: Instant::now(),
+            now_us: 0,
+            pace: PaceArguments::default().chosen(),
+            cycle_end: None,
+            left: Duration::ZERO,
+        })
+    }
+
+    /// The same interfaces at another pace: that of the nodes.
+    #[must_use]
+    pub fn with_pace(self, pace: Pace) -> Self {
+        Self { pace, ..self }
+    }
+
+    /// How long a cycle waits for its frames. In lock-step half as long again as the nodes' deadline, so that a node that closes its cycle at the
+    /// deadline is heard, and does not begin the next one by its own timer meanwhile.
+    fn patience(&self) -> Duration {
+        match self.pace {
+            Pace::Lockstep { deadline } => deadline + deadline / 2,
+            Pace::Clock => self.cycle_end.map_or(Duration::ZERO, |end| end.saturating_duration_since(Instant::now())),
+        }
+    }
+
+    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that took too long moves it.
+    fn wait_for_the_clock(&mut self, cycle: Duration) {
+        let now = Instant::now();
+        let start = self.cycle_end.map_or(now, |end| end.max(now));
+        std::thread::sleep(start - now);
+        self.cycle_end = Some(start + cycle);
     }
 
     fn note(&mut self, bus: usize, frame: &CanFrame) {
@@ -220,9 +277,28 @@ impl Link for Interfaces {
         Ok(received)
     }
 
+    fn receive_in_cycle(&mut self, bus: usize, most: Option<Duration>) -> Outcome<Option<CanFrame>> {
+        if self.pace == Pace::Clock {
+            self.left = self.patience();
+        }
+        // A short wait on this bus takes what it lasted, and no more, from the patience with the others.
+        let allowed = most.map_or(self.left, |most| most.min(self.left));
+        let mut left = allowed;
+        let received = self.ports[bus].receive_within(&mut left).map_err(|error| self.failed(bus, &error))?;
+        self.left = self.left.saturating_sub(allowed.saturating_sub(left));
+        if let Some(frame) = received {
+            self.note(bus, &frame);
+        }
+        Ok(received)
+    }
+
     /// The log's times are those of the begin of each cycle: reading the clock for every frame costs a third of a lock-step cycle where it is a system call.
-    fn pass(&mut self, _cycle: Duration) {
-        self.now_us = u64::try_from(self.begun.elapsed().as_micros()).unwrap_or(u64::MAX);
+    fn pass(&mut self, cycle: Duration) {
+        if self.pace == Pace::Clock {
+            self.wait_for_the_clock(cycle);
+        }
+        self.left = self.patience();
+        self.now_us = micros(self.begun.elapsed());
     }
 
     fn truth(&self, _axis: usize) -> Option<Truth> {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use plant_sim::Machine;
+use quadrant_host::Pace;
 
 use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
@@ -18,8 +19,13 @@ pub enum Place {
     /// Servo and plant in this process.
     #[default]
     InProcess,
-    /// On CAN interfaces; several names separated by commas.
-    Can(String),
+    /// On CAN interfaces.
+    Can {
+        /// Their names, separated by commas.
+        names: String,
+        /// Who beats the time.
+        pace: Pace,
+    },
 }
 
 /// A machine that moves, and stops as one where an axis has trouble or the operator wants it.
@@ -44,6 +50,14 @@ impl Link for Box<dyn Link> {
 
     fn receive(&mut self, bus: usize, timeout: std::time::Duration) -> Outcome<Option<protocol::CanFrame>> {
         self.as_mut().receive(bus, timeout)
+    }
+
+    fn receive_in_cycle(
+        &mut self,
+        bus: usize,
+        most: Option<std::time::Duration>,
+    ) -> Outcome<Option<protocol::CanFrame>> {
+        self.as_mut().receive_in_cycle(bus, most)
     }
 
     fn pass(&mut self, cycle: std::time::Duration) {
@@ -81,7 +95,7 @@ impl<'a> Session<'a> {
     pub fn connect(machine: &'a Machine, place: &Place, run: u64, interrupt: &Interrupt) -> Outcome<Self> {
         let link: Box<dyn Link> = match place {
             Place::InProcess => Box::new(InProcess::new(machine, run)?),
-            Place::Can(names) => Box::new(Interfaces::open(machine, names)?),
+            Place::Can { names, pace } => Box::new(Interfaces::open(machine, names)?.with_pace(*pace)),
         };
         Self::on(link, machine, interrupt)
     }

@@ -209,7 +209,10 @@ fn a_fault_in_the_middle_of_commissioning_leaves_the_record_so_far_and_says_wher
     // The slow bursts need 520 N for friction; the fast ones 3.3 kN more, which the motor has not got.
     let weak = Machine::reference_text().replace("force_limit_n = 9000.0", "force_limit_n = 1500.0");
     std::fs::write(&path, weak).unwrap();
-    let arguments = Commission { machine: MachineArguments { machine: Some(path), can: None }, out: out.clone() };
+    let arguments = Commission {
+        machine: MachineArguments { machine: Some(path), ..MachineArguments::default() },
+        out: out.clone(),
+    };
     let text = commission::command(&arguments, &Interrupt::never()).unwrap_err().to_string();
     assert!(text.contains("FollowingError") && text.contains("; the other axes were stopped; "), "{text}");
     let wanted = format!("what was recorded is in {}; log: {0}/records.candump.log", out.display());

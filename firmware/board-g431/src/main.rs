@@ -1,8 +1,9 @@
 //! The drive node on ST's B-G431B-ESC1 (STM32G431CB).
 //!
-//! The same sans-I/O node as on the host: frames from FDCAN1 (PA11 receive, PB9 transmit) go in, what it returns goes out. One task: receive with the next
-//! tick as timeout, step, send. Deadline contract: from the arrival of the frame that completes a cycle to the torque frame in the transmit FIFO there is no waiting
-//! but for a free FIFO slot; the computation is bounded because the node has no loop over anything but its own tables.
+//! The same sans-I/O node as on the host, at clock pace: frames from FDCAN1 (PA11 receive, PB9 transmit) and the time go in, what it says goes out. One task
+//! waits for a frame or for the time when the node is due ([`Station::wake_at_us`]: the deadline of a cycle, its own SYNC timer, a heartbeat). That time
+//! is absolute, so a busy bus does not put it off. Contract: from the arrival of the frame that completes a cycle to the torque frame in the
+//! transmit FIFO there is no waiting but for a free FIFO slot; the computation is bounded because the node has no loop over anything but its own tables.
 //!
 //! Not proven here: that the board boots and keeps this contract. The image is linked and its budgets are checked; timing on the target is
 //! a later issue. The node reads its position from the bus, from the plant, as in hardware-in-the-loop tests; there is no inverter control in it.
@@ -26,9 +27,10 @@ use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, bind_interrupts};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame as _, StandardId};
+use heapless::Vec;
 use panic_probe as _;
-use protocol::CanFrame;
-use protocol::cob::{AxisIds, FrameKind, NodeId};
+use protocol::cob::{AxisIds, HEARD_BY_SERVO, NodeId};
+use protocol::{CanFrame, Station};
 use servo::Servo;
 
 bind_interrupts!(struct Interrupts {
@@ -41,8 +43,8 @@ const SERVO_NODE: u8 = 0x01;
 const PLANT_NODE: u8 = 0x11;
 /// The board's 120 Ω across the bus: on where the board ends it.
 const TERMINATION: Level = Level::Low;
-/// The node notices time this often.
-const TICK: Duration = Duration::from_millis(1);
+/// Frames that one event can cause: what was due (EMCY, torque, status, heartbeat) and then as many for the frame that came, doubled.
+type Outbox = Vec<CanFrame, 16>;
 
 // Register codes, held to the plain numbers that the host checks.
 const M: PllPreDiv = PllPreDiv::DIV2;
@@ -92,16 +94,11 @@ const fn ids() -> AxisIds {
 
 const IDS: AxisIds = ids();
 
-/// Pairs of identifiers that reach the node; everything else is rejected by the peripheral.
+/// The identifiers that reach the node, two to a filter; everything else is rejected by the peripheral.
 fn listen(can: &CanConfigurator<'_>) {
-    let pairs = [
-        (FrameKind::Nmt, FrameKind::Sync),
-        (FrameKind::Feedback, FrameKind::Setpoint),
-        (FrameKind::SdoRequest, FrameKind::PlantHeartbeat),
-        (FrameKind::PlantEmergency, FrameKind::PlantEmergency),
-    ];
-    for (slot, (a, b)) in (0_u8..).zip(pairs) {
-        let filter = FilterType::DedicatedDual(IDS.identifier(a), IDS.identifier(b));
+    for (slot, pair) in (0_u8..).zip(HEARD_BY_SERVO.chunks(2)) {
+        let (Some(first), Some(second)) = (pair.first(), pair.last()) else { continue };
+        let filter = FilterType::DedicatedDual(IDS.identifier(*first), IDS.identifier(*second));
         let filter = StandardFilter { filter, action: Action::StoreInFifo0 };
         can.properties().set_standard_filter(StandardFilterSlot::from(slot), filter);
     }
@@ -137,20 +134,26 @@ async fn main(spawner: Spawner) {
 #[embassy_executor::task]
 async fn node(mut transmit: CanTx<'static>, mut receive: CanRx<'static>) {
     let mut servo = Servo::new(IDS);
-    send(&mut transmit, &servo.boot()).await;
+    let mut out = Outbox::new();
+    Station::boot(&mut servo, &mut |frame| post(&mut out, frame));
     loop {
-        let out = match select(receive.read(), Timer::after(TICK)).await {
-            Either::First(Ok(envelope)) => match frame_of(&envelope.frame) {
-                Some(frame) => servo.on_frame(&frame, Instant::now().as_micros()),
-                None => continue,
-            },
-            Either::First(Err(bus)) => {
-                warn!("bus: {}", bus);
-                servo.on_time(Instant::now().as_micros())
+        send(&mut transmit, &mut out).await;
+        let due = servo.wake_at_us().map_or(Instant::MAX, Instant::from_micros);
+        match select(receive.read(), Timer::at(due)).await {
+            Either::First(Ok(envelope)) => {
+                if let Some(frame) = frame_of(&envelope.frame) {
+                    servo.take(&frame, Instant::now().as_micros(), &mut |frame| post(&mut out, frame));
+                }
             }
-            Either::Second(()) => servo.on_time(Instant::now().as_micros()),
-        };
-        send(&mut transmit, &out).await;
+            Either::First(Err(bus)) => warn!("bus: {}", bus),
+            Either::Second(()) => servo.time(Instant::now().as_micros(), &mut |frame| post(&mut out, frame)),
+        }
+    }
+}
+
+fn post(out: &mut Outbox, frame: CanFrame) {
+    if out.push(frame).is_err() {
+        error!("the node said more in one event than its outbox holds");
     }
 }
 
@@ -161,8 +164,8 @@ fn frame_of(frame: &Frame) -> Option<CanFrame> {
     CanFrame::new(*frame.id(), frame.data())
 }
 
-async fn send(transmit: &mut CanTx<'static>, out: &[CanFrame]) {
-    for frame in out {
+async fn send(transmit: &mut CanTx<'static>, out: &mut Outbox) {
+    for frame in &*out {
         let id = match frame.id() {
             embedded_can::Id::Standard(id) => id,
             embedded_can::Id::Extended(_) => StandardId::MAX,
@@ -174,4 +177,5 @@ async fn send(transmit: &mut CanTx<'static>, out: &[CanFrame]) {
             Err(_) => error!("a frame of the node does not fit the peripheral"),
         }
     }
+    out.clear();
 }

@@ -10,9 +10,12 @@
 use core::mem::MaybeUninit;
 
 use embedded_can::{ExtendedId, Frame, StandardId};
-use protocol::CanFrame;
-use protocol::cob::{AxisIds, FrameKind};
-use servo::{Outbox, Servo};
+use protocol::cob::AxisIds;
+use protocol::{CanFrame, Station};
+use servo::Servo;
+
+/// Where the node's frames go: a leaf's business, called as it is.
+type Send = extern "C" fn(&CanFrame);
 
 #[expect(unsafe_code, reason = "a symbol that does not exist can only be declared")]
 unsafe extern "C" {
@@ -27,10 +30,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// A servo of any axis.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_new(axis: u8, timeout_us: u32, place: &mut MaybeUninit<Servo>) -> bool {
+extern "C" fn entry_new(axis: u8, place: &mut MaybeUninit<Servo>) -> bool {
     match AxisIds::of_axis(axis) {
         Some(ids) => {
-            place.write(Servo::new(ids).with_sync_timeout_us(timeout_us));
+            place.write(Servo::new(ids));
             true
         }
         None => false,
@@ -40,22 +43,14 @@ extern "C" fn entry_new(axis: u8, timeout_us: u32, place: &mut MaybeUninit<Servo
 /// Its boot-up.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_boot(servo: &mut Servo, out: &mut Outbox) {
-    *out = servo.boot();
+extern "C" fn entry_boot(servo: &mut Servo, send: Send) {
+    Station::boot(servo, &mut |frame| send(&frame));
 }
 
 /// Any frame that a bus can carry.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_frame(
-    servo: &mut Servo,
-    id: u32,
-    flags: u8,
-    data: &[u8; 8],
-    length: u8,
-    now_us: u64,
-    out: &mut Outbox,
-) {
+extern "C" fn entry_frame(servo: &mut Servo, id: u32, flags: u8, data: &[u8; 8], length: u8, now_us: u64, send: Send) {
     let data = data.get(..usize::from(length)).unwrap_or(data);
     let frame = match (flags & 1, flags & 2) {
         (0, 0) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new(id, data)),
@@ -63,22 +58,21 @@ extern "C" fn entry_frame(
         _ => ExtendedId::new(id & 0x1FFF_FFFF).and_then(|id| CanFrame::new(id, data)),
     };
     if let Some(frame) = frame {
-        *out = servo.on_frame(&frame, now_us);
-    }
-}
-
-/// Any token.
-#[expect(unsafe_code, reason = "an entry point keeps its name")]
-#[unsafe(no_mangle)]
-extern "C" fn entry_lost(servo: &mut Servo, kind: u8, out: &mut Outbox) {
-    if let Some(kind) = FrameKind::ALL.get(usize::from(kind)) {
-        *out = servo.on_lost(*kind);
+        servo.take(&frame, now_us, &mut |frame| send(&frame));
     }
 }
 
 /// Any time.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_time(servo: &mut Servo, now_us: u64, out: &mut Outbox) {
-    *out = servo.on_time(now_us);
+extern "C" fn entry_time(servo: &mut Servo, now_us: u64, send: Send) {
+    servo.time(now_us, &mut |frame| send(&frame));
+}
+
+/// When it is due next and when it waits for SYNC; zero for never.
+#[expect(unsafe_code, reason = "an entry point keeps its name")]
+#[unsafe(no_mangle)]
+extern "C" fn entry_due(servo: &Servo, sync_due_us: &mut u64) -> u64 {
+    *sync_due_us = servo.sync_due_us().unwrap_or(0);
+    servo.wake_at_us().unwrap_or(0)
 }

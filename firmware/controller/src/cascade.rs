@@ -55,6 +55,18 @@ pub struct CascadeState {
 }
 
 impl CascadeState {
+    /// At standstill, with the torque that it takes to stay there in the integral.
+    #[must_use]
+    pub const fn holding(torque: Torque) -> Self {
+        Self { integral: torque, velocity: Velocity::ZERO }
+    }
+
+    /// In motion: the velocity filter begins settled.
+    #[must_use]
+    pub const fn moving(self, velocity: Velocity) -> Self {
+        Self { integral: self.integral, velocity }
+    }
+
     /// The integral part of the torque.
     #[must_use]
     pub const fn integral(&self) -> Torque {

@@ -5,11 +5,14 @@
 //! units on the host side only.
 //!
 //! ```text
-//!            ┌─ direction ─ reversal ─▶ pulse ──────────┐
-//! setpoint ──┼─ difference ───────────▶ velocity ───────┼──▶ cascade ──▶ filter ──▶ torque
-//!            ├─ second difference ────▶ acceleration ───┤
-//!            └─ backlash offset − position ─▶ error ────┘
+//!             ┌─ next velocity ─ direction ─ reversal ─▶ pulse ──┐
+//! setpoints ──┼─ velocity ────────────────────────────────────────┼──▶ cascade ──▶ filter ──▶ torque
+//!  [`reference`]─ acceleration ────────────────────────────────────┤
+//!             └─ position + backlash offset − position ─▶ error ──┘
 //! ```
+//!
+//! Errors use the reference in time with the encoders (cycle k), the acceleration is that of the time when the torque acts (k + 1 to k + 2), and a reversal is
+//! known one cycle ahead, from the next velocity.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(
@@ -37,6 +40,8 @@ pub mod cascade;
 pub mod direction;
 pub mod filter;
 pub mod pulse;
+pub mod reference;
+mod root;
 pub mod units;
 
 use backlash::{BacklashConfig, BacklashState};
@@ -44,6 +49,7 @@ use cascade::{CascadeConfig, CascadeInput, CascadeState};
 use direction::{Direction, DirectionMemory};
 use filter::{FilterConfig, FilterState};
 use pulse::{PulseConfig, PulseState};
+use reference::{Reference, ReferenceConfig};
 use units::{Position, PositionError, Torque, Velocity};
 
 /// Which encoder closes the position loop.
@@ -59,6 +65,8 @@ pub enum PositionSource {
 /// Everything that stays the same from cycle to cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
+    /// Limits, ramps and setpoints: for [`reference::ReferenceState::step`], which comes first.
+    pub reference: ReferenceConfig,
     /// Which encoder closes the position loop.
     pub position_source: PositionSource,
     /// Gains and limits.
@@ -74,28 +82,35 @@ pub struct Config {
 }
 
 /// Everything that the law remembers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     direction: DirectionMemory,
     pulse: PulseState,
     backlash: BacklashState,
     cascade: CascadeState,
     filter: FilterState,
-    before: Option<Before>,
+    motor: Option<Position>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Before {
-    setpoint: Position,
-    velocity: Velocity,
-    motor: Position,
+impl State {
+    /// At standstill with a torque that holds the axis, as a vertical one needs: the integral and the filter begin with it.
+    #[must_use]
+    pub fn holding(torque: Torque) -> Self {
+        Self { cascade: CascadeState::holding(torque), filter: FilterState::at_rest(torque), ..Self::default() }
+    }
+
+    /// In motion: the motor's history begins with a measured velocity, so that a stop out of motion starts without a kick.
+    #[must_use]
+    pub fn moving(self, motor: Position, velocity: Velocity) -> Self {
+        Self { cascade: self.cascade.moving(velocity), motor: Some(motor.after(velocity.reversed())), ..self }
+    }
 }
 
 /// What comes in, once per cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// Position setpoint of this cycle.
-    pub setpoint: Position,
+    /// What to follow.
+    pub reference: Reference,
     /// Motor encoder, as a position at the table.
     pub motor: Position,
     /// Load scale.
@@ -115,17 +130,21 @@ pub struct Output {
 
 /// One cycle of the control law.
 ///
-/// The first step after a reset takes the present position as standstill: it has no velocity to difference.
+/// The first step after a reset takes the motor to stand still: there is nothing to difference yet ([`State::moving`] says otherwise).
+///
+/// The backlash unit turns round with the *next* velocity, as early as a reversal is known, but adds its offset to the velocity of *this* cycle: position, velocity
+/// and offset go into the same error, and the limits hold for their sum.
 pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
-    let now = differences(state.before, input);
-    state.before = Some(Before { setpoint: input.setpoint, velocity: now.velocity, motor: input.motor });
+    let reference = &input.reference;
+    let motor_velocity = state.motor.map_or(Velocity::ZERO, |before| input.motor.step_from(before));
+    state.motor = Some(input.motor);
 
-    let reversal = state.direction.reversal(now.velocity);
+    let reversal = state.direction.reversal(reference.next_velocity);
     let direction = state.direction.last();
     let pulse = state.pulse.step(&config.pulse, reversal);
-    let (offset, offset_velocity) = state.backlash.step(&config.backlash, direction, now.velocity);
+    let (offset, offset_velocity) = state.backlash.step(&config.backlash, direction, reference.velocity);
 
-    let following_error = input.setpoint.error_from(measured(config.position_source, input));
+    let following_error = reference.position.error_from(measured(config.position_source, input));
     // With the load scale in the loop the table has to be at the setpoint itself; only the motor gets the offset's velocity.
     let offset = match config.position_source {
         PositionSource::Motor => offset,
@@ -135,9 +154,9 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         &config.cascade,
         &CascadeInput {
             error: following_error.plus(offset),
-            velocity_setpoint: now.velocity.plus(offset_velocity).plus(pulse),
-            acceleration: now.acceleration,
-            motor_velocity: now.motor_velocity,
+            velocity_setpoint: reference.velocity.plus(offset_velocity).plus(pulse),
+            acceleration: reference.acceleration,
+            motor_velocity,
             friction: coulomb(config.coulomb, direction),
         },
     );
@@ -145,28 +164,6 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let torque = state.filter.step(&config.filter, proposal.torque.limited(limit), limit);
     let limited = state.cascade.settle(&config.cascade, &proposal, torque);
     Output { torque, following_error, limited }
-}
-
-struct Differences {
-    velocity: Velocity,
-    acceleration: units::Acceleration,
-    motor_velocity: Velocity,
-}
-
-fn differences(before: Option<Before>, input: &Input) -> Differences {
-    let Some(before) = before else {
-        return Differences {
-            velocity: Velocity::ZERO,
-            acceleration: units::Acceleration::default(),
-            motor_velocity: Velocity::ZERO,
-        };
-    };
-    let velocity = input.setpoint.step_from(before.setpoint);
-    Differences {
-        velocity,
-        acceleration: velocity.step_from(before.velocity),
-        motor_velocity: input.motor.step_from(before.motor),
-    }
 }
 
 fn measured(source: PositionSource, input: &Input) -> Position {

@@ -77,6 +77,12 @@ impl Position {
         Velocity(way.0.checked_div_int(i32::from(cycles)).unwrap_or(way.0))
     }
 
+    /// The position that far beyond `self`, for ways of any length.
+    #[must_use]
+    pub fn moved(self, way: Self) -> Self {
+        Self(self.0.saturating_add(way.0))
+    }
+
     /// Where a constant velocity leads within one cycle.
     #[must_use]
     pub fn after(self, velocity: Velocity) -> Self {

@@ -8,6 +8,7 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
+use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8, I56F8};
@@ -26,8 +27,22 @@ const PULSE_HEIGHT: f64 = 178.0;
 const PULSE_DECAY: f64 = 0.988_5;
 const COULOMB: f64 = 636_620.0;
 
+/// The motions of these tests are those of no axis: every setpoint passes, and every change of acceleration is jerk.
+const UNLIMITED: ReferenceConfig = ReferenceConfig {
+    velocity_limit: Velocity(I20F12::MAX),
+    acceleration_limit: Velocity(I20F12::MAX),
+    step: Velocity(I20F12::MAX),
+    position_min: Position(I56F8::MIN),
+    position_max: Position(I56F8::MAX),
+    quick_stop: Ramp { deceleration: Velocity(I20F12::MAX), jerk: Velocity::ZERO },
+    slow_down: Ramp { deceleration: Velocity(I20F12::MAX), jerk: Velocity::ZERO },
+    filter_log2: 0,
+    setpoint_cycles: 1,
+};
+
 fn config(source: PositionSource) -> Config {
     Config {
+        reference: UNLIMITED,
         position_source: source,
         cascade: CascadeConfig {
             position_gain: PositionGain(I8F24::from_num(POSITION_GAIN)),
@@ -50,19 +65,43 @@ fn config(source: PositionSource) -> Config {
 
 struct Twin {
     config: Config,
-    before: Option<(f64, f64, f64)>,
+    motor: Option<f64>,
     direction: f64,
     pulse: f64,
     velocity: f64,
     integral: f64,
 }
 
+/// What the reference stage says of a path: x(k), x(k) − x(k−1), x(k+1) − x(k), and a(k) + 1.5 (a(k) − a(k−1)).
+struct Path {
+    setpoint: f64,
+    velocity: f64,
+    next_velocity: f64,
+    acceleration: f64,
+}
+
+impl Path {
+    /// `at` is at rest before cycle 0; the stage takes two setpoints before it believes an acceleration.
+    fn of(at: impl Fn(u32) -> f64, cycle: u32) -> Self {
+        let velocity = |cycle: u32| if cycle == 0 { 0.0 } else { at(cycle) - at(cycle - 1) };
+        let acceleration = |cycle: u32| if cycle < 2 { 0.0 } else { velocity(cycle + 1) - velocity(cycle) };
+        let now = acceleration(cycle);
+        let before = if cycle == 0 { 0.0 } else { acceleration(cycle - 1) };
+        Self {
+            setpoint: at(cycle),
+            velocity: velocity(cycle),
+            next_velocity: velocity(cycle + 1),
+            acceleration: now + 1.5 * (now - before),
+        }
+    }
+}
+
 impl Twin {
     fn new(config: &Config) -> Self {
-        Self { config: config.clone(), before: None, direction: 0.0, pulse: 0.0, velocity: 0.0, integral: 0.0 }
+        Self { config: config.clone(), motor: None, direction: 0.0, pulse: 0.0, velocity: 0.0, integral: 0.0 }
     }
 
-    fn step(&mut self, source: PositionSource, setpoint: f64, motor: f64, load: f64) -> f64 {
+    fn step(&mut self, source: PositionSource, path: &Path, motor: f64, load: f64) -> f64 {
         let cascade = &self.config.cascade;
         let position_gain: f64 = cascade.position_gain.0.to_num();
         let velocity_gain: f64 = cascade.velocity_gain.0.to_num();
@@ -71,25 +110,22 @@ impl Twin {
         let share: f64 = cascade.velocity_filter.to_num();
         let (height, decay): (f64, f64) = (self.config.pulse.amplitude.0.to_num(), self.config.pulse.decay.to_num());
         let (limit, coulomb): (f64, f64) = (cascade.torque_limit.0.to_num(), self.config.coulomb.0.to_num());
-        let (x0, v0, m0) = self.before.unwrap_or((setpoint, 0.0, motor));
-        let velocity = setpoint - x0;
-        let acceleration = if self.before.is_some() { velocity - v0 } else { 0.0 };
-        let motor_velocity = motor - m0;
-        self.before = Some((setpoint, velocity, motor));
+        let motor_velocity = motor - self.motor.replace(motor).unwrap_or(motor);
         self.pulse *= decay;
-        if velocity != 0.0 {
-            let now = velocity.signum();
+        if path.next_velocity != 0.0 {
+            let now = path.next_velocity.signum();
             if self.direction != 0.0 && now != self.direction {
                 self.pulse = now * height;
             }
             self.direction = now;
         }
         let measured = if source == PositionSource::Motor { motor } else { load };
-        let command = velocity + self.pulse + position_gain * (setpoint - measured);
+        let command = path.velocity + self.pulse + position_gain * (path.setpoint - measured);
         self.velocity += share * (motor_velocity - self.velocity);
         let error = command - self.velocity;
         let integral = (self.integral + integral_gain * error).clamp(-limit, limit);
-        let wanted = velocity_gain * error + integral + acceleration_gain * acceleration + coulomb * self.direction;
+        let wanted =
+            velocity_gain * error + integral + acceleration_gain * path.acceleration + coulomb * self.direction;
         let torque = wanted.clamp(-limit, limit);
         let pushes = (wanted >= limit && error > 0.0) || (wanted <= -limit && error < 0.0);
         if !pushes {
@@ -110,13 +146,20 @@ fn motion(cycle: u32, amplitude: f64, period: f64, lag: f64) -> (f64, f64, f64) 
     (fine(at(t)), at(t - lag).round(), at(t - 1.3 * lag).round())
 }
 
-fn input(setpoint: f64, motor: f64, load: f64) -> Input {
-    let position = |x: f64| Position(I56F8::from_num(x));
-    Input { setpoint: position(setpoint), motor: position(motor), load: position(load) }
+fn position(x: f64) -> Position {
+    Position(I56F8::from_num(x))
+}
+
+/// One cycle of stage and law: the preview is the setpoint of the next cycle.
+fn torque(config: &Config, stage: &mut ReferenceState, law: &mut State, preview: Position, at: [Position; 2]) -> i32 {
+    let input = ReferenceInput { preview: Some(preview), ..ReferenceInput::default() };
+    let [motor, load] = at;
+    let reference = stage.step(&config.reference, &input);
+    controller::step(config, law, &Input { reference, motor, load }).torque.to_micro_nm_lossy()
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn fixed_point_and_floating_point_agree_within_the_bound(
@@ -124,16 +167,19 @@ proptest! {
     ) {
         let source = if on_load { PositionSource::Load } else { PositionSource::Motor };
         let config = config(source);
-        let (mut state, mut twin) = (State::default(), Twin::new(&config));
+        let path = |cycle: u32| motion(cycle, amplitude, period, lag).0;
+        let (mut law, mut twin) = (State::default(), Twin::new(&config));
+        let mut stage = ReferenceState::at(position(path(0)), Velocity::ZERO);
         for cycle in 0..3000 {
-            let (setpoint, motor, load) = motion(cycle, amplitude, period, lag);
-            let fixed = controller::step(&config, &mut state, &input(setpoint, motor, load)).torque;
-            let float = twin.step(source, setpoint, motor, load);
+            let (_, motor, load) = motion(cycle, amplitude, period, lag);
+            let at = [position(motor), position(load)];
+            let fixed = torque(&config, &mut stage, &mut law, position(path(cycle + 1)), at);
+            let float = twin.step(source, &Path::of(path, cycle), motor, load);
             // At the limit the two may hold the integral one cycle apart, which is a step and no rounding.
             if float.abs() > 0.95 * LIMIT {
                 break;
             }
-            let difference = (f64::from(fixed.to_micro_nm_lossy()) - float).abs();
+            let difference = (f64::from(fixed) - float).abs();
             prop_assert!(difference <= BOUND_MICRO_NM, "cycle {cycle}: {difference} µN·m of {float}");
         }
     }
@@ -142,28 +188,30 @@ proptest! {
     fn no_input_makes_the_law_panic_or_pass_its_limit(
         inputs in proptest::collection::vec((any::<i64>(), any::<i64>(), any::<i64>()), 1..100),
     ) {
-        let (config, mut state) = (config(PositionSource::Load), State::default());
+        let (config, mut law) = (config(PositionSource::Load), State::default());
+        let mut stage = ReferenceState::default();
         for (setpoint, motor, load) in inputs {
-            let position = |bits: i64| Position(I56F8::from_bits(bits));
-            let input = Input { setpoint: position(setpoint), motor: position(motor), load: position(load) };
-            let torque = controller::step(&config, &mut state, &input).torque;
-            prop_assert!(torque.to_micro_nm_lossy().abs() <= LIMIT as i32);
+            let [setpoint, motor, load] = [setpoint, motor, load].map(Position::from_fine_counts);
+            let torque = torque(&config, &mut stage, &mut law, setpoint, [motor, load]);
+            prop_assert!(torque.abs() <= LIMIT as i32);
         }
     }
 }
 
-/// Rows of bits: setpoint, motor, load (10 nm / 256), torque (µN·m). Whatever runs this law has to give the same integers.
+/// Rows of bits: setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m). Whatever runs this law has to give the same integers.
 #[test]
 fn the_golden_vectors_repeat_to_the_bit() {
     let mut text =
-        String::from("# setpoint motor load torque; 10 nm/256 and uN m; config of tests/twin.rs, load side\n");
-    let (config, mut state) = (config(PositionSource::Load), State::default());
+        String::from("# preview motor load torque; 10 nm/256 and uN m; config of tests/twin.rs, load side\n");
+    let (config, mut law) = (config(PositionSource::Load), State::default());
+    let at = |cycle| motion(cycle, 40_000.0, 333.0, 2.0);
+    let mut stage = ReferenceState::at(position(at(0).0), Velocity::ZERO);
     for cycle in 0..400 {
-        let (setpoint, motor, load) = motion(cycle, 40_000.0, 333.0, 2.0);
-        let input = input(setpoint, motor, load);
-        let torque = controller::step(&config, &mut state, &input).torque.to_micro_nm_lossy();
+        let ((preview, ..), (_, motor, load)) = (at(cycle + 1), at(cycle));
+        let [preview, motor, load] = [preview, motor, load].map(position);
+        let torque = torque(&config, &mut stage, &mut law, preview, [motor, load]);
         let bits = |position: Position| position.0.to_bits();
-        text += &format!("{} {} {} {torque}\n", bits(input.setpoint), bits(input.motor), bits(input.load));
+        text += &format!("{} {} {} {torque}\n", bits(preview), bits(motor), bits(load));
     }
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/vectors/reference.txt");
     if std::env::var_os("QUADRANT_BLESS").is_some() {

@@ -1,125 +1,75 @@
-//! The drive node as a host program: the same sans-I/O node as on the board, on embassy-executor, over SocketCAN or an in-process bus.
+//! A node as a host program: the same sans-I/O station as on the board, on embassy-executor, over SocketCAN or an in-process bus.
 //!
-//! Two tasks: one takes frames as they come, one lets the node notice every few milliseconds that time passes. Effects that the node returns are performed
-//! here: frames are sent.
+//! One task drives the station ([`leaf`]): frames as they come, and the time. Servo and plant run through the same code.
+//!
+//! ```text
+//! CAN port ─▶ (faults, in tests) ─▶ station ─▶ CAN port
+//!    ▲ ppoll                          ▲ bus time, or the clock
+//! ```
 
 pub mod idle;
+mod leaf;
+pub mod lockstep_time;
 pub mod port;
+pub mod termination;
 
 use std::cell::RefCell;
 use std::io;
+use std::os::fd::AsRawFd;
 use std::rc::Rc;
+use std::time::Duration;
 
-use bus::{FaultPlan, FaultyPort, Received};
+use bus::FaultyPort;
 use embassy_executor::raw::Executor;
-use embassy_time::{Duration, Instant, Timer};
-use embedded_can::StandardId;
-use protocol::CanFrame;
-use protocol::cob::{AxisIds, FrameKind};
-use servo::Servo;
+use protocol::Station;
 use static_cell::StaticCell;
 
+use leaf::Leaf;
 use port::Port;
 
-/// The node notices time this often.
-const TICK: Duration = Duration::from_millis(5);
-
-struct Node {
-    servo: Servo,
-    faults: Option<FaultyPort>,
-    failure: Option<io::Error>,
-    stop: bool,
-    /// Time of the last tick, µs: good enough for a SYNC timeout, and cheaper than reading the clock for every frame.
-    now_us: u64,
+/// Who beats the time of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// The frames: bus time. A cycle whose frames stay away for the deadline closes without them.
+    Lockstep {
+        /// Patience without any frame, by the clock.
+        deadline: Duration,
+    },
+    /// The clock.
+    Clock,
 }
 
-type Shared = Rc<RefCell<Node>>;
+/// Why the driver ended; nothing while it runs.
+type End = Rc<RefCell<Option<io::Error>>>;
 
-/// What the servo of an axis wants to hear.
-#[must_use]
-pub fn accepted(ids: AxisIds) -> [StandardId; 7] {
-    [
-        FrameKind::Nmt,
-        FrameKind::Sync,
-        FrameKind::Feedback,
-        FrameKind::Setpoint,
-        FrameKind::SdoRequest,
-        FrameKind::PlantHeartbeat,
-        FrameKind::PlantEmergency,
-    ]
-    .map(|kind| ids.identifier(kind))
-}
-
-/// Runs the node on a port until the port fails or `stop` says so (asked at every tick); once per process, because the executor is static.
+/// Runs a station on a port until the port fails or `stop` becomes readable; once per process, because the executor is static.
 ///
 /// # Errors
 /// Where the port fails.
-pub fn run(servo: Servo, port: Port, faults: Option<FaultPlan>, stop: fn() -> bool) -> io::Result<()> {
+pub fn run(
+    station: Box<dyn Station>,
+    port: Port,
+    faults: Option<FaultyPort>,
+    pace: Pace,
+    stop: &impl AsRawFd,
+) -> io::Result<()> {
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
-    let faults = faults.map(|plan| FaultyPort::new(plan, servo.ids(), servo.ids().servo.get()));
-    for frame in servo.boot() {
-        port.send(&frame)?;
-    }
-    let shared: Shared = Rc::new(RefCell::new(Node { servo, faults, failure: None, stop: false, now_us: 0 }));
-    let port = Rc::new(port);
+    let mut leaf = Leaf::new(station, port, faults);
+    leaf.boot()?;
     let executor: &'static Executor = EXECUTOR.init(Executor::new(std::ptr::null_mut()));
-    let spawner = executor.spawner();
-    let spawn_failed = |_| io::Error::other("the executor has no room for the node's tasks");
-    spawner.spawn(listen(Rc::clone(&shared), Rc::clone(&port)).map_err(spawn_failed)?);
-    spawner.spawn(watch(Rc::clone(&shared), port, stop).map_err(spawn_failed)?);
-    let ended = Rc::clone(&shared);
-    idle::run(executor, move || ended.borrow().stop || ended.borrow().failure.is_some())?;
-    let failure = shared.borrow_mut().failure.take();
-    failure.map_or(Ok(()), Err)
+    let end = End::default();
+    let task = drive(leaf, pace, Rc::clone(&end));
+    let no_room = |_| io::Error::other("the executor has no room for the node's task");
+    executor.spawner().spawn(task.map_err(no_room)?);
+    idle::run(executor, stop, || end.borrow().is_some())?;
+    end.take().map_or(Ok(()), Err)
 }
 
 #[embassy_executor::task]
-async fn listen(node: Shared, port: Rc<Port>) {
-    let mut received = Vec::new();
-    loop {
-        match port.receive().await {
-            Ok(frame) => node.borrow_mut().take(frame, &mut received, &port),
-            Err(error) => {
-                node.borrow_mut().failure = Some(error);
-                return;
-            }
-        }
-    }
-}
-
-#[embassy_executor::task]
-async fn watch(node: Shared, port: Rc<Port>, stop: fn() -> bool) {
-    loop {
-        Timer::after(TICK).await;
-        let mut node = node.borrow_mut();
-        node.now_us = Instant::now().as_micros();
-        let now_us = node.now_us;
-        let out = node.servo.on_time(now_us);
-        node.send(&out, &port);
-        node.stop |= stop();
-    }
-}
-
-impl Node {
-    fn take(&mut self, frame: CanFrame, received: &mut Vec<Received>, port: &Port) {
-        match &mut self.faults {
-            None => received.push(Received::Frame(frame)),
-            Some(faults) => faults.receive(frame, received),
-        }
-        for received in received.drain(..) {
-            let out = match received {
-                Received::Frame(frame) => self.servo.on_frame(&frame, self.now_us),
-                Received::Lost(kind) => self.servo.on_lost(kind),
-            };
-            self.send(&out, port);
-        }
-    }
-
-    fn send(&mut self, out: &[CanFrame], port: &Port) {
-        for frame in out {
-            if let Err(error) = port.send(frame) {
-                self.failure = Some(error);
-            }
-        }
-    }
+async fn drive(mut leaf: Leaf, pace: Pace, end: End) {
+    let Err(error) = match pace {
+        Pace::Lockstep { deadline } => leaf.in_step(deadline).await,
+        Pace::Clock => leaf.by_the_clock().await,
+    };
+    end.replace(Some(error));
 }

@@ -5,12 +5,13 @@ use std::io::{self, ErrorKind};
 use std::os::fd::{AsRawFd, RawFd};
 use std::os::unix::net::UnixDatagram;
 use std::task::Poll;
+use std::time::Duration;
 
 use bus::CanPort;
 use embedded_can::{ExtendedId, Frame, Id, StandardId};
 use protocol::CanFrame;
 
-use crate::idle::wake_when_readable;
+use crate::idle::{patience_ran_out, wake_when_readable};
 
 /// A port of the node.
 #[derive(Debug)]
@@ -22,18 +23,20 @@ pub enum Port {
 }
 
 impl Port {
-    /// The next frame.
+    /// The next frame; `None` where nothing happened for as long as `patience`.
     ///
     /// # Errors
     /// Where the interface is gone.
-    pub async fn receive(&self) -> io::Result<CanFrame> {
-        poll_fn(|context| match self.try_receive() {
-            Ok(Some(frame)) => Poll::Ready(Ok(frame)),
-            Ok(None) => {
-                wake_when_readable(self, context.waker());
-                Poll::Pending
+    pub async fn receive(&self, patience: Option<Duration>) -> io::Result<Option<CanFrame>> {
+        poll_fn(|context| {
+            let ran_out = patience_ran_out();
+            match self.try_receive() {
+                Ok(None) if !ran_out => {
+                    wake_when_readable(self, patience, context.waker());
+                    Poll::Pending
+                }
+                received => Poll::Ready(received),
             }
-            Err(error) => Poll::Ready(Err(error)),
         })
         .await
     }

@@ -1,17 +1,17 @@
 //! The node on the executor says byte for byte what the node says when it is driven directly.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use protocol::cob::AxisIds;
+use embedded_can::{Frame, Id};
+use protocol::cob::{AxisIds, FrameKind};
 use protocol::message::{Feedback, NmtCommand, Setpoint};
 use protocol::states::ControlWord;
 use protocol::weight::{LoadIncrements24, MotorIncrements, SetpointFine};
-use protocol::{CanFrame, Message, SyncCounter};
+use protocol::{CanFrame, Message, Station, SyncCounter};
+use quadrant_host::Pace;
 use quadrant_host::port::{InProcessPort, Port};
 use servo::Servo;
-
-static STOP: AtomicBool = AtomicBool::new(false);
 
 fn ids() -> AxisIds {
     AxisIds::of_axis(0).unwrap()
@@ -37,12 +37,23 @@ fn traffic() -> Vec<CanFrame> {
 #[test]
 fn the_executor_adds_nothing_and_loses_nothing() {
     let mut direct = Servo::new(ids());
-    let mut wanted: Vec<CanFrame> = direct.boot().to_vec();
-    wanted.extend(traffic().iter().flat_map(|frame| direct.on_frame(frame, 0)));
+    let mut wanted: Vec<CanFrame> = Vec::new();
+    Station::boot(&mut direct, &mut |frame| wanted.push(frame));
+    let mut now_us = 0;
+    for frame in traffic() {
+        // Bus time: one period per SYNC, from the first one on.
+        if frame.id() == Id::Standard(ids().identifier(FrameKind::Sync)) {
+            now_us = direct.sync_due_us().unwrap_or(now_us);
+        }
+        direct.take(&frame, now_us, &mut |frame| wanted.push(frame));
+    }
 
     let (node_end, our_end) = InProcessPort::pair().unwrap();
-    let stop = || STOP.load(Ordering::Relaxed);
-    let node = std::thread::spawn(move || quadrant_host::run(Servo::new(ids()), Port::InProcess(node_end), None, stop));
+    let (stop, stopped) = UnixStream::pair().unwrap();
+    let pace = Pace::Lockstep { deadline: Duration::from_secs(20) };
+    let node = std::thread::spawn(move || {
+        quadrant_host::run(Box::new(Servo::new(ids())), Port::InProcess(node_end), None, pace, &stopped)
+    });
     let mut got = Vec::new();
     let patience = Instant::now() + Duration::from_secs(20);
     for frame in traffic() {
@@ -57,7 +68,7 @@ fn the_executor_adds_nothing_and_loses_nothing() {
     while got.len() < wanted.len() && Instant::now() < patience {
         got.extend(our_end.try_receive().unwrap());
     }
-    STOP.store(true, Ordering::Relaxed);
+    drop(stop);
     node.join().unwrap().unwrap();
     assert_eq!(got, wanted);
 }

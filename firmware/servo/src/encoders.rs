@@ -1,11 +1,18 @@
 //! From feedback frames to positions: unwrapping, plausibility, and prediction where a feedback is missing.
+//!
+//! The motor encoder counts modulo 2³² and is unwrapped over any way. The load scale tells its low 24 bits of 10 nm (0.168 m); where it stands
+//! is told by the motor and by their relation, a parameter (2103h), and how well the two agree is measured, not assumed. A missing feedback is
+//! predicted with the last velocity and the acceleration of the reference, which is what the axis is doing if the loop does its work.
 
-use controller::units::{Position, PositionError, Velocity, WayPerIncrement};
+use controller::PositionSource;
+use controller::units::{Acceleration, Position, PositionError, Velocity, WayPerIncrement};
 use protocol::message::Feedback;
-use protocol::weight::LoadIncrements24;
+use protocol::weight::{LoadIncrements24, MotorIncrements};
+
+use crate::settings::Relation;
 
 /// Position of both encoders in one cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measured {
     /// Motor encoder, as a position at the table.
     pub motor: Position,
@@ -13,21 +20,67 @@ pub struct Measured {
     pub load: Position,
 }
 
+impl Measured {
+    /// The encoder that closes the loop.
+    #[must_use]
+    pub const fn of(&self, source: PositionSource) -> Position {
+        match source {
+            PositionSource::Motor => self.motor,
+            PositionSource::Load => self.load,
+        }
+    }
+}
+
+/// What the encoders are judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Encoding {
+    /// Way per motor increment.
+    pub way: WayPerIncrement,
+    /// Where the scale stands when the motor stands at zero.
+    pub relation: Relation,
+    /// Way by which a feedback may differ from the expected one, per cycle.
+    pub jump: PositionError,
+    /// Which encoder closes the loop.
+    pub source: PositionSource,
+}
+
+/// The encoder that closes the loop, or the motor's, jumped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Implausible;
+
 /// What the encoders did so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Encoders {
     track: Option<Track>,
+    scale_warnings: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Track {
     at: Measured,
-    load_counts: i64,
-    load_raw: LoadIncrements24,
-    motor_velocity: Velocity,
-    load_velocity: Velocity,
+    velocity: Pair,
     good: Measured,
+    raw: Raw,
     predicted_cycles: u16,
+    load_predicted_cycles: u16,
+    /// Load − motor, beyond their relation.
+    relation_error: PositionError,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Pair {
+    motor: Velocity,
+    load: Velocity,
+}
+
+/// Raw counts of the last good feedback, and the counts from which the motor's position is counted.
+#[derive(Clone, Copy, Debug)]
+struct Raw {
+    motor: MotorIncrements,
+    base_counts: i32,
+    base: Position,
+    load: LoadIncrements24,
+    load_counts: i64,
 }
 
 impl Encoders {
@@ -37,107 +90,226 @@ impl Encoders {
         self.track.map(|track| track.at)
     }
 
-    /// Takes a feedback; `None` where it differs from the expected way by more than `limit` (times the cycles since the last good one).
-    pub fn accept(&mut self, feedback: Feedback, way: WayPerIncrement, limit: PositionError) -> Option<Measured> {
-        let motor = way.times(feedback.motor.0);
-        let next = match self.track {
-            None => Track::first(motor, feedback.load),
-            Some(track) => track.next(motor, feedback.load, limit)?,
-        };
-        self.track = Some(next);
-        Some(next.at)
+    /// Velocity of the encoder that closes the loop.
+    #[must_use]
+    pub fn velocity(&self, source: PositionSource) -> Velocity {
+        self.track.map_or(Velocity::ZERO, |track| match source {
+            PositionSource::Motor => track.velocity.motor,
+            PositionSource::Load => track.velocity.load,
+        })
     }
 
-    /// The axis goes on as it moved: the position for a cycle without feedback.
-    pub fn predict(&mut self) -> Option<Measured> {
+    /// Readings of a load scale that the loop does not need and that cannot be true.
+    #[must_use]
+    pub const fn scale_warnings(&self) -> u32 {
+        self.scale_warnings
+    }
+
+    /// Whether scale and motor stand as their relation says; false before the first feedback.
+    #[must_use]
+    pub fn relation_holds(&self, relation: Relation) -> bool {
+        self.track.is_some_and(|track| track.relation_error.magnitude() <= relation.window)
+    }
+
+    /// Takes a feedback.
+    ///
+    /// # Errors
+    /// [`Implausible`] where it differs from the expected way by more than the limit, times the cycles since the last good one. A scale that
+    /// does not close the loop is predicted instead and counted.
+    pub fn accept(&mut self, feedback: Feedback, encoding: &Encoding) -> Result<Measured, Implausible> {
+        let next = match self.track {
+            None => Track::first(feedback, encoding),
+            Some(track) => {
+                let (next, scale_is_true) = track.next(feedback, encoding)?;
+                self.scale_warnings = self.scale_warnings.saturating_add(u32::from(!scale_is_true));
+                next
+            }
+        };
+        self.track = Some(next);
+        Ok(next.at)
+    }
+
+    /// The axis goes on as it moved and as the reference accelerates: the position for a cycle without feedback.
+    pub fn predict(&mut self, acceleration: Acceleration) -> Option<Measured> {
         let track = self.track.as_mut()?;
-        track.at.motor = track.at.motor.after(track.motor_velocity);
-        track.at.load = track.at.load.after(track.load_velocity);
+        let change = Velocity(acceleration.0);
+        track.velocity.motor = track.velocity.motor.plus(change);
+        track.velocity.load = track.velocity.load.plus(change);
+        track.at.motor = track.at.motor.after(track.velocity.motor);
+        track.at.load = track.at.load.after(track.velocity.load);
         track.predicted_cycles = track.predicted_cycles.saturating_add(1);
+        track.load_predicted_cycles = track.load_predicted_cycles.saturating_add(1);
         Some(track.at)
+    }
+
+    /// Forgets where the axis was; the count of warnings stays.
+    pub const fn forget(&mut self) {
+        self.track = None;
+    }
+}
+
+/// The motor's position is counted from a base that follows when it is this far away, so that the difference never wraps.
+const REBASE_AT: i32 = 1 << 30;
+
+impl Raw {
+    fn motor_position(&mut self, counts: MotorIncrements, way: WayPerIncrement) -> Position {
+        let since = counts.0.wrapping_sub(self.base_counts);
+        let position = self.base.moved(way.times(since));
+        if since.unsigned_abs() > REBASE_AT.unsigned_abs() {
+            self.base = position;
+            self.base_counts = counts.0;
+        }
+        self.motor = counts;
+        position
     }
 }
 
 impl Track {
-    /// The load scale tells only its low 24 bits: it is taken to stand nearest to the motor encoder.
-    fn first(motor: Position, load: LoadIncrements24) -> Self {
-        let motor_counts: i64 = motor.0.to_num();
-        let near = LoadIncrements24::from_counts(motor_counts);
-        let load_counts = motor_counts.saturating_add(i64::from(near.step_to(load)));
+    /// The load scale is taken to stand nearest to where the relation expects it; how far off that is, is remembered.
+    fn first(feedback: Feedback, encoding: &Encoding) -> Self {
+        let motor = encoding.way.times(feedback.motor.0);
+        let (load_counts, relation_error) = near_relation(motor, feedback.load, encoding.relation);
         let at = Measured { motor, load: Position::from_counts(load_counts) };
+        let raw =
+            Raw { motor: feedback.motor, base_counts: feedback.motor.0, base: motor, load: feedback.load, load_counts };
         Self {
             at,
+            velocity: Pair::default(),
             good: at,
-            load_counts,
-            load_raw: load,
-            motor_velocity: Velocity::ZERO,
-            load_velocity: Velocity::ZERO,
+            raw,
             predicted_cycles: 0,
+            load_predicted_cycles: 0,
+            relation_error,
         }
     }
 
-    fn next(self, motor: Position, load: LoadIncrements24, limit: PositionError) -> Option<Self> {
-        let load_counts = self.load_counts.saturating_add(i64::from(self.load_raw.step_to(load)));
-        let at = Measured { motor, load: Position::from_counts(load_counts) };
+    fn next(self, feedback: Feedback, encoding: &Encoding) -> Result<(Self, bool), Implausible> {
+        let mut raw = self.raw;
+        let motor = raw.motor_position(feedback.motor, encoding.way);
+        let load_counts = raw.load_counts.saturating_add(i64::from(raw.load.step_to(feedback.load)));
+        let load = Position::from_counts(load_counts);
         let cycles = self.predicted_cycles.saturating_add(1);
-        // After predicted cycles `self.at` has moved on with the old velocity, so one more step of it is what we expect.
-        let expected =
-            Measured { motor: self.at.motor.after(self.motor_velocity), load: self.at.load.after(self.load_velocity) };
-        let allowed = times(limit, cycles);
-        let plausible = motor.error_from(expected.motor).magnitude() <= allowed
-            && at.load.error_from(expected.load).magnitude() <= allowed;
-        plausible.then(|| Self {
-            at,
-            load_counts,
-            load_raw: load,
-            good: at,
-            motor_velocity: motor.velocity_since(self.good.motor, cycles),
-            load_velocity: at.load.velocity_since(self.good.load, cycles),
-            predicted_cycles: 0,
-        })
+        let load_cycles = self.load_predicted_cycles.saturating_add(1);
+        let motor_is_true = is_near(motor, self.at.motor.after(self.velocity.motor), encoding.jump, cycles);
+        let load_is_true = is_near(load, self.at.load.after(self.velocity.load), encoding.jump, load_cycles);
+        if !motor_is_true || (!load_is_true && encoding.source == PositionSource::Load) {
+            return Err(Implausible);
+        }
+        let mut next = Self { raw, predicted_cycles: 0, ..self };
+        next.velocity.motor = motor.velocity_since(self.good.motor, cycles);
+        (next.at.motor, next.good.motor) = (motor, motor);
+        if load_is_true {
+            next.raw.load = feedback.load;
+            next.raw.load_counts = load_counts;
+            next.velocity.load = load.velocity_since(self.good.load, load_cycles);
+            (next.at.load, next.good.load) = (load, load);
+            next.load_predicted_cycles = 0;
+        } else {
+            next.at.load = self.at.load.after(self.velocity.load);
+            next.load_predicted_cycles = load_cycles;
+        }
+        Ok((next, load_is_true))
     }
 }
 
-fn times(limit: PositionError, cycles: u16) -> PositionError {
-    PositionError(limit.0.saturating_mul_int(i32::from(cycles)))
+/// The scale's counts nearest to where motor and relation expect it, and how far from there.
+fn near_relation(motor: Position, load: LoadIncrements24, relation: Relation) -> (i64, PositionError) {
+    let motor_counts: i64 = motor.0.to_num();
+    let expected = motor_counts.saturating_add(i64::from(relation.offset));
+    let off = LoadIncrements24::from_counts(expected).step_to(load);
+    let error = Position::from_counts(i64::from(off)).error_from(Position::default());
+    (expected.saturating_add(i64::from(off)), error)
+}
+
+fn is_near(position: Position, expected: Position, limit: PositionError, cycles: u16) -> bool {
+    let allowed = PositionError(limit.0.saturating_mul_int(i32::from(cycles)));
+    position.error_from(expected).magnitude() <= allowed
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fixed::types::{I20F12, I24F8};
     use protocol::SyncCounter;
-    use protocol::weight::MotorIncrements;
 
-    const WAY: WayPerIncrement = WayPerIncrement { whole: 1, fraction: 0 };
-
-    fn limit() -> PositionError {
-        PositionError(fixed::types::I24F8::from_num(1000))
+    fn encoding(source: PositionSource) -> Encoding {
+        Encoding {
+            way: WayPerIncrement { whole: 1, fraction: 0 },
+            relation: Relation { offset: 0, window: window(100_000) },
+            jump: window(1000),
+            source,
+        }
     }
 
-    fn feedback(position: i32) -> Feedback {
-        let load = LoadIncrements24::from_counts(i64::from(position));
-        Feedback { motor: MotorIncrements(position), load, counter: SyncCounter::FIRST }
+    fn window(counts: i32) -> PositionError {
+        PositionError(I24F8::from_num(counts))
     }
 
-    fn taken(encoders: &mut Encoders, position: i32) -> Option<i64> {
-        encoders.accept(feedback(position), WAY, limit()).map(|at| at.load.0.to_num())
+    fn feedback(motor: i32, load: i64) -> Feedback {
+        let load = LoadIncrements24::from_counts(load);
+        Feedback { motor: MotorIncrements(motor), load, counter: SyncCounter::FIRST }
+    }
+
+    fn taken(encoders: &mut Encoders, motor: i32, load: i64) -> Option<(i64, i64)> {
+        let at = encoders.accept(feedback(motor, load), &encoding(PositionSource::Load)).ok()?;
+        Some((at.motor.0.to_num(), at.load.0.to_num()))
     }
 
     #[test]
-    fn the_load_scale_is_unwrapped_beyond_its_24_bits() {
+    fn motor_and_scale_are_unwrapped_over_any_way() {
         let mut encoders = Encoders::default();
-        for step in 0..40_000 {
-            assert_eq!(taken(&mut encoders, 16_000_000 + step * 900), Some(i64::from(16_000_000 + step * 900)));
+        for step in 0..6_000_000_i64 {
+            let counts = 900 * step;
+            let motor = i32::from_le_bytes(counts.to_le_bytes()[..4].try_into().unwrap());
+            assert_eq!(taken(&mut encoders, motor, counts), Some((counts, counts)));
         }
     }
 
     #[test]
     fn a_jump_is_refused_and_the_prediction_bridges_it() {
         let mut encoders = Encoders::default();
-        assert!(taken(&mut encoders, 0).is_some() && taken(&mut encoders, 500).is_some());
-        assert_eq!(taken(&mut encoders, 90_000), None);
-        let predicted: i64 = encoders.predict().unwrap().motor.0.to_num();
+        assert!(taken(&mut encoders, 0, 0).is_some() && taken(&mut encoders, 500, 500).is_some());
+        assert_eq!(taken(&mut encoders, 90_000, 90_000), None);
+        let predicted: i64 = encoders.predict(Acceleration::default()).unwrap().motor.0.to_num();
         assert_eq!(predicted, 1000);
-        assert_eq!(taken(&mut encoders, 1500), Some(1500));
+        assert_eq!(taken(&mut encoders, 1500, 1500), Some((1500, 1500)));
+    }
+
+    #[test]
+    fn a_prediction_goes_on_with_the_acceleration_of_the_reference() {
+        let mut encoders = Encoders::default();
+        taken(&mut encoders, 0, 0);
+        taken(&mut encoders, 500, 500);
+        let acceleration = Acceleration(I20F12::from_num(20));
+        let ways: Vec<i64> = (0..3).map(|_| encoders.predict(acceleration).unwrap().load.0.to_num()).collect();
+        assert_eq!(ways, [1020, 1560, 2120]);
+    }
+
+    #[test]
+    fn a_scale_that_stands_elsewhere_than_its_relation_says_is_noticed_and_with_it_is_right() {
+        let at_100_mm = feedback(0, 10_000_000);
+        let mut encoders = Encoders::default();
+        encoders.accept(at_100_mm, &encoding(PositionSource::Load)).unwrap();
+        assert!(!encoders.relation_holds(encoding(PositionSource::Load).relation));
+        let related = Encoding {
+            relation: Relation { offset: 10_000_000, window: window(100) },
+            ..encoding(PositionSource::Load)
+        };
+        let mut encoders = Encoders::default();
+        let at = encoders.accept(at_100_mm, &related).unwrap();
+        assert_eq!(at.load.0.to_num::<i64>(), 10_000_000);
+        assert!(encoders.relation_holds(related.relation));
+    }
+
+    #[test]
+    fn an_implausible_scale_trips_no_loop_on_the_motor_and_is_counted() {
+        let mut encoders = Encoders::default();
+        let motor = encoding(PositionSource::Motor);
+        for (counts, scale) in [(0, 0), (500, 500), (1000, 900_000), (1500, 1500)] {
+            let at = encoders.accept(feedback(counts, scale), &motor).unwrap();
+            assert_eq!(at.load.0.to_num::<i32>(), counts);
+        }
+        assert_eq!(encoders.scale_warnings(), 1);
+        assert_eq!(taken(&mut encoders, 2000, 900_000), None, "a loop on the scale does not take it");
     }
 }

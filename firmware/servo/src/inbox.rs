@@ -1,16 +1,17 @@
 //! What has come in for the present cycle, told by counter and never by arrival order.
 //!
-//! A slot is waiting, fresh or missed. The cycle is complete when no slot waits. A frame that is lost (a token from the port), malformed
-//! or stale closes its slot as missed, so that lock-step cannot stand still; the one late frame that fills a hole of the
-//! cycle before does not.
+//! Cycle k needs the feedback k and the setpoint of cycle k + 1, the preview. Each of them comes or does not; the cycle is complete when
+//! both are in. What comes too late for its cycle is still worth something: a setpoint that arrives one cycle late is the setpoint
+//! of the present cycle, in the place of its extrapolation.
 
 use protocol::SyncCounter;
 use protocol::message::{Feedback, Setpoint};
 
 /// Why a frame is missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Miss {
     /// It did not come.
+    #[default]
     Absent,
     /// One came with an old counter.
     Stale,
@@ -20,43 +21,22 @@ pub enum Miss {
     Implausible,
 }
 
-/// A frame that is expected in a cycle.
+/// A frame that is expected in a cycle, and why it is not there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slot<T> {
-    /// Not yet there.
-    Waiting,
-    /// There.
-    Fresh(T),
-    /// Will not come.
-    Missed(Miss),
+struct Slot<T> {
+    value: Option<T>,
+    miss: Miss,
+}
+
+impl<T> Slot<T> {
+    const fn empty() -> Self {
+        Self { value: None, miss: Miss::Absent }
+    }
 }
 
 impl<T: Copy> Slot<T> {
-    /// Closes the slot if it still waits.
-    pub fn close(&mut self, miss: Miss) {
-        if matches!(self, Self::Waiting) {
-            *self = Self::Missed(miss);
-        }
-    }
-
-    /// What came, or why not; a slot that still waits counts as absent.
-    ///
-    /// # Errors
-    /// The reason why nothing came.
-    pub fn outcome(&self) -> Result<T, Miss> {
-        match *self {
-            Self::Fresh(value) => Ok(value),
-            Self::Missed(miss) => Err(miss),
-            Self::Waiting => Err(Miss::Absent),
-        }
-    }
-
-    const fn waits(&self) -> bool {
-        matches!(self, Self::Waiting)
-    }
-
-    const fn is_missed(&self) -> bool {
-        matches!(self, Self::Missed(_))
+    fn outcome(&self) -> Result<T, Miss> {
+        self.value.ok_or(self.miss)
     }
 }
 
@@ -69,29 +49,42 @@ pub enum Taken {
     Doubled,
     /// Its counter is old.
     Stale,
+    /// It shows that the next cycle is on; take it again after beginning that one.
+    NextCycle,
 }
 
-/// The slots of the present cycle and of the next setpoint.
+/// What a cycle has to go by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contents {
+    /// Encoder positions of this cycle.
+    pub feedback: Result<Feedback, Miss>,
+    /// Setpoint of the next cycle.
+    pub preview: Result<Setpoint, Miss>,
+    /// Setpoint of this cycle, where it came too late to be its preview.
+    pub present: Option<Setpoint>,
+}
+
+impl Contents {
+    /// A cycle in which nothing came.
+    pub const NOTHING: Self = Self { feedback: Err(Miss::Absent), preview: Err(Miss::Absent), present: None };
+}
+
+/// The slots of the present cycle.
 #[derive(Clone, Debug)]
 pub struct Inbox {
     counter: Option<SyncCounter>,
-    closed: bool,
-    setpoint: Slot<Setpoint>,
-    next_setpoint: Slot<Setpoint>,
+    open: bool,
     feedback: Slot<Feedback>,
-    feedback_hole: bool,
+    preview: Slot<Setpoint>,
+    /// The preview was there when its cycle was closed.
+    preview_used: bool,
+    present: Option<Setpoint>,
 }
 
 impl Default for Inbox {
     fn default() -> Self {
-        Self {
-            counter: None,
-            closed: true,
-            setpoint: Slot::Waiting,
-            next_setpoint: Slot::Waiting,
-            feedback: Slot::Waiting,
-            feedback_hole: false,
-        }
+        let (feedback, preview) = (Slot::empty(), Slot::empty());
+        Self { counter: None, open: false, feedback, preview, preview_used: false, present: None }
     }
 }
 
@@ -102,89 +95,156 @@ impl Inbox {
         self.counter
     }
 
-    /// Whether SYNC began a cycle that is not computed yet.
+    /// Whether a cycle has begun that is not closed yet.
     #[must_use]
     pub const fn is_open(&self) -> bool {
-        !self.closed
+        self.open
     }
 
-    /// Whether everything is in, or known to be missing.
+    /// Whether everything is in; `wants_setpoint` is false in cycles in which none is due.
     #[must_use]
-    pub const fn is_complete(&self) -> bool {
-        !self.closed && !self.setpoint.waits() && !self.feedback.waits()
+    pub const fn is_complete(&self, wants_setpoint: bool) -> bool {
+        self.open && self.feedback.value.is_some() && (self.preview.value.is_some() || !wants_setpoint)
     }
 
     /// Begins the cycle of a counter.
     pub fn begin(&mut self, counter: SyncCounter) {
-        self.feedback_hole = self.feedback.is_missed();
-        self.counter = Some(counter);
-        self.closed = false;
-        self.feedback = Slot::Waiting;
-        self.setpoint = match self.next_setpoint {
-            Slot::Fresh(early) if early.counter == counter => Slot::Fresh(early),
-            Slot::Fresh(_) => Slot::Missed(Miss::Stale),
-            // Setpoints come one cycle early: at SYNC it is there, or it was lost without a token.
-            Slot::Waiting => Slot::Missed(Miss::Absent),
-            Slot::Missed(miss) => Slot::Missed(miss),
-        };
-        self.next_setpoint = Slot::Waiting;
+        // A preview that came after its cycle was closed is the setpoint of the cycle that begins.
+        let late = self.preview.value.filter(|setpoint| !self.preview_used && setpoint.counter == counter);
+        *self = Self { counter: Some(counter), open: true, present: late.or(self.first(counter)), ..Self::default() };
     }
 
-    /// Ends the present cycle.
-    pub fn end(&mut self) -> (Result<Setpoint, Miss>, Result<Feedback, Miss>) {
-        self.closed = true;
-        self.feedback.close(Miss::Absent);
-        (self.setpoint.outcome(), self.feedback.outcome())
+    /// Before the first SYNC the newest setpoint waits for the cycle that it names.
+    fn first(&self, counter: SyncCounter) -> Option<Setpoint> {
+        self.present.filter(|setpoint| self.counter.is_none() && setpoint.counter == counter)
     }
 
-    /// Takes a setpoint: for this cycle, or one cycle early.
+    /// Closes the present cycle.
+    pub fn close(&mut self) -> Contents {
+        self.open = false;
+        self.preview_used = self.preview.value.is_some();
+        Contents { feedback: self.feedback.outcome(), preview: self.preview.outcome(), present: self.present }
+    }
+
+    /// Takes a setpoint.
     pub fn setpoint(&mut self, setpoint: Setpoint) -> Taken {
-        let now = self.counter;
-        if now == Some(setpoint.counter) {
-            return if self.setpoint.waits() && !self.closed {
-                fill(&mut self.setpoint, setpoint)
-            } else {
-                Taken::Doubled
-            };
+        let Some(now) = self.counter else {
+            self.present = Some(setpoint);
+            return Taken::Used;
+        };
+        if setpoint.counter == now.next() {
+            let taken = if self.preview.value.is_some() { Taken::Doubled } else { Taken::Used };
+            self.preview.value.get_or_insert(setpoint);
+            return taken;
         }
-        if now.is_none_or(|now| now.next() == setpoint.counter) {
-            return match self.next_setpoint {
-                // Before the first SYNC there is no cycle to belong to: the newest counts.
-                Slot::Fresh(_) if now.is_some() => Taken::Doubled,
-                Slot::Fresh(_) => fill(&mut self.next_setpoint, setpoint),
-                Slot::Waiting | Slot::Missed(_) => fill(&mut self.next_setpoint, setpoint),
-            };
+        if setpoint.counter == now.next().next() {
+            return Taken::NextCycle;
         }
-        self.next_setpoint.close(Miss::Stale);
+        if setpoint.counter == now && self.open && self.present.is_none() {
+            self.present = Some(setpoint);
+        }
+        self.preview.miss = Miss::Stale;
         Taken::Stale
     }
 
-    /// Takes a feedback of this cycle.
+    /// Takes a feedback.
     pub fn feedback(&mut self, feedback: Feedback) -> Taken {
         if self.counter == Some(feedback.counter) {
-            return if self.feedback.waits() { fill(&mut self.feedback, feedback) } else { Taken::Doubled };
+            let taken = if self.feedback.value.is_some() || !self.open { Taken::Doubled } else { Taken::Used };
+            self.feedback.value.get_or_insert(feedback);
+            return taken;
         }
-        let fills_hole = self.feedback_hole && self.counter == Some(feedback.counter.next());
-        if fills_hole {
-            self.feedback_hole = false;
-        } else {
-            self.feedback.close(Miss::Stale);
+        if self.counter.is_some_and(|now| now.next() == feedback.counter) {
+            return Taken::NextCycle;
         }
+        self.feedback.miss = Miss::Stale;
         Taken::Stale
     }
 
-    /// The setpoint on its way (one cycle early) will not come.
-    pub fn miss_setpoint(&mut self, miss: Miss) {
-        self.next_setpoint.close(miss);
+    /// A setpoint came that cannot be decoded.
+    pub fn malformed_setpoint(&mut self) {
+        self.preview.miss = Miss::Malformed;
     }
 
-    /// The feedback of this cycle will not come.
-    pub fn miss_feedback(&mut self, miss: Miss) {
-        self.feedback.close(miss);
+    /// A feedback came that cannot be decoded.
+    pub fn malformed_feedback(&mut self) {
+        self.feedback.miss = Miss::Malformed;
     }
 }
 
-fn fill<T>(slot: &mut Slot<T>, value: T) -> Taken {
-    *slot = Slot::Fresh(value);
-    Taken::Used
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::states::ControlWord;
+    use protocol::weight::{LoadIncrements24, MotorIncrements, SetpointFine};
+
+    fn count(value: u8) -> SyncCounter {
+        SyncCounter::new(value).unwrap()
+    }
+
+    fn setpoint(counter: u8) -> Setpoint {
+        Setpoint { control: ControlWord::default(), counter: count(counter), position: SetpointFine::default() }
+    }
+
+    fn feedback(counter: u8) -> Feedback {
+        Feedback { motor: MotorIncrements(0), load: LoadIncrements24::from_counts(0), counter: count(counter) }
+    }
+
+    fn at(counter: u8) -> Inbox {
+        let mut inbox = Inbox::default();
+        inbox.begin(count(counter));
+        inbox
+    }
+
+    #[test]
+    fn a_cycle_is_complete_with_its_feedback_and_the_setpoint_of_the_next() {
+        let mut inbox = at(240);
+        assert_eq!(inbox.feedback(feedback(240)), Taken::Used);
+        assert!(!inbox.is_complete(true) && inbox.is_complete(false));
+        assert_eq!(inbox.setpoint(setpoint(1)), Taken::Used);
+        assert!(inbox.is_complete(true));
+        assert_eq!(inbox.close().preview, Ok(setpoint(1)));
+        assert!(!inbox.is_open());
+    }
+
+    #[test]
+    fn a_frame_of_the_next_cycle_says_so_and_an_old_one_is_stale() {
+        let mut inbox = at(7);
+        assert_eq!(inbox.feedback(feedback(8)), Taken::NextCycle);
+        assert_eq!(inbox.setpoint(setpoint(9)), Taken::NextCycle);
+        assert_eq!(inbox.feedback(feedback(3)), Taken::Stale);
+        assert_eq!(inbox.setpoint(setpoint(2)), Taken::Stale);
+        let contents = inbox.close();
+        assert_eq!((contents.feedback, contents.preview), (Err(Miss::Stale), Err(Miss::Stale)));
+    }
+
+    #[test]
+    fn a_setpoint_that_is_one_cycle_late_is_the_present_one() {
+        let mut inbox = at(7);
+        inbox.close();
+        assert_eq!(inbox.setpoint(setpoint(8)), Taken::Used);
+        inbox.begin(count(8));
+        assert_eq!(inbox.close().present, Some(setpoint(8)));
+        let mut inbox = at(7);
+        inbox.setpoint(setpoint(7));
+        assert_eq!(inbox.close().present, Some(setpoint(7)));
+    }
+
+    #[test]
+    fn before_the_first_sync_the_newest_setpoint_waits_for_its_cycle() {
+        let mut inbox = Inbox::default();
+        inbox.setpoint(setpoint(5));
+        inbox.setpoint(setpoint(1));
+        inbox.begin(count(1));
+        assert_eq!(inbox.close().present, Some(setpoint(1)));
+    }
+
+    #[test]
+    fn a_double_changes_nothing() {
+        let mut inbox = at(7);
+        inbox.setpoint(setpoint(8));
+        assert_eq!(inbox.setpoint(setpoint(8)), Taken::Doubled);
+        inbox.feedback(feedback(7));
+        assert_eq!(inbox.feedback(feedback(7)), Taken::Doubled);
+    }
 }

@@ -1,49 +1,47 @@
 //! The object dictionary: one table for the SDO server, the parameter set and `docs/objects.md`.
 //!
-//! Parameters are 32-bit machine numbers; the host turns SI gains into them. A write is checked against its range before it is
-//! acknowledged and goes into the *staged* set only; [`COMMIT`] makes the staged set active as a whole.
+//! A person commissions an axis in physical units, so a parameter is an integer number of decimal steps: 5 m/s² is 5 000 000 steps of
+//! 1 µm/s². A write is checked against its range before it is acknowledged and goes into the *staged* set only. [`COMMIT`] turns the
+//! staged set into machine units of its own cycle time ([`crate::conversion`]) and makes it active as a whole.
+//!
+//! All parameters are INTEGER32, also where CiA 402 has UNSIGNED32, UNSIGNED8 or INTEGER16: a client writes four bytes everywhere. Indices
+//! are those of CiA 301 and CiA 402-2 where these have the object, 2xxxh elsewhere.
 
 use protocol::sdo::Address;
 
-/// A parameter of the drive; its discriminant is its place in a [`crate::parameters::ParameterSet`].
+/// Step of a raw number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-#[expect(missing_docs, reason = "TABLE says what each one is")]
-pub enum Parameter {
-    PositionSource,
-    PositionGain,
-    VelocityGain,
-    IntegralGain,
-    AccelerationGain,
-    VelocityFilter,
-    TorqueLimit,
-    RatedTorque,
-    WayWhole,
-    WayFraction,
-    PulseAmplitude,
-    PulseDecay,
-    PulseStartDelay,
-    BacklashHalfGap,
-    VelocityLimit,
-    AccelerationLimit,
-    CoulombTorque,
-    FilterB0,
-    FilterB1,
-    FilterB2,
-    FilterA1,
-    FilterA2,
-    SetpointMissesAllowed,
-    FeedbackMissesAllowed,
-    FollowingErrorWindow,
-    EncoderJumpLimit,
-    HeartbeatCycles,
-    StopDeceleration,
-    StopCycles,
-    SyncTimeout,
+pub struct Unit {
+    /// The step, for people.
+    pub text: &'static str,
+    /// Steps in one SI unit (m, s, N·m and what follows from them).
+    pub per_si: u64,
 }
 
-/// Number of parameters.
-pub const PARAMETERS: usize = 30;
+const fn unit(text: &'static str, per_si: u64) -> Unit {
+    Unit { text, per_si }
+}
+
+const CHOICE: Unit = unit("choice", 1);
+const CYCLES: Unit = unit("cycles", 1);
+const NUMBER: Unit = unit("1", 1);
+const MILLIONTH: Unit = unit("1e-6", 1_000_000);
+const Q29: Unit = unit("2^-29", 1 << 29);
+const MILLISECOND: Unit = unit("ms", 1_000);
+const MICROSECOND: Unit = unit("us", 1_000_000);
+const NANOSECOND: Unit = unit("ns", 1_000_000_000);
+const PER_SECOND: Unit = unit("1e-4 /s", 10_000);
+const HERTZ: Unit = unit("1e-4 Hz", 10_000);
+const INERTIA: Unit = unit("1e-7 N m/(m/s^2)", 10_000_000);
+const MICRO_NM: Unit = unit("uN m", 1_000_000);
+const MILLI_NM: Unit = unit("mN m", 1_000);
+const TENTH_NANOMETRE: Unit = unit("0.1 nm", 10_000_000_000);
+const NANOMETRE: Unit = unit("nm", 1_000_000_000);
+const COUNT: Unit = unit("10 nm", 100_000_000);
+const NANOMETRE_PER_S: Unit = unit("nm/s", 1_000_000_000);
+const MICROMETRE_PER_S: Unit = unit("um/s", 1_000_000);
+const MICROMETRE_PER_S2: Unit = unit("um/s^2", 1_000_000);
+const MILLIMETRE_PER_S3: Unit = unit("mm/s^3", 1_000);
 
 /// A row of the dictionary that holds a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +52,8 @@ pub struct Entry {
     pub parameter: Parameter,
     /// What it is.
     pub name: &'static str,
-    /// Unit and scaling of the raw number.
-    pub unit: &'static str,
+    /// Step of the raw number.
+    pub unit: Unit,
     /// Smallest raw value.
     pub min: i32,
     /// Largest raw value.
@@ -64,131 +62,225 @@ pub struct Entry {
     pub default: i32,
 }
 
-const fn entry(
-    (index, subindex): (u16, u8),
-    parameter: Parameter,
-    name: &'static str,
-    unit: &'static str,
-    (min, max): (i32, i32),
-    default: i32,
-) -> Entry {
-    Entry { address: Address::new(index, subindex), parameter, name, unit, min, max, default }
+/// Why a value does not fit its row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misfit {
+    /// Below the smallest value.
+    TooLow,
+    /// Above the largest value.
+    TooHigh,
+    /// Within the range, but not supported.
+    Unsupported,
+}
+
+impl Entry {
+    /// Checks a raw value.
+    ///
+    /// # Errors
+    /// [`Misfit`] where the row does not take the value.
+    pub fn check(&self, value: i32) -> Result<(), Misfit> {
+        let reserved = self.parameter == Parameter::QuickStopOption && QUICK_STOP_UNSUPPORTED.contains(&value);
+        match value {
+            _ if value < self.min => Err(Misfit::TooLow),
+            _ if value > self.max => Err(Misfit::TooHigh),
+            _ if reserved => Err(Misfit::Unsupported),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// 605Ah: 3 and 4 slow down at the current or voltage limit, which this drive does not do.
+const QUICK_STOP_UNSUPPORTED: [i32; 2] = [3, 4];
+
+macro_rules! parameters {
+    ($($name:ident = ($index:literal, $subindex:literal), $text:literal, $unit:expr, $range:expr, $default:expr;)*) => {
+        /// A parameter of the drive; its discriminant is its place in a [`crate::parameters::ParameterSet`].
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(usize)]
+        pub enum Parameter {
+            $(#[doc = $text] $name,)*
+        }
+
+        impl Parameter {
+            /// Step of its raw number.
+            #[must_use]
+            pub const fn unit(self) -> Unit {
+                match self {
+                    $(Self::$name => $unit,)*
+                }
+            }
+        }
+
+        /// Number of parameters.
+        pub const PARAMETERS: usize = DEFAULTS.len();
+
+        /// Raw values after reset, in the order of the parameters.
+        pub const DEFAULTS: &[i32] = &[$($default,)*];
+
+        /// All parameters, in their order. The defaults move nothing: torque limit and gains are zero until a set is committed.
+        pub static TABLE: [Entry; PARAMETERS] = [
+            $(Entry {
+                address: Address::new($index, $subindex),
+                parameter: Parameter::$name,
+                name: $text,
+                unit: $unit,
+                min: $range.0,
+                max: $range.1,
+                default: $default,
+            },)*
+        ];
+    };
 }
 
 const POSITIVE: (i32, i32) = (0, i32::MAX);
-const ANY: (i32, i32) = (-i32::MAX, i32::MAX);
-const ONE_Q29: i32 = 1 << 29;
+const EVERY: (i32, i32) = (i32::MIN, i32::MAX);
+const SWITCH: (i32, i32) = (0, 1);
+const FREQUENCY: (i32, i32) = (0, 10_000_000);
+const TORQUE: i32 = controller::filter::TORQUE_LIMIT_MICRO_NM;
+const SIGNED_TORQUE: (i32, i32) = (-TORQUE, TORQUE);
+/// A coefficient of the filter is below 4.
+const COEFFICIENT: (i32, i32) = (-i32::MAX, i32::MAX);
+/// What a position error of the law can hold: below 84 mm.
+const WINDOW: (i32, i32) = (1, 8_000_000);
+const MISSES: (i32, i32) = (0, 100);
+/// A deceleration of zero would never stop.
+const DECELERATION: (i32, i32) = (1, i32::MAX);
+/// Cycle times that the bus and the boards are made for, µs: 10 kHz to 50 Hz.
+pub const PERIOD_US: (i32, i32) = (100, 20_000);
+const BRAKE_US: (i32, i32) = (0, 2_000_000);
 
-/// All parameters. The defaults move nothing: every gain is zero until a set is committed.
-pub const TABLE: [Entry; PARAMETERS] = [
-    entry((0x2100, 1), Parameter::PositionSource, "position source", "0 motor encoder, 1 load scale", (0, 1), 1),
-    entry((0x2100, 2), Parameter::PositionGain, "position gain Kv", "per cycle, 2^-24", (0, 1 << 24), 0),
-    entry((0x2100, 3), Parameter::VelocityGain, "velocity gain Kp", "uN m per (10 nm/cycle), 2^-12", POSITIVE, 0),
-    entry(
-        (0x2100, 4),
-        Parameter::IntegralGain,
-        "integral gain Ki",
-        "uN m per (10 nm/cycle) and cycle, 2^-12",
-        POSITIVE,
-        0,
-    ),
-    entry(
-        (0x2100, 5),
-        Parameter::AccelerationGain,
-        "acceleration feedforward Ja",
-        "uN m per (10 nm/cycle^2), 2^-8",
-        POSITIVE,
-        0,
-    ),
-    entry(
-        (0x2100, 6),
-        Parameter::VelocityFilter,
-        "velocity filter, share of the new value",
-        "2^-30",
-        (1, 1 << 30),
-        1 << 30,
-    ),
-    entry(
-        (0x2100, 7),
-        Parameter::TorqueLimit,
-        "torque limit",
-        "uN m",
-        (0, controller::filter::TORQUE_LIMIT_MICRO_NM),
-        0,
-    ),
-    entry((0x6076, 0), Parameter::RatedTorque, "rated torque", "mN m", (1, i32::MAX), 1000),
-    entry((0x2101, 1), Parameter::WayWhole, "way per motor increment, whole", "10 nm", (0, 65_535), 1),
-    entry((0x2101, 2), Parameter::WayFraction, "way per motor increment, fraction", "10 nm, 2^-31", POSITIVE, 0),
-    entry((0x2110, 1), Parameter::PulseAmplitude, "reversal pulse height", "10 nm/cycle, 2^-12", ANY, 0),
-    entry((0x2110, 2), Parameter::PulseDecay, "reversal pulse decay per cycle", "2^-30", (0, (1 << 30) - 1), 0),
-    entry((0x2110, 3), Parameter::PulseStartDelay, "reversal pulse start delay", "cycles", (0, 10_000), 0),
-    entry((0x2111, 1), Parameter::BacklashHalfGap, "half the backlash to compensate", "10 nm, 2^-8", POSITIVE, 0),
-    entry((0x2111, 2), Parameter::VelocityLimit, "velocity limit of the axis", "10 nm/cycle, 2^-12", POSITIVE, 0),
-    entry(
-        (0x2111, 3),
-        Parameter::AccelerationLimit,
-        "acceleration limit of the axis",
-        "10 nm/cycle^2, 2^-12",
-        POSITIVE,
-        0,
-    ),
-    entry((0x2112, 0), Parameter::CoulombTorque, "Coulomb feedforward", "uN m", ANY, 0),
-    entry((0x2120, 1), Parameter::FilterB0, "torque filter b0", "2^-29", ANY, ONE_Q29),
-    entry((0x2120, 2), Parameter::FilterB1, "torque filter b1", "2^-29", ANY, 0),
-    entry((0x2120, 3), Parameter::FilterB2, "torque filter b2", "2^-29", ANY, 0),
-    entry((0x2120, 4), Parameter::FilterA1, "torque filter a1 (y0 = ... + a1 y1)", "2^-29", ANY, 0),
-    entry((0x2120, 5), Parameter::FilterA2, "torque filter a2 (y0 = ... + a2 y2)", "2^-29", ANY, 0),
-    entry(
-        (0x2130, 1),
-        Parameter::SetpointMissesAllowed,
-        "setpoints missed in a row before the stop",
-        "cycles",
-        (0, 100),
-        3,
-    ),
-    entry(
-        (0x2130, 2),
-        Parameter::FeedbackMissesAllowed,
-        "feedbacks missed in a row before torque zero",
-        "cycles",
-        (0, 100),
-        3,
-    ),
-    entry((0x6065, 0), Parameter::FollowingErrorWindow, "following error window", "10 nm", (1, 8_000_000), 100_000),
-    entry((0x2130, 3), Parameter::EncoderJumpLimit, "encoder jump beyond the expected way", "10 nm", POSITIVE, 100_000),
-    entry((0x2130, 4), Parameter::HeartbeatCycles, "plant heartbeat timeout", "cycles", (101, 10_000), 250),
-    entry(
-        (0x2130, 5),
-        Parameter::StopDeceleration,
-        "deceleration of a controlled stop",
-        "10 nm/cycle^2, 2^-12",
-        (1, i32::MAX),
-        1 << 21,
-    ),
-    entry((0x2130, 6), Parameter::StopCycles, "longest controlled stop", "cycles", (0, 10_000), 200),
-    entry((0x2131, 0), Parameter::SyncTimeout, "SYNC timeout by wall clock", "us", (100, 60_000_000), 1_000_000),
-];
+parameters! {
+    CyclePeriod = (0x1006, 0), "cycle time that the set is made for", MICROSECOND, PERIOD_US, 1000;
+    PositionSource = (0x2100, 1), "position source: 0 motor encoder, 1 load scale", CHOICE, SWITCH, 1;
+    PositionGain = (0x2100, 2), "position gain Kv", PER_SECOND, FREQUENCY, 0;
+    Inertia = (0x2100, 3), "inertia: motor torque per acceleration at the table", INERTIA, POSITIVE, 0;
+    VelocityBandwidth = (0x2100, 4), "velocity bandwidth f: Kp = 2 pi f inertia", HERTZ, FREQUENCY, 0;
+    IntegralCorner = (0x2100, 5), "integral corner fi: Ki = Kp 2 pi fi", HERTZ, FREQUENCY, 0;
+    AccelerationShare = (0x2100, 6), "acceleration feedforward, share of the inertia", MILLIONTH, (0, 2_000_000), 1_000_000;
+    VelocityFilterTime = (0x2100, 7), "velocity filter, time constant (0 off)", NANOSECOND, POSITIVE, 0;
+    TorqueLimit = (0x2100, 8), "torque limit", MICRO_NM, (0, TORQUE), 0;
+    RatedTorque = (0x6076, 0), "rated torque", MILLI_NM, (1, i32::MAX), 1000;
+    Feed = (0x6092, 1), "feed constant: way of the table", NANOMETRE, (1, i32::MAX), 10_000_000;
+    FeedRevolutions = (0x6092, 2), "feed constant: in so many shaft revolutions", NUMBER, (1, 65_535), 1;
+    EncoderIncrements = (0x608F, 1), "encoder resolution: increments", NUMBER, (1, i32::MAX), 1_000_000;
+    EncoderRevolutions = (0x608F, 2), "encoder resolution: in so many motor revolutions", NUMBER, (1, 65_535), 1;
+    RelationOffset = (0x2103, 1), "load scale where the motor encoder is zero", COUNT, EVERY, 0;
+    RelationWindow = (0x2103, 2), "allowed difference from that relation", COUNT, WINDOW, 100_000;
+    PulseHeight = (0x2110, 1), "reversal pulse height", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    PulseTime = (0x2110, 2), "reversal pulse time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    PulseStartDelay = (0x2110, 3), "reversal pulse start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    BacklashGap = (0x2111, 0), "backlash to compensate, the whole gap", TENTH_NANOMETRE, (0, 100_000_000), 0;
+    CoulombTorque = (0x2112, 0), "Coulomb feedforward", MICRO_NM, SIGNED_TORQUE, 0;
+    VelocityLimit = (0x607F, 0), "velocity limit of the axis", MICROMETRE_PER_S, POSITIVE, 0;
+    AccelerationLimit = (0x60C5, 0), "acceleration limit of the axis", MICROMETRE_PER_S2, POSITIVE, 0;
+    SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
+    QuickStopDeceleration = (0x6085, 0), "deceleration of the quick-stop ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
+    RampJerk = (0x60A4, 1), "jerk of both ramps (0 not limited)", MILLIMETRE_PER_S3, POSITIVE, 0;
+    // The geometric mean of a smooth path (50 m/s^3) and of a step of 5 m/s^2 within 1 ms; fits the machine units at 20 ms too.
+    StepJerk = (0x2114, 0), "jerk of a path above which the acceleration makes a step", MILLIMETRE_PER_S3, (1, i32::MAX), 500_000;
+    PositionMin = (0x607D, 1), "software position limit, lower (INTEGER32 minimum: none)", COUNT, EVERY, i32::MIN;
+    PositionMax = (0x607D, 2), "software position limit, upper (INTEGER32 maximum: none)", COUNT, EVERY, i32::MAX;
+    SetpointPeriod = (0x60C2, 1), "setpoint period (0: every cycle)", NUMBER, (0, 255), 0;
+    SetpointPeriodExponent = (0x60C2, 2), "setpoint period, power of ten of seconds", NUMBER, (-6, 0), -3;
+    SetpointFilter = (0x2115, 0), "setpoint filter over 2^n cycles (0 off)", NUMBER, (0, 4), 0;
+    FilterB0 = (0x2120, 1), "torque filter b0", Q29, COEFFICIENT, 1 << 29;
+    FilterB1 = (0x2120, 2), "torque filter b1", Q29, COEFFICIENT, 0;
+    FilterB2 = (0x2120, 3), "torque filter b2", Q29, COEFFICIENT, 0;
+    FilterA1 = (0x2120, 4), "torque filter a1 (y0 = ... + a1 y1)", Q29, COEFFICIENT, 0;
+    FilterA2 = (0x2120, 5), "torque filter a2 (y0 = ... + a2 y2)", Q29, COEFFICIENT, 0;
+    FilterPeriod = (0x2120, 6), "cycle time that the torque filter is made for", MICROSECOND, PERIOD_US, 1000;
+    SetpointMissesAllowed = (0x2130, 1), "setpoints missed in a row before the ramp", CYCLES, MISSES, 3;
+    FeedbackMissesAllowed = (0x2130, 2), "feedbacks missed in a row before torque zero", CYCLES, MISSES, 3;
+    RefusalsAllowed = (0x2130, 3), "setpoints refused in a row before the ramp", CYCLES, MISSES, 3;
+    EncoderJumpLimit = (0x2130, 4), "encoder jump beyond the expected way", COUNT, WINDOW, 100_000;
+    HeartbeatTimeout = (0x2130, 5), "plant heartbeat timeout (0: 250 periods)", MILLISECOND, (0, 60_000), 0;
+    FollowingErrorWindow = (0x6065, 0), "following error window", COUNT, WINDOW, 100_000;
+    SyncTimeout = (0x2131, 0), "SYNC timeout (0: 5 periods)", MICROSECOND, (0, 60_000_000), 0;
+    StageCycles = (0x2132, 0), "power stage confirms within", CYCLES, (1, 100), 3;
+    EnableWindow = (0x2133, 0), "setpoint may be so far from the axis at enable", COUNT, WINDOW, 10_000;
+    BrakeOpening = (0x2140, 1), "brake opening time", MICROSECOND, BRAKE_US, 0;
+    BrakeClosing = (0x2140, 2), "brake closing time", MICROSECOND, BRAKE_US, 0;
+    PresetTorque = (0x2141, 1), "torque preset at enable", MICRO_NM, SIGNED_TORQUE, 0;
+    PresetFromLast = (0x2141, 2), "torque preset: 0 as 2141h:1, 1 as before the last disable", CHOICE, SWITCH, 0;
+    AbortConnectionOption = (0x6007, 0), "connection lost: 1 fault, 2 disable voltage, 3 quick stop (0, nothing, is not taken)", CHOICE, (1, 3), 1;
+    QuickStopOption = (0x605A, 0), "quick stop: 0 disable, 1 slow down, 2 quick stop; 5, 6 as 1, 2 and stay", CHOICE, (0, 6), 2;
+    ShutdownOption = (0x605B, 0), "shutdown: 0 disable, 1 slow down", CHOICE, SWITCH, 0;
+    DisableOperationOption = (0x605C, 0), "disable operation: 0 disable, 1 slow down", CHOICE, SWITCH, 1;
+    HaltOption = (0x605D, 0), "halt: 1 slow down, 2 quick stop", CHOICE, (1, 2), 1;
+    FaultReactionOption = (0x605E, 0), "fault reaction: 0 disable, 1 slow down, 2 quick stop", CHOICE, (0, 2), 2;
+}
 
 /// Writing [`COMMIT_KEY`] makes the staged set active at the next cycle; reading gives the number of commits.
 pub const COMMIT: Address = Address::new(0x2F00, 0);
 /// "cmit", as the bytes stand on the bus.
 pub const COMMIT_KEY: u32 = u32::from_le_bytes(*b"cmit");
+/// Which set an upload of a parameter reads: 0 staged, 1 active. UNSIGNED8.
+pub const SET_READ: Address = Address::new(0x2F01, 0);
+/// Row of the parameter that the last commit was refused for, as in `docs/objects.md`; 0 where it was taken.
+pub const REFUSED_ROW: Address = Address::new(0x2F02, 1);
+/// Why it was refused: [`crate::parameters::SetError::code`].
+pub const REFUSED_REASON: Address = Address::new(0x2F02, 2);
+/// The SYNC period that the master declares, µs; 0: not declared. Not part of the set, active at once.
+pub const DECLARED_PERIOD: Address = Address::new(0x2102, 0);
 /// Device type: CiA 402 servo drive.
 pub const DEVICE_TYPE: Address = Address::new(0x1000, 0);
 /// Value of [`DEVICE_TYPE`].
 pub const DEVICE_TYPE_VALUE: u32 = 0x0002_0192;
 /// Error register.
 pub const ERROR_REGISTER: Address = Address::new(0x1001, 0);
+/// Period of the servo's heartbeat, ms.
+pub const HEARTBEAT_PERIOD: Address = Address::new(0x1017, 0);
+/// Code of the last EMCY.
+pub const ERROR_CODE: Address = Address::new(0x603F, 0);
 /// Status word.
 pub const STATUS_WORD: Address = Address::new(0x6041, 0);
 /// Modes of operation display: 8, cyclic synchronous position.
 pub const MODE_DISPLAY: Address = Address::new(0x6061, 0);
-/// Actual position in 10 nm.
+/// Actual position of the encoder that closes the loop, 10 nm.
 pub const POSITION_ACTUAL: Address = Address::new(0x6064, 0);
 /// Following error in 10 nm.
 pub const FOLLOWING_ERROR: Address = Address::new(0x60F4, 0);
-/// Frames lost, stale, malformed, implausible and doubled since reset, subindex 1 to 5.
+/// Motor encoder as a position at the table, 10 nm.
+pub const MOTOR_POSITION: Address = Address::new(0x2201, 1);
+/// Load scale, 10 nm.
+pub const LOAD_POSITION: Address = Address::new(0x2201, 2);
+/// What else there is to know about the last fault: the four bytes of its EMCY after code, counter.
+pub const FAULT_DETAIL: Address = Address::new(0x2202, 0);
+/// Counts since reset: [`crate::sdo_server::Diagnostics`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
+
+/// Objects beside the parameters that can be read, with what they say.
+pub const READINGS: [(Address, &str); 26] = [
+    (DEVICE_TYPE, "device type"),
+    (ERROR_REGISTER, "error register"),
+    (HEARTBEAT_PERIOD, "heartbeat period, ms"),
+    (DECLARED_PERIOD, "SYNC period that the master declares, us; 0 not declared; writable, active at once"),
+    (Address::new(DIAGNOSTICS_INDEX, 1), "cycles computed"),
+    (Address::new(DIAGNOSTICS_INDEX, 2), "cycles bridged"),
+    (Address::new(DIAGNOSTICS_INDEX, 3), "cycles refused"),
+    (Address::new(DIAGNOSTICS_INDEX, 4), "cycles closed by deadline"),
+    (Address::new(DIAGNOSTICS_INDEX, 5), "frames stale"),
+    (Address::new(DIAGNOSTICS_INDEX, 6), "frames malformed"),
+    (Address::new(DIAGNOSTICS_INDEX, 7), "frames implausible"),
+    (Address::new(DIAGNOSTICS_INDEX, 8), "frames doubled"),
+    (
+        Address::new(DIAGNOSTICS_INDEX, 9),
+        "implausible values of the load scale while the motor encoder closes the loop",
+    ),
+    (MOTOR_POSITION, "motor encoder as a position at the table, 10 nm"),
+    (LOAD_POSITION, "load scale, 10 nm"),
+    (FAULT_DETAIL, "detail of the last fault"),
+    (COMMIT, "number of commits; writing \"cmit\" (0x74696D63) commits"),
+    (SET_READ, "set that uploads of parameters read: 0 staged, 1 active; writable"),
+    (REFUSED_ROW, "row of the parameter that the last commit was refused for; 0 none"),
+    (REFUSED_REASON, "reason of that refusal"),
+    (ERROR_CODE, "code of the last EMCY"),
+    (STATUS_WORD, "status word"),
+    (MODE_DISPLAY, "mode of operation: 8, cyclic synchronous position"),
+    (POSITION_ACTUAL, "position of the encoder that closes the loop, 10 nm"),
+    (FOLLOWING_ERROR, "following error, 10 nm"),
+    (Address::new(DIAGNOSTICS_INDEX, 0), "highest subindex of the counts"),
+];
 
 /// The row at an address.
 #[must_use]
@@ -199,10 +291,7 @@ pub fn find(address: Address) -> Option<&'static Entry> {
 /// Whether any object has this index.
 #[must_use]
 pub fn index_exists(index: u16) -> bool {
-    let single = [COMMIT, DEVICE_TYPE, ERROR_REGISTER, STATUS_WORD, MODE_DISPLAY, POSITION_ACTUAL, FOLLOWING_ERROR];
-    index == DIAGNOSTICS_INDEX
-        || single.iter().any(|address| address.index == index)
-        || TABLE.iter().any(|entry| entry.address.index == index)
+    READINGS.iter().any(|(address, _)| address.index == index) || TABLE.iter().any(|entry| entry.address.index == index)
 }
 
 #[cfg(test)]
@@ -210,11 +299,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_in_the_order_of_the_parameters_and_its_defaults_are_in_range() {
+    fn every_object_has_an_address_of_its_own() {
+        let parameters = TABLE.iter().map(|entry| entry.address);
+        let mut addresses: Vec<Address> = parameters.chain(READINGS.iter().map(|(address, _)| *address)).collect();
+        addresses.sort_unstable();
+        let all = addresses.len();
+        addresses.dedup();
+        assert_eq!(addresses.len(), all);
+    }
+
+    #[test]
+    fn every_default_fits_its_row_and_every_row_is_at_the_place_of_its_parameter() {
         for (place, entry) in TABLE.iter().enumerate() {
             assert_eq!(entry.parameter as usize, place, "{}", entry.name);
-            assert!(entry.min <= entry.default && entry.default <= entry.max, "{}", entry.name);
-            assert_eq!(TABLE.iter().filter(|other| other.address == entry.address).count(), 1, "{}", entry.name);
+            assert_eq!(entry.check(entry.default), Ok(()), "{}", entry.name);
         }
+    }
+
+    #[test]
+    fn the_option_codes_are_those_that_the_drive_supports() {
+        let taken = |parameter: Parameter| -> Vec<i32> {
+            let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
+            (-2..10).filter(|value| entry.check(*value).is_ok()).collect()
+        };
+        assert_eq!(taken(Parameter::QuickStopOption), [0, 1, 2, 5, 6]);
+        assert_eq!(taken(Parameter::ShutdownOption), [0, 1]);
+        assert_eq!(taken(Parameter::DisableOperationOption), [0, 1]);
+        assert_eq!(taken(Parameter::HaltOption), [1, 2]);
+        assert_eq!(taken(Parameter::FaultReactionOption), [0, 1, 2]);
+        assert_eq!(taken(Parameter::AbortConnectionOption), [1, 2, 3]);
     }
 }

@@ -1,16 +1,8 @@
-//! A parameter set, and what the drive makes of it.
+//! A parameter set: one raw number for each row of the object table, in physical steps.
 
-use controller::backlash::BacklashConfig;
-use controller::cascade::CascadeConfig;
-use controller::filter::FilterConfig;
-use controller::pulse::PulseConfig;
-use controller::units::{
-    AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain, WayPerIncrement,
-};
-use controller::{Config, PositionSource};
-use fixed::types::{I2F30, I8F24, I20F12, I24F8};
-
-use crate::objects::{PARAMETERS, Parameter, TABLE};
+use crate::conversion;
+use crate::objects::{DEFAULTS, PARAMETERS, Parameter};
+use crate::settings::Settings;
 
 /// One value per row of the object table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,53 +10,10 @@ pub struct ParameterSet([i32; PARAMETERS]);
 
 impl Default for ParameterSet {
     fn default() -> Self {
-        Self(TABLE.map(|entry| entry.default))
+        let mut set = [0; PARAMETERS];
+        set.iter_mut().zip(DEFAULTS).for_each(|(place, default)| *place = *default);
+        Self(set)
     }
-}
-
-/// Why a set as a whole is not valid, though each value is within its range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SetError {
-    /// The filter coefficients leave no headroom.
-    FilterHeadroom,
-    /// Backlash compensation needs velocity and acceleration limits.
-    BacklashWithoutLimits,
-    /// An encoder increment is worth nothing.
-    EncoderWithoutWay,
-}
-
-/// Watchdog limits, all counted in cycles unless the name says otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Setpoints that may be missing in a row.
-    pub setpoint_misses: u16,
-    /// Feedbacks that may be missing in a row.
-    pub feedback_misses: u16,
-    /// Following error window.
-    pub following_error: PositionError,
-    /// Way by which a feedback may differ from the expected one.
-    pub encoder_jump: PositionError,
-    /// Cycles without a plant heartbeat.
-    pub heartbeat: u16,
-    /// Deceleration of a controlled stop, per cycle.
-    pub stop_deceleration: Velocity,
-    /// Longest controlled stop.
-    pub stop: u16,
-    /// SYNC timeout by wall clock, µs.
-    pub sync_timeout_us: u64,
-}
-
-/// A parameter set that is fit to run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// For the control law.
-    pub config: Config,
-    /// For the watchdogs.
-    pub limits: Limits,
-    /// Way per motor increment.
-    pub way: WayPerIncrement,
-    /// Rated torque, mN·m, at least 1.
-    pub rated_torque_mnm: i32,
 }
 
 impl ParameterSet {
@@ -83,104 +32,94 @@ impl ParameterSet {
         }
     }
 
-    /// The settings that the set describes.
+    /// The settings that the set describes, in machine units of its cycle time.
     ///
     /// # Errors
-    /// [`SetError`] where values that are fine one by one do not go together.
+    /// [`SetError`] where values that are fine one by one do not go together, or do not fit the machine units.
     pub fn settings(&self) -> Result<Settings, SetError> {
-        let way = self.way();
-        if way == WayPerIncrement::default() {
-            return Err(SetError::EncoderWithoutWay);
+        conversion::settings(self)
+    }
+
+    /// Whether two sets read the encoders alike and run at the same cycle time: only such a set may become active in motion.
+    #[must_use]
+    pub fn measures_like(&self, other: &Self) -> bool {
+        ONLY_WITHOUT_TORQUE.iter().all(|parameter| self.get(*parameter) == other.get(*parameter))
+    }
+}
+
+/// What the closed loop stands on: a change of these is a step of the measured position, or of all machine units at once.
+pub const ONLY_WITHOUT_TORQUE: [Parameter; 7] = [
+    Parameter::CyclePeriod,
+    Parameter::PositionSource,
+    Parameter::Feed,
+    Parameter::FeedRevolutions,
+    Parameter::EncoderIncrements,
+    Parameter::EncoderRevolutions,
+    Parameter::RelationOffset,
+];
+
+macro_rules! set_errors {
+    ($($name:ident = $code:literal, $text:literal;)*) => {
+        /// Why a set as a whole is not valid, though each value is within its range; with the parameter to look at first.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum SetError {
+            $(#[doc = $text] $name(Parameter),)*
         }
-        Ok(Settings {
-            config: self.config()?,
-            limits: self.limits(),
-            way,
-            rated_torque_mnm: self.get(Parameter::RatedTorque),
-        })
-    }
 
-    fn config(&self) -> Result<Config, SetError> {
-        Ok(Config {
-            position_source: match self.get(Parameter::PositionSource) {
-                0 => PositionSource::Motor,
-                _ => PositionSource::Load,
-            },
-            cascade: self.cascade(),
-            pulse: self.pulse(),
-            backlash: self.backlash()?,
-            coulomb: Torque::from_micro_nm(self.get(Parameter::CoulombTorque)),
-            filter: self.filter()?,
-        })
-    }
+        impl SetError {
+            /// All reasons: code and text.
+            pub const REASONS: &'static [(u8, &'static str)] = &[$(($code, $text),)*];
 
-    fn cascade(&self) -> CascadeConfig {
-        CascadeConfig {
-            position_gain: PositionGain(I8F24::from_bits(self.get(Parameter::PositionGain))),
-            velocity_gain: VelocityGain(I20F12::from_bits(self.get(Parameter::VelocityGain))),
-            integral_gain: VelocityGain(I20F12::from_bits(self.get(Parameter::IntegralGain))),
-            acceleration_gain: AccelerationGain(I24F8::from_bits(self.get(Parameter::AccelerationGain))),
-            velocity_filter: I2F30::from_bits(self.get(Parameter::VelocityFilter)),
-            torque_limit: Torque::from_micro_nm(self.get(Parameter::TorqueLimit)),
+            /// The parameter to look at first.
+            #[must_use]
+            pub const fn parameter(self) -> Parameter {
+                match self {
+                    $(Self::$name(parameter) => parameter,)*
+                }
+            }
+
+            /// The reason in object 2F02h:2.
+            #[must_use]
+            pub const fn code(self) -> u8 {
+                match self {
+                    $(Self::$name(_) => $code,)*
+                }
+            }
+
+            /// The reason, for people.
+            #[must_use]
+            pub const fn text(self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => $text,)*
+                }
+            }
         }
-    }
+    };
+}
 
-    fn pulse(&self) -> PulseConfig {
-        PulseConfig {
-            amplitude: self.velocity(Parameter::PulseAmplitude),
-            decay: I2F30::from_bits(self.get(Parameter::PulseDecay)),
-            start_delay_cycles: self.cycles(Parameter::PulseStartDelay),
-        }
-    }
+set_errors! {
+    TooLarge = 1, "too large for the drive's machine units at this cycle time";
+    TooSmall = 2, "too small for the drive's machine units at this cycle time: it would count as zero";
+    WithoutInertia = 3, "a velocity bandwidth needs an inertia";
+    WithoutLimit = 4, "torque or backlash compensation needs the axis' velocity and acceleration limits";
+    BeyondTorqueLimit = 5, "beyond the torque limit";
+    PositionLimitsCrossed = 6, "the lower position limit is not below the upper one";
+    FilterHeadroom = 7, "the torque filter's coefficients leave no headroom";
+    FilterUnstable = 8, "the torque filter is not stable";
+    FilterPeriod = 9, "the torque filter is made for another cycle time than the set";
+    SetpointPeriod = 10, "the setpoint period is not 1 to 20 cycles";
+    TimeoutTooShort = 11, "the timeout is shorter than two periods of what it watches";
+    BeyondAcceleration = 12, "a ramp brakes harder than the axis' acceleration limit";
+}
 
-    fn backlash(&self) -> Result<BacklashConfig, SetError> {
-        let config = BacklashConfig {
-            half_gap: PositionError(I24F8::from_bits(self.get(Parameter::BacklashHalfGap))),
-            velocity_limit: self.velocity(Parameter::VelocityLimit),
-            acceleration_limit: self.velocity(Parameter::AccelerationLimit),
-        };
-        let limited = config.velocity_limit > Velocity::ZERO && config.acceleration_limit > Velocity::ZERO;
-        if config.half_gap > PositionError::ZERO && !limited {
-            return Err(SetError::BacklashWithoutLimits);
-        }
-        Ok(config)
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    fn filter(&self) -> Result<FilterConfig, SetError> {
-        let coefficients =
-            [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
-        FilterConfig::new(coefficients.map(|place| self.get(place))).map_err(|_| SetError::FilterHeadroom)
-    }
-
-    fn limits(&self) -> Limits {
-        Limits {
-            setpoint_misses: self.cycles(Parameter::SetpointMissesAllowed),
-            feedback_misses: self.cycles(Parameter::FeedbackMissesAllowed),
-            following_error: self.way_of(Parameter::FollowingErrorWindow),
-            encoder_jump: self.way_of(Parameter::EncoderJumpLimit),
-            heartbeat: self.cycles(Parameter::HeartbeatCycles),
-            stop_deceleration: self.velocity(Parameter::StopDeceleration),
-            stop: self.cycles(Parameter::StopCycles),
-            sync_timeout_us: u64::from(self.get(Parameter::SyncTimeout).unsigned_abs()),
-        }
-    }
-
-    fn way(&self) -> WayPerIncrement {
-        WayPerIncrement {
-            whole: self.cycles(Parameter::WayWhole),
-            fraction: self.get(Parameter::WayFraction).unsigned_abs().saturating_mul(2),
-        }
-    }
-
-    fn velocity(&self, parameter: Parameter) -> Velocity {
-        Velocity(I20F12::from_bits(self.get(parameter)))
-    }
-
-    fn way_of(&self, parameter: Parameter) -> PositionError {
-        PositionError(I24F8::saturating_from_num(self.get(parameter)))
-    }
-
-    fn cycles(&self, parameter: Parameter) -> u16 {
-        u16::try_from(self.get(parameter)).unwrap_or(u16::MAX)
+    #[test]
+    fn every_reason_has_a_code_of_its_own() {
+        let mut codes: Vec<u8> = SetError::REASONS.iter().map(|(code, _)| *code).collect();
+        codes.dedup();
+        assert_eq!(codes, (1..=12).collect::<Vec<u8>>());
     }
 }

@@ -1,48 +1,94 @@
 //! The SDO server: expedited transfers, range checks before acknowledgement, an atomic commit.
+//!
+//! It keeps two parameter sets. Downloads go into the *staged* one; a commit turns it into [`Settings`] and makes it the *active* one. Uploads
+//! read the one that [`objects::SET_READ`] names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
+//! look at.
 
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
+use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
-use crate::objects::{self, Entry, Parameter};
-use crate::parameters::{ParameterSet, Settings};
+use crate::objects::{self, Entry, Misfit, Parameter};
+use crate::parameters::{ParameterSet, SetError};
+use crate::settings::Settings;
+use crate::watchdog::Counts;
+
+/// A count by its subindex; subindex 0 tells how many there are.
+fn count(counts: &Counts, subindex: u8) -> Option<Expedited> {
+    match usize::from(subindex).checked_sub(1) {
+        None => u8::try_from(Counts::NUMBER).ok().map(Expedited::u8),
+        Some(place) => counts.in_order().get(place).copied().map(Expedited::u32),
+    }
+}
 
 /// Values that a client may read but not write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Readings {
     /// Error register, object 1001h.
     pub error_register: u8,
+    /// Code of the last EMCY, object 603Fh.
+    pub emergency_code: u16,
+    /// What else is known about the last fault, object 2202h.
+    pub fault_detail: u32,
     /// Status word.
     pub status_word: u16,
-    /// Actual position, 10 nm.
+    /// Actual position of the encoder that closes the loop, 10 nm.
     pub position: i32,
+    /// Motor encoder as a position at the table, 10 nm.
+    pub motor_position: i32,
+    /// Load scale, 10 nm.
+    pub load_position: i32,
     /// Following error, 10 nm.
     pub following_error: i32,
-    /// Lost, stale, malformed, implausible, doubled.
-    pub diagnostics: [u32; 5],
+    /// Counts since reset.
+    pub counts: Counts,
 }
 
-/// Staged parameters and the count of commits.
+/// Which set an upload reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum SetRead {
+    #[default]
+    Staged,
+    Active,
+}
+
+/// Staged and active parameters, and what is written beside them.
 #[derive(Clone, Debug, Default)]
 pub struct SdoServer {
     staged: ParameterSet,
+    active: ParameterSet,
+    set_read: SetRead,
     commits: u32,
+    refused: Option<SetError>,
+    declared_period_us: u32,
 }
 
 /// What a request did, apart from the answer.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put the settings on")]
 pub enum Effect {
     /// Nothing that the drive has to know.
     None,
-    /// A new set becomes active at the next cycle.
+    /// A new set becomes active at the next cycle. For uploads it is the active one from now on.
     Commit(Settings),
 }
 
 impl SdoServer {
     /// Stages a value that the node itself chooses (what a command line says at start); out of range it is left out.
     pub fn stage(&mut self, parameter: Parameter, value: i32) {
-        let fits = |entry: &&Entry| entry.parameter == parameter && (entry.min..=entry.max).contains(&value);
+        let fits = |entry: &&Entry| entry.parameter == parameter && entry.check(value).is_ok();
         if objects::TABLE.iter().find(fits).is_some() {
             self.staged.set(parameter, value);
         }
+    }
+
+    /// Makes the staged set the active one without a client: at start.
+    ///
+    /// # Errors
+    /// [`SetError`] where it does not go together; then the active set stays.
+    pub fn activate(&mut self) -> Result<Settings, SetError> {
+        let settings = self.staged.settings()?;
+        self.active = self.staged.clone();
+        Ok(settings)
     }
 
     /// The settings of the staged set; `None` where it does not go together.
@@ -51,17 +97,20 @@ impl SdoServer {
         self.staged.settings().ok()
     }
 
-    /// Answers a request. `may_change_encoders` is false while the loop is closed.
-    pub fn handle(
-        &mut self,
-        request: Request,
-        readings: &Readings,
-        active: &Settings,
-        may_change_encoders: bool,
-    ) -> (Option<Response>, Effect) {
+    /// The SYNC period that the master declares (object 2102h); `None` where it does not.
+    #[must_use]
+    pub const fn declared_period_us(&self) -> Option<u32> {
+        match self.declared_period_us {
+            0 => None,
+            period_us => Some(period_us),
+        }
+    }
+
+    /// Answers a request. `has_torque`: the loop is closed, so that encoders and cycle time must stay.
+    pub fn handle(&mut self, request: Request, readings: &Readings, has_torque: bool) -> (Option<Response>, Effect) {
         match request {
             Request::Upload(address) => (Some(self.upload(address, readings)), Effect::None),
-            Request::Download(objects::COMMIT, data) => self.commit(data, active, may_change_encoders),
+            Request::Download(objects::COMMIT, data) => self.commit(data, has_torque),
             Request::Download(address, data) => (Some(self.download(address, data)), Effect::None),
             Request::Unsupported(address) => (Some(aborted(address, AbortCode::CommandUnknown)), Effect::None),
             Request::Abort(_) => (None, Effect::None),
@@ -69,79 +118,150 @@ impl SdoServer {
     }
 
     fn upload(&self, address: Address, readings: &Readings) -> Response {
-        let value = match address {
-            objects::DEVICE_TYPE => Expedited::u32(objects::DEVICE_TYPE_VALUE),
-            objects::ERROR_REGISTER => Expedited::u8(readings.error_register),
+        let value = self.own(address).or_else(|| reading(address, readings)).or_else(|| self.parameter(address));
+        match value {
+            Some(value) => Response::Uploaded(address, value),
+            None => aborted(address, missing(address)),
+        }
+    }
+
+    /// Objects of the server itself.
+    fn own(&self, address: Address) -> Option<Expedited> {
+        let row = self.refused.map_or(0, |error| row(error.parameter()));
+        Some(match address {
             objects::COMMIT => Expedited::u32(self.commits),
-            objects::STATUS_WORD => Expedited::u16(readings.status_word),
-            objects::MODE_DISPLAY => Expedited::u8(8),
-            objects::POSITION_ACTUAL => Expedited::i32(readings.position),
-            objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
-            Address { index: objects::DIAGNOSTICS_INDEX, subindex } => match diagnostic(readings, subindex) {
-                Some(count) => Expedited::u32(count),
-                None => return aborted(address, AbortCode::SubindexMissing),
-            },
-            _ => match objects::find(address) {
-                Some(entry) => Expedited::i32(self.staged.get(entry.parameter)),
-                None => return aborted(address, missing(address)),
-            },
+            objects::SET_READ => Expedited::u8(u8::from(self.set_read == SetRead::Active)),
+            objects::REFUSED_ROW => Expedited::u32(row),
+            objects::REFUSED_REASON => Expedited::u32(self.refused.map_or(0, |error| u32::from(error.code()))),
+            objects::DECLARED_PERIOD => Expedited::u32(self.declared_period_us),
+            objects::HEARTBEAT_PERIOD => Expedited::u16(heartbeat_ms(self.active.get(Parameter::CyclePeriod))),
+            _ => return None,
+        })
+    }
+
+    fn parameter(&self, address: Address) -> Option<Expedited> {
+        let set = match self.set_read {
+            SetRead::Staged => &self.staged,
+            SetRead::Active => &self.active,
         };
-        Response::Uploaded(address, value)
+        objects::find(address).map(|entry| Expedited::i32(set.get(entry.parameter)))
     }
 
     fn download(&mut self, address: Address, data: Expedited) -> Response {
-        let Some(entry) = objects::find(address) else {
-            let known = self.upload_exists(address);
-            return aborted(address, if known { AbortCode::ReadOnly } else { missing(address) });
+        let written = match address {
+            objects::SET_READ => self.choose_set(data),
+            objects::DECLARED_PERIOD => self.declare_period(data),
+            _ => self.download_parameter(address, data),
         };
-        match checked(entry, data) {
-            Ok(value) => {
-                self.staged.set(entry.parameter, value);
-                Response::Downloaded(address)
-            }
+        match written {
+            Ok(()) => Response::Downloaded(address),
             Err(code) => aborted(address, code),
         }
     }
 
-    fn upload_exists(&self, address: Address) -> bool {
-        matches!(self.upload(address, &Readings::default()), Response::Uploaded(..))
+    fn choose_set(&mut self, data: Expedited) -> Result<(), AbortCode> {
+        self.set_read = match data.to_u32() {
+            0 => SetRead::Staged,
+            1 => SetRead::Active,
+            _ => return Err(AbortCode::ValueTooHigh),
+        };
+        Ok(())
     }
 
-    fn commit(&mut self, data: Expedited, active: &Settings, may_change_encoders: bool) -> (Option<Response>, Effect) {
-        let address = objects::COMMIT;
+    fn declare_period(&mut self, data: Expedited) -> Result<(), AbortCode> {
         if data.len() < 4 {
-            return (Some(aborted(address, AbortCode::LengthTooLow)), Effect::None);
+            return Err(AbortCode::LengthTooLow);
+        }
+        let (shortest, longest) = objects::PERIOD_US;
+        self.declared_period_us = match data.to_u32() {
+            period_us if period_us > longest.unsigned_abs() => return Err(AbortCode::ValueTooHigh),
+            period_us if period_us > 0 && period_us < shortest.unsigned_abs() => return Err(AbortCode::ValueTooLow),
+            period_us => period_us,
+        };
+        Ok(())
+    }
+
+    fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
+        let Some(entry) = objects::find(address) else {
+            let is_known = objects::READINGS.iter().any(|(known, _)| *known == address);
+            return Err(if is_known { AbortCode::ReadOnly } else { missing(address) });
+        };
+        self.staged.set(entry.parameter, checked(entry, data)?);
+        Ok(())
+    }
+
+    fn commit(&mut self, data: Expedited, has_torque: bool) -> (Option<Response>, Effect) {
+        let address = objects::COMMIT;
+        match self.committed(data, has_torque) {
+            Ok(settings) => (Some(Response::Downloaded(address)), Effect::Commit(settings)),
+            Err(code) => (Some(aborted(address, code)), Effect::None),
+        }
+    }
+
+    fn committed(&mut self, data: Expedited, has_torque: bool) -> Result<Settings, AbortCode> {
+        if data.len() < 4 {
+            return Err(AbortCode::LengthTooLow);
         }
         if data.to_u32() != objects::COMMIT_KEY {
-            return (Some(aborted(address, AbortCode::ValueTooHigh)), Effect::None);
+            return Err(AbortCode::ValueInvalid);
         }
-        let Ok(settings) = self.staged.settings() else {
-            return (Some(aborted(address, AbortCode::ParameterIncompatible)), Effect::None);
-        };
-        let encoders_stay =
-            settings.way == active.way && settings.config.position_source == active.config.position_source;
-        if !encoders_stay && !may_change_encoders {
-            return (Some(aborted(address, AbortCode::DeviceState)), Effect::None);
+        if has_torque && !self.staged.measures_like(&self.active) {
+            return Err(AbortCode::DeviceState);
         }
+        let settings = self.activate();
+        self.refused = settings.as_ref().err().copied();
+        let settings = settings.map_err(|_| AbortCode::ParameterIncompatible)?;
         self.commits = self.commits.wrapping_add(1);
-        (Some(Response::Downloaded(address)), Effect::Commit(settings))
+        Ok(settings)
     }
+}
+
+/// Objects of the drive.
+fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
+    Some(match address {
+        objects::DEVICE_TYPE => Expedited::u32(objects::DEVICE_TYPE_VALUE),
+        objects::ERROR_REGISTER => Expedited::u8(readings.error_register),
+        objects::ERROR_CODE => Expedited::u16(readings.emergency_code),
+        objects::FAULT_DETAIL => Expedited::u32(readings.fault_detail),
+        objects::STATUS_WORD => Expedited::u16(readings.status_word),
+        objects::MODE_DISPLAY => Expedited::u8(8),
+        objects::POSITION_ACTUAL => Expedited::i32(readings.position),
+        objects::MOTOR_POSITION => Expedited::i32(readings.motor_position),
+        objects::LOAD_POSITION => Expedited::i32(readings.load_position),
+        objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
+        Address { index: objects::DIAGNOSTICS_INDEX, subindex } => return count(&readings.counts, subindex),
+        _ => return None,
+    })
 }
 
 fn checked(entry: &Entry, data: Expedited) -> Result<i32, AbortCode> {
     if data.len() < 4 {
         return Err(AbortCode::LengthTooLow);
     }
-    match data.to_i32() {
-        value if value < entry.min => Err(AbortCode::ValueTooLow),
-        value if value > entry.max => Err(AbortCode::ValueTooHigh),
-        value => Ok(value),
-    }
+    let value = data.to_i32();
+    entry.check(value).map(|()| value).map_err(|misfit| match misfit {
+        Misfit::TooLow => AbortCode::ValueTooLow,
+        Misfit::TooHigh => AbortCode::ValueTooHigh,
+        Misfit::Unsupported => AbortCode::ValueInvalid,
+    })
 }
 
-fn diagnostic(readings: &Readings, subindex: u8) -> Option<u32> {
-    let place = usize::from(subindex).checked_sub(1)?;
-    readings.diagnostics.get(place).copied()
+/// The row of a parameter in `docs/objects.md`, from 1.
+#[expect(clippy::as_conversions, reason = "repr(usize): the discriminant is the place, far below 2^32")]
+const fn row(parameter: Parameter) -> u32 {
+    (parameter as u32).saturating_add(1)
+}
+
+/// The heartbeat's period in whole ms: a tenth of the cycle time in µs.
+const fn heartbeat_ms(period_us: i32) -> u16 {
+    const PER_MS: u16 = 1000 / HEARTBEAT_EVERY_CYCLES;
+    saturated(period_us).wrapping_div(PER_MS)
+}
+
+/// A cycle time is at most 20 000 µs.
+#[expect(clippy::as_conversions, reason = "cut to the range of the type")]
+const fn saturated(period_us: i32) -> u16 {
+    if period_us > 65_535 { u16::MAX } else { period_us.unsigned_abs() as u16 }
 }
 
 fn missing(address: Address) -> AbortCode {
@@ -158,12 +278,18 @@ mod tests {
     use proptest::prelude::*;
 
     fn ask(server: &mut SdoServer, request: Request) -> (Option<Response>, Effect) {
-        let active = ParameterSet::default().settings().unwrap();
-        server.handle(request, &Readings::default(), &active, true)
+        server.handle(request, &Readings::default(), false)
     }
 
     fn write(index: u16, subindex: u8, value: i32) -> Request {
         Request::Download(Address::new(index, subindex), Expedited::i32(value))
+    }
+
+    fn read(server: &mut SdoServer, address: Address) -> i32 {
+        match ask(server, Request::Upload(address)) {
+            (Some(Response::Uploaded(_, value)), Effect::None) => value.to_i32(),
+            other => panic!("expected a value, got {other:?}"),
+        }
     }
 
     fn code(answer: (Option<Response>, Effect)) -> u32 {
@@ -173,14 +299,16 @@ mod tests {
         }
     }
 
+    const COMMIT: Request = Request::Download(objects::COMMIT, Expedited::u32(objects::COMMIT_KEY));
+
     #[test]
     fn a_value_out_of_range_is_refused_before_it_is_acknowledged() {
         let mut server = SdoServer::default();
-        assert_eq!(code(ask(&mut server, write(0x2110, 3, 10_001))), AbortCode::ValueTooHigh.value());
+        assert_eq!(code(ask(&mut server, write(0x2110, 3, 1_000_001))), AbortCode::ValueTooHigh.value());
         assert_eq!(code(ask(&mut server, write(0x2100, 3, -1))), AbortCode::ValueTooLow.value());
+        assert_eq!(code(ask(&mut server, write(0x605A, 0, 3))), AbortCode::ValueInvalid.value());
         assert_eq!(code(ask(&mut server, write(0x2100, 9, 0))), AbortCode::SubindexMissing.value());
         assert_eq!(code(ask(&mut server, write(0x3000, 0, 0))), AbortCode::ObjectMissing.value());
-        assert_eq!(code(ask(&mut server, write(0x6064, 0, 0))), AbortCode::ReadOnly.value());
         let short = Request::Download(Address::new(0x2100, 3), Expedited::u16(1));
         assert_eq!(code(ask(&mut server, short)), AbortCode::LengthTooLow.value());
         let segmented = Request::Unsupported(Address::new(0x2100, 3));
@@ -189,23 +317,84 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_active_before_the_commit_and_everything_after_it() {
+    fn what_can_only_be_read_is_read_and_not_written() {
+        let writable = [objects::COMMIT, objects::SET_READ, objects::DECLARED_PERIOD];
         let mut server = SdoServer::default();
-        let (answer, effect) = ask(&mut server, write(0x2110, 3, 7));
-        assert_eq!((answer, effect), (Some(Response::Downloaded(Address::new(0x2110, 3))), Effect::None));
-        let commit = Request::Download(objects::COMMIT, Expedited::u32(objects::COMMIT_KEY));
-        let (_, Effect::Commit(settings)) = ask(&mut server, commit) else { panic!("no commit") };
-        assert_eq!(settings.config.pulse.start_delay_cycles, 7);
+        for (address, name) in objects::READINGS {
+            read(&mut server, address);
+            if !writable.contains(&address) {
+                let answer = ask(&mut server, Request::Download(address, Expedited::u32(0)));
+                assert_eq!(code(answer), AbortCode::ReadOnly.value(), "{name}");
+            }
+        }
     }
 
     #[test]
-    fn a_set_that_does_not_go_together_is_not_committed() {
+    fn nothing_is_active_before_the_commit_and_everything_after_it() {
+        let (mut server, delay) = (SdoServer::default(), Address::new(0x2110, 3));
+        let (answer, effect) = ask(&mut server, write(0x2110, 3, 7000));
+        assert_eq!((answer, effect), (Some(Response::Downloaded(delay)), Effect::None));
+        let choose = |set| Request::Download(objects::SET_READ, Expedited::u8(set));
+        assert_eq!(read(&mut server, delay), 7000, "staged");
+        ask(&mut server, choose(1));
+        assert_eq!(read(&mut server, delay), 0, "active");
+        let (_, Effect::Commit(settings)) = ask(&mut server, COMMIT) else { panic!("no commit") };
+        assert_eq!(settings.config.pulse.start_delay_cycles, 7);
+        assert_eq!((read(&mut server, delay), read(&mut server, objects::COMMIT)), (7000, 1));
+        assert_eq!(code(ask(&mut server, choose(2))), AbortCode::ValueTooHigh.value());
+    }
+
+    #[test]
+    fn a_set_that_does_not_go_together_is_not_committed_and_says_where() {
         let mut server = SdoServer::default();
-        ask(&mut server, write(0x2111, 1, 256));
-        let commit = Request::Download(objects::COMMIT, Expedited::u32(objects::COMMIT_KEY));
-        assert_eq!(code(ask(&mut server, commit)), AbortCode::ParameterIncompatible.value());
+        ask(&mut server, write(0x2111, 0, 2560));
+        assert_eq!(code(ask(&mut server, COMMIT)), AbortCode::ParameterIncompatible.value());
+        let row = usize::try_from(read(&mut server, objects::REFUSED_ROW)).unwrap();
+        assert_eq!(objects::TABLE[row - 1].parameter, Parameter::VelocityLimit);
+        let reason = SetError::WithoutLimit(Parameter::VelocityLimit).code();
+        assert_eq!(read(&mut server, objects::REFUSED_REASON), i32::from(reason));
+        assert_eq!(server.active, ParameterSet::default());
         let wrong_key = Request::Download(objects::COMMIT, Expedited::u32(1));
-        assert_eq!(code(ask(&mut server, wrong_key)), AbortCode::ValueTooHigh.value());
+        assert_eq!(code(ask(&mut server, wrong_key)), AbortCode::ValueInvalid.value());
+        ask(&mut server, write(0x2111, 0, 0));
+        assert!(matches!(ask(&mut server, COMMIT), (_, Effect::Commit(_))));
+        assert_eq!(read(&mut server, objects::REFUSED_ROW), 0);
+    }
+
+    #[test]
+    fn encoders_and_cycle_time_stay_while_there_is_torque() {
+        for parameter in crate::parameters::ONLY_WITHOUT_TORQUE {
+            let mut server = SdoServer::default();
+            let entry = objects::TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
+            let other = if entry.default == entry.max { entry.min } else { entry.default + 1 };
+            server.stage(parameter, other);
+            let refused = server.handle(COMMIT, &Readings::default(), true);
+            assert_eq!(code(refused), AbortCode::DeviceState.value(), "{parameter:?}");
+        }
+        let mut server = SdoServer::default();
+        server.stage(Parameter::PulseStartDelay, 7000);
+        assert!(matches!(server.handle(COMMIT, &Readings::default(), true), (_, Effect::Commit(_))));
+    }
+
+    #[test]
+    fn the_declared_period_is_known_at_once_and_is_no_part_of_the_set() {
+        let mut server = SdoServer::default();
+        assert_eq!(server.declared_period_us(), None);
+        let declare = |us| Request::Download(objects::DECLARED_PERIOD, Expedited::u32(us));
+        ask(&mut server, declare(2000));
+        assert_eq!((server.declared_period_us(), read(&mut server, objects::DECLARED_PERIOD)), (Some(2000), 2000));
+        assert_eq!(code(ask(&mut server, declare(99))), AbortCode::ValueTooLow.value());
+        assert_eq!(code(ask(&mut server, declare(20_001))), AbortCode::ValueTooHigh.value());
+        assert_eq!(server.staged, ParameterSet::default());
+    }
+
+    #[test]
+    fn the_heartbeat_s_period_is_a_hundred_cycles() {
+        let mut server = SdoServer::default();
+        assert_eq!(read(&mut server, objects::HEARTBEAT_PERIOD), 100);
+        ask(&mut server, write(0x1006, 0, 20_000));
+        ask(&mut server, COMMIT);
+        assert_eq!(read(&mut server, objects::HEARTBEAT_PERIOD), 2000);
     }
 
     proptest! {
@@ -213,12 +402,33 @@ mod tests {
         fn any_request_is_answered_and_whatever_is_staged_is_in_range(requests in proptest::collection::vec(any::<[u8; 8]>(), 0..50)) {
             let mut server = SdoServer::default();
             for payload in requests {
-                let _ = ask(&mut server, Request::decode(payload));
+                let request = Request::decode(payload);
+                let (response, _) = ask(&mut server, request);
+                prop_assert_eq!(response.is_none(), matches!(request, Request::Abort(_)));
             }
-            for entry in &objects::TABLE {
-                let value = server.staged.get(entry.parameter);
-                prop_assert!(entry.min <= value && value <= entry.max);
+            prop_assert!(fits(&server.staged) && fits(&server.active));
+        }
+
+        #[test]
+        fn any_value_written_to_any_row_is_taken_in_range_or_refused(
+            writes in proptest::collection::vec((0..objects::PARAMETERS, prop_oneof![any::<i32>(), -3..2000_i32], any::<bool>()), 0..80),
+        ) {
+            let mut server = SdoServer::default();
+            for (place, value, commit) in writes {
+                let entry = &objects::TABLE[place];
+                let (response, _) = ask(&mut server, Request::Download(entry.address, Expedited::i32(value)));
+                let taken = response == Some(Response::Downloaded(entry.address));
+                prop_assert_eq!(taken, entry.check(value).is_ok());
+                if commit {
+                    let _ = ask(&mut server, COMMIT);
+                }
+                prop_assert!(fits(&server.staged) && fits(&server.active));
+                prop_assert!(server.active.settings().is_ok(), "only a set that goes together becomes active");
             }
         }
+    }
+
+    fn fits(set: &ParameterSet) -> bool {
+        objects::TABLE.iter().all(|entry| entry.check(set.get(entry.parameter)).is_ok())
     }
 }

@@ -1,23 +1,60 @@
-//! Watchdogs: how often in a row something was missing, and what that amounts to.
-//!
-//! All but one count cycles. The one on the wall clock notices that SYNC itself is gone.
+//! Watchdogs: how often in a row something was missing, and what that amounts to; and the counts of everything that was odd.
 
 use protocol::Fault;
 
-use crate::inbox::Miss;
+use crate::inbox::{Miss, Taken};
+
+/// What happened since reset. Computed + bridged + refused = cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Cycles with everything they needed.
+    pub computed: u32,
+    /// Cycles that went without a feedback or a setpoint, or whose SYNC did not come.
+    pub bridged: u32,
+    /// Cycles whose setpoint or feedback was there and refused.
+    pub refused: u32,
+    /// Cycles that were closed by the deadline or begun by the own timer.
+    pub by_deadline: u32,
+    /// Frames with an old counter.
+    pub stale: u32,
+    /// Frames that cannot be decoded.
+    pub malformed: u32,
+    /// Feedbacks that the axis cannot have reached.
+    pub implausible: u32,
+    /// Frames that came twice.
+    pub doubled: u32,
+    /// Readings of a load scale that cannot be true and that the loop does not need.
+    pub scale_warnings: u32,
+}
+
+impl Counts {
+    /// How many counts there are.
+    pub const NUMBER: usize = 9;
+
+    /// The counts in the order of the subindices from 1 on of 2200h.
+    #[must_use]
+    pub const fn in_order(&self) -> [u32; Self::NUMBER] {
+        [
+            self.computed,
+            self.bridged,
+            self.refused,
+            self.by_deadline,
+            self.stale,
+            self.malformed,
+            self.implausible,
+            self.doubled,
+            self.scale_warnings,
+        ]
+    }
+}
 
 /// Counters of everything that can be missing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     setpoint_misses: u16,
     feedback_misses: u16,
-    heartbeat_cycles: u16,
-    last_sync_us: Option<u64>,
-    lost: u32,
-    stale: u32,
-    malformed: u32,
-    implausible: u32,
-    doubled: u32,
+    /// Since reset.
+    pub counts: Counts,
 }
 
 impl Watchdog {
@@ -29,7 +66,7 @@ impl Watchdog {
     /// A cycle's feedback; a fault when too many in a row were missing, named after the last miss.
     pub fn feedback(&mut self, miss: Option<Miss>, allowed: u16) -> Option<Fault> {
         if miss == Some(Miss::Implausible) {
-            self.implausible = self.implausible.saturating_add(1);
+            self.counts.implausible = self.counts.implausible.saturating_add(1);
         }
         over(&mut self.feedback_misses, miss, allowed).map(|miss| match miss {
             Miss::Absent => Fault::FeedbackMissing,
@@ -45,59 +82,29 @@ impl Watchdog {
         (self.setpoint_misses, self.feedback_misses)
     }
 
-    /// The plant is alive.
-    pub fn heartbeat(&mut self) {
-        self.heartbeat_cycles = 0;
+    /// A frame with a counter was taken.
+    pub const fn taken(&mut self, taken: Taken) {
+        match taken {
+            Taken::Used | Taken::NextCycle => {}
+            Taken::Doubled => self.counts.doubled = self.counts.doubled.saturating_add(1),
+            Taken::Stale => self.counts.stale = self.counts.stale.saturating_add(1),
+        }
     }
 
-    /// Counts a cycle without heartbeat.
-    pub fn heartbeat_is_gone(&mut self, allowed: u16) -> bool {
-        self.heartbeat_cycles = self.heartbeat_cycles.saturating_add(1);
-        self.heartbeat_cycles > allowed
+    /// A cycle has ended.
+    pub const fn cycle(&mut self, was_missed: bool, was_refused: bool) {
+        let count = match (was_refused, was_missed) {
+            (true, _) => &mut self.counts.refused,
+            (false, true) => &mut self.counts.bridged,
+            (false, false) => &mut self.counts.computed,
+        };
+        *count = count.saturating_add(1);
     }
 
-    /// SYNC came.
-    pub fn sync(&mut self, now_us: u64) {
-        self.last_sync_us = Some(now_us);
-    }
-
-    /// Whether SYNC is gone, by wall clock.
-    #[must_use]
-    pub fn sync_is_gone(&self, now_us: u64, timeout_us: u64) -> bool {
-        self.last_sync_us.is_some_and(|last| now_us.saturating_sub(last) > timeout_us)
-    }
-
-    /// A lost-frame token came.
-    pub fn lost(&mut self) {
-        self.lost = self.lost.saturating_add(1);
-    }
-
-    /// A frame with an old counter came.
-    pub fn stale(&mut self) {
-        self.stale = self.stale.saturating_add(1);
-    }
-
-    /// A frame came that cannot be decoded.
-    pub fn malformed(&mut self) {
-        self.malformed = self.malformed.saturating_add(1);
-    }
-
-    /// A frame came twice.
-    pub fn doubled(&mut self) {
-        self.doubled = self.doubled.saturating_add(1);
-    }
-
-    /// Forgets what led to a fault; the diagnostic counts stay.
-    pub fn forgive(&mut self) {
+    /// Forgets what led to a fault; the counts stay.
+    pub const fn forgive(&mut self) {
         self.setpoint_misses = 0;
         self.feedback_misses = 0;
-        self.heartbeat_cycles = 0;
-    }
-
-    /// Lost, stale, malformed, implausible, doubled since reset.
-    #[must_use]
-    pub const fn diagnostics(&self) -> [u32; 5] {
-        [self.lost, self.stale, self.malformed, self.implausible, self.doubled]
     }
 }
 
@@ -108,4 +115,29 @@ fn over(count: &mut u16, miss: Option<Miss>, allowed: u16) -> Option<Miss> {
     };
     *count = count.saturating_add(1);
     (*count > allowed).then_some(miss)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn so_many_misses_in_a_row_are_a_fault_named_after_the_last() {
+        let mut watchdog = Watchdog::default();
+        for miss in [Some(Miss::Absent), Some(Miss::Absent), None, Some(Miss::Absent), Some(Miss::Stale)] {
+            assert_eq!(watchdog.feedback(miss, 2), None);
+        }
+        assert_eq!(watchdog.feedback(Some(Miss::Implausible), 2), Some(Fault::EncoderJump));
+        assert_eq!(watchdog.counts.implausible, 1);
+    }
+
+    #[test]
+    fn every_cycle_is_counted_once() {
+        let mut watchdog = Watchdog::default();
+        for (missed, refused) in [(false, false), (true, false), (true, true), (false, true)] {
+            watchdog.cycle(missed, refused);
+        }
+        let Counts { computed, bridged, refused, .. } = watchdog.counts;
+        assert_eq!((computed, bridged, refused), (1, 1, 2));
+    }
 }

@@ -3,7 +3,8 @@
 //! A law counts as known only where it gives the recorded effort from the recorded positions and setpoints (a law on a load that was not recorded is
 //! believed). Two forms:
 //! - force: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`, where `v_f` follows the difference quotient of the position by the share
-//!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the central difference of that;
+//!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the acceleration of the setpoint at the time that its
+//!   controller means: it differs from drive to drive ([`Timing`]), no dataset says it, and the one that leaves least of the record is taken;
 //! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over voltage is found from the record.
 
 use crate::record::{ControllerForm, Dataset, Effort, Record};
@@ -17,10 +18,39 @@ const LEAST_CORRELATION: f64 = 0.7;
 /// Rows from which the integral at the start is estimated.
 const START_ROWS: usize = 50;
 
+/// Where the acceleration feedforward takes its acceleration from, in rows of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Timing {
+    /// Central difference of the velocity, half a row back.
+    Central,
+    /// Second difference of the newest three setpoints: a drive without preview.
+    Backward,
+    /// Second difference about the row and 1.5 times its change: a drive that has the next setpoint and looks to the middle of the cycle in which its
+    /// effort acts.
+    Ahead,
+}
+
+/// Every timing.
+const TIMINGS: [Timing; 3] = [Timing::Central, Timing::Backward, Timing::Ahead];
+/// The reference stage's middle of the torque's cycle, rows after the newest second difference.
+const ROWS_AHEAD: f64 = 1.5;
+
+impl Timing {
+    /// Acceleration from the second difference about a row.
+    fn acceleration(self, row: usize, about: impl Fn(usize) -> f64) -> f64 {
+        let (now, before) = (about(row), about(row.saturating_sub(1)));
+        match self {
+            Self::Central => 0.5 * (now + before),
+            Self::Backward => before,
+            Self::Ahead => now + ROWS_AHEAD * (now - before),
+        }
+    }
+}
+
 /// Form and gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Form {
-    Force { velocity_gain: f64, integral_per_s: f64, filter: f64, feedforward: f64 },
+    Force { velocity_gain: f64, integral_per_s: f64, filter: f64, feedforward: f64, timing: Timing },
     Voltage { gain: f64 },
 }
 
@@ -62,8 +92,27 @@ impl Law {
             // Nothing to check it by: the load was not recorded.
             return Some(law);
         }
-        law.misfit = law.misfit_on(record);
+        law = law.timed(record);
         (law.misfit <= LARGEST_MISFIT).then_some(law)
+    }
+
+    /// The same law with the timing of the feedforward that leaves least of the record.
+    fn timed(self, record: &Record) -> Self {
+        let laws = TIMINGS.map(|timing| {
+            let law = self.with(timing);
+            Self { misfit: law.misfit_on(record), ..law }
+        });
+        laws.into_iter().min_by(|one, other| one.misfit.total_cmp(&other.misfit)).unwrap_or(self)
+    }
+
+    fn with(self, timing: Timing) -> Self {
+        let form = match self.form {
+            Form::Force { velocity_gain, integral_per_s, filter, feedforward, timing: _ } => {
+                Form::Force { velocity_gain, integral_per_s, filter, feedforward, timing }
+            }
+            Form::Voltage { gain } => Form::Voltage { gain },
+        };
+        Self { form, ..self }
     }
 
     /// Recorded over computed effort where the law is described in forces and the load it closes on, if any, was recorded; `None` where they have
@@ -91,6 +140,7 @@ impl Law {
                 integral_per_s: form.integral_per_s.unwrap_or(0.0),
                 filter: form.velocity_filter.unwrap_or(1.0),
                 feedforward: form.acceleration_feedforward_kg.unwrap_or(0.0),
+                timing: Timing::Central,
             },
             (None, Some(gain)) => Form::Voltage { gain },
             (None, None) => return None,
@@ -156,12 +206,12 @@ impl Law {
         memory.before = [position, one];
         let effort = match self.form {
             Form::Voltage { gain } => gain * (error - (position - two) / (2.0 * period_s)),
-            Form::Force { velocity_gain, integral_per_s, filter, feedforward } => {
+            Form::Force { velocity_gain, integral_per_s, filter, feedforward, timing } => {
                 memory.velocity += filter * ((position - one) / period_s - memory.velocity);
                 // Beyond both ends the setpoint goes on as it was.
                 let last = reference.len().saturating_sub(1).max(1);
                 let slope = |row: usize| (at(row.clamp(1, last)) - at(row.clamp(1, last) - 1)) / period_s;
-                let acceleration = (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * period_s);
+                let acceleration = timing.acceleration(row, |row| (slope(row + 1) - slope(row)) / period_s);
                 let error = error + slope(row) - memory.velocity;
                 memory.sum += error * period_s;
                 velocity_gain * (error + integral_per_s * memory.sum) + feedforward * acceleration

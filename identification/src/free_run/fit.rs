@@ -172,6 +172,37 @@ mod tests {
         }
     }
 
+    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows' second differences.
+    fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
+        let mut dataset = dataset();
+        let form = crate::record::ControllerForm { position_sensor: None, ..controller() };
+        dataset.controller = Some(form);
+        let record = &mut dataset.train;
+        let (x, period_s) = (record.reference.clone().unwrap(), record.period_s);
+        record.position = x.iter().scan(x[0], |held, now| Some(std::mem::replace(held, *now))).collect();
+        let difference = |path: &[f64], row: usize| (path[row] - path[row.max(1) - 1]) / period_s;
+        for row in 3..x.len() - 1 {
+            let about = |row: usize| (x[row + 1] - 2.0 * x[row] + x[row - 1]) / period_s / period_s;
+            let velocity = difference(&x, row) - difference(&record.position, row);
+            let error = 40.0 * (x[row] - record.position[row]) + velocity;
+            record.effort[row] = 14_000.0 * error + 80.0 * acceleration(about(row), about(row - 1));
+        }
+        dataset
+    }
+
+    #[test]
+    fn whenever_the_drive_takes_its_acceleration_the_law_is_known() {
+        let drives: [(&str, &dyn Fn(f64, f64) -> f64); 3] = [
+            ("half a row back", &|now, before| 0.5 * (now + before)),
+            ("a row back", &|_, before| before),
+            ("one and a half ahead", &|now, before| now + 1.5 * (now - before)),
+        ];
+        for (name, acceleration) in drives {
+            let misfit = crate::free_run::controller::Law::of(&recorded_with(acceleration)).map(|law| law.misfit);
+            assert!(misfit.is_some_and(|misfit| misfit < 1.0e-9), "{name}: {misfit:?}");
+        }
+    }
+
     fn model(dataset: &Dataset, coefficients: [f64; 4]) -> Simulated {
         let terms = ["inertia", "viscous", "coulomb", "offset"]
             .map(|name| Term { effect: crate::effects::find(name).unwrap(), parameter: 0.0 });

@@ -6,19 +6,25 @@
 //! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the others must not starve
 //! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
 
-use std::time::Duration;
-
 use protocol::message::{Decoded, Setpoint, decode};
 use protocol::{CanFrame, Message, SyncCounter};
 
 use super::Master;
+use super::axis_link::AxisLink;
 use crate::error::Outcome;
 use crate::link::{Link, axis_ids};
 
-/// How long all torques of a cycle may take in lock-step.
-const PATIENCE: Duration = Duration::from_millis(200);
 /// Frames that may pass in a cycle: other people's traffic must not prolong it.
 const MOST_FRAMES: u32 = 4000;
+
+/// Whose torques are still missing in a cycle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Missing {
+    /// Those of axes that have been silent for long already.
+    OnlySilent,
+    /// That of an axis that answered until now.
+    Expected,
+}
 
 impl<L: Link> Master<L> {
     /// One cycle; `next_m` are the setpoints of the cycle after it.
@@ -51,20 +57,22 @@ impl<L: Link> Master<L> {
 
     fn collect(&mut self, bus: usize, counter: SyncCounter) -> Outcome<()> {
         for _ in 0..MOST_FRAMES {
-            let Some(patience) = self.patience(bus) else { return Ok(()) };
-            let Some(frame) = self.link.receive(bus, patience)? else { break };
+            let Some(missing) = self.missing(bus) else { return Ok(()) };
+            let most = (missing == Missing::OnlySilent).then_some(self.period);
+            let Some(frame) = self.link.receive_in_cycle(bus, most)? else { break };
             if self.hear(bus, &frame, counter) {
                 break;
             }
         }
-        self.missed += u32::from(self.patience(bus).is_some());
+        self.missed += u32::from(self.missing(bus).is_some());
         Ok(())
     }
 
-    /// How long to wait for the torques that are still missing on a bus; `None` where none is.
-    fn patience(&self, bus: usize) -> Option<Duration> {
-        let missing = self.axes.iter().filter(|axis| axis.bus == bus && !axis.has_answered());
-        missing.map(|axis| if axis.is_silent() { self.period } else { PATIENCE }).max()
+    /// Whose torques are still missing on a bus; `None` where all have come.
+    fn missing(&self, bus: usize) -> Option<Missing> {
+        let mut missing = self.axes.iter().filter(|axis| axis.bus == bus && !axis.has_answered()).peekable();
+        missing.peek()?;
+        Some(if missing.all(AxisLink::is_silent) { Missing::OnlySilent } else { Missing::Expected })
     }
 
     /// Takes a frame; tells whether it shows that the next cycle is on already: a node goes on by its own timer, and SYNC is overdue.

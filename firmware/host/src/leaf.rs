@@ -1,0 +1,177 @@
+//! One station at one port: what delivers its frames and tells it the time.
+//!
+//! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline, the station does what is due next. After three
+//!   deadlines in a row the partner is gone, and time follows the clock until a frame comes again.
+//! - *Clock pace*: time is the clock, and the station wakes when it is due.
+
+use std::convert::Infallible;
+use std::io;
+
+use bus::FaultyPort;
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Instant, Timer};
+use protocol::message::{self, Decoded};
+use protocol::{AxisIds, CanFrame, Message, Station, SyncCounter};
+
+use crate::lockstep_time::LockstepTime;
+use crate::port::Port;
+
+/// Deadlines in a row after which the partner counts as gone. One is a lost frame, two are a lost frame and the one that it would have caused.
+const DEADLINES_UNTIL_ALONE: u8 = 3;
+
+/// What a station does at one time before its port is looked at again: heartbeat, deadline, own timer and timeouts, with room for as many again.
+const DUE_AT_ONCE: u8 = 8;
+
+/// A station with its port.
+pub(crate) struct Leaf {
+    station: Box<dyn Station>,
+    ids: AxisIds,
+    port: Port,
+    faults: Option<FaultyPort>,
+    received: Vec<CanFrame>,
+    time: LockstepTime,
+}
+
+/// The clock, counted on from a bus time.
+#[derive(Clone, Copy)]
+struct ClockTime {
+    from: Instant,
+    from_us: u64,
+}
+
+impl ClockTime {
+    fn from(now_us: u64) -> Self {
+        Self { from: Instant::now(), from_us: now_us }
+    }
+
+    fn now_us(self) -> u64 {
+        self.from_us.saturating_add(self.from.elapsed().as_micros())
+    }
+
+    fn at(self, us: u64) -> Instant {
+        self.from + Duration::from_micros(us.saturating_sub(self.from_us))
+    }
+}
+
+impl Leaf {
+    pub(crate) fn new(station: Box<dyn Station>, port: Port, faults: Option<FaultyPort>) -> Self {
+        let ids = station.ids();
+        Self { station, ids, port, faults, received: Vec::new(), time: LockstepTime::default() }
+    }
+
+    /// The boot-up message.
+    pub(crate) fn boot(&mut self) -> io::Result<()> {
+        self.act(|station, _, send| station.boot(send))
+    }
+
+    /// Runs in lock-step until the port fails.
+    pub(crate) async fn in_step(&mut self, deadline: std::time::Duration) -> io::Result<Infallible> {
+        loop {
+            let mut silent = 0;
+            while silent < DEADLINES_UNTIL_ALONE {
+                match self.port.receive(Some(deadline)).await? {
+                    Some(frame) => {
+                        silent = 0;
+                        self.deliver(frame, Self::take_in_step)?;
+                    }
+                    None => {
+                        silent += 1;
+                        self.wake()?;
+                    }
+                }
+            }
+            self.alone().await?;
+        }
+    }
+
+    /// Runs by the clock until the port fails.
+    pub(crate) async fn by_the_clock(&mut self) -> io::Result<Infallible> {
+        let clock = ClockTime::from(self.time.now_us());
+        loop {
+            if let Some(frame) = self.frame_or_wake(clock).await? {
+                self.time.reach(clock.now_us());
+                self.deliver(frame, Self::take)?;
+            }
+        }
+    }
+
+    /// Nobody is there: time follows the clock until a frame comes.
+    async fn alone(&mut self) -> io::Result<()> {
+        let clock = ClockTime::from(self.time.now_us());
+        loop {
+            if let Some(frame) = self.frame_or_wake(clock).await? {
+                self.time.reach(clock.now_us());
+                return self.deliver(frame, Self::take_in_step);
+            }
+        }
+    }
+
+    /// The next frame; `None` where the station was due before one came, and did what was due.
+    async fn frame_or_wake(&mut self, clock: ClockTime) -> io::Result<Option<CanFrame>> {
+        let Some(due_us) = self.station.wake_at_us() else { return self.port.receive(None).await };
+        match select(self.port.receive(None), Timer::at(clock.at(due_us))).await {
+            Either::First(received) => received,
+            Either::Second(()) => self.wake().map(|()| None),
+        }
+    }
+
+    /// A frame came in: what the port makes of it reaches the station.
+    fn deliver(&mut self, frame: CanFrame, take: fn(&mut Self, &CanFrame) -> io::Result<()>) -> io::Result<()> {
+        let Some(faults) = &mut self.faults else { return take(self, &frame) };
+        let mut received = std::mem::take(&mut self.received);
+        faults.receive(frame, &mut received);
+        let outcome = received.drain(..).try_for_each(|frame| take(self, &frame));
+        self.received = received;
+        outcome
+    }
+
+    fn take_in_step(&mut self, frame: &CanFrame) -> io::Result<()> {
+        let due_us = self.station.sync_due_us();
+        if let Some(counter) = self.sync(frame) {
+            self.time.sync(counter, due_us);
+            return self.take(frame);
+        }
+        self.take(frame)?;
+        self.time.without_sync(due_us, self.station.sync_due_us());
+        Ok(())
+    }
+
+    fn take(&mut self, frame: &CanFrame) -> io::Result<()> {
+        self.act(|station, now_us, send| station.take(frame, now_us, send))
+    }
+
+    /// Time reaches what is due next, and the station does everything that is due then.
+    fn wake(&mut self) -> io::Result<()> {
+        let Some(due_us) = self.station.wake_at_us() else { return Ok(()) };
+        self.time.reach(due_us);
+        for _ in 0..DUE_AT_ONCE {
+            let sync_due_us = self.station.sync_due_us();
+            self.act(|station, now_us, send| station.time(now_us, send))?;
+            self.time.without_sync(sync_due_us, self.station.sync_due_us());
+            if self.station.wake_at_us().is_none_or(|due_us| due_us > self.time.now_us()) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the station act at the present time and sends what it says.
+    fn act(&mut self, act: impl FnOnce(&mut dyn Station, u64, &mut dyn FnMut(CanFrame))) -> io::Result<()> {
+        let (mut outcome, port) = (Ok(()), &self.port);
+        let mut send = |frame| {
+            if outcome.is_ok() {
+                outcome = port.send(&frame);
+            }
+        };
+        act(self.station.as_mut(), self.time.now_us(), &mut send);
+        outcome
+    }
+
+    /// The counter, where a frame is SYNC.
+    fn sync(&self, frame: &CanFrame) -> Option<SyncCounter> {
+        match message::decode(self.ids, frame) {
+            Ok(Decoded::Message(Message::Sync(counter))) => Some(counter),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the deadline, the node's own timer.
+
+use protocol::counter::SYNC_OVERFLOW;
+use protocol::message::NmtState;
+use protocol::{CanFrame, SyncCounter};
+
+use crate::Servo;
+use crate::axis::{Circumstances, Notices};
+use crate::inbox::Contents;
+use crate::stage::StageOutput;
+
+/// SYNC timeout where the parameter set leaves it open (2131h = 0), in periods: two more than the setpoints and feedbacks that may be missing in a row.
+const SYNC_TIMEOUT_PERIODS: u16 = 5;
+
+impl Servo {
+    /// Lets time pass: does what is due, at most one cycle's worth. Call again while [`Self::wake_at_us`] is not later.
+    #[must_use = "the frames have to go on the bus"]
+    pub fn on_time(&mut self, now_us: u64) -> &[CanFrame] {
+        self.outbox.clear();
+        self.step_time(now_us);
+        &self.outbox
+    }
+
+    /// When something is due next, unless a frame comes before.
+    #[must_use]
+    pub fn wake_at_us(&self) -> Option<u64> {
+        let heartbeat = self.timing.sync_due_us().is_none().then(|| self.periodic.heartbeat_due_us()).flatten();
+        let cycle = if self.inbox.is_open() { self.timing.deadline_us() } else { self.next_begin_us() };
+        match (cycle, heartbeat) {
+            (Some(cycle), Some(heartbeat)) => Some(cycle.min(heartbeat)),
+            (cycle, heartbeat) => cycle.or(heartbeat),
+        }
+    }
+
+    /// When the node begins a cycle without SYNC; without torque it rather waits until SYNC counts as gone.
+    fn next_begin_us(&self) -> Option<u64> {
+        let own = self.timing.own_timer_us()?;
+        if self.axis.drive.is_energised() { Some(own) } else { own.checked_add(self.sync_timeout_us()) }
+    }
+
+    fn sync_timeout_us(&self) -> u64 {
+        let set = self.active.as_ref().map_or(0, |settings| settings.limits.sync_timeout_us);
+        if set == 0 { self.timing.periods_us(SYNC_TIMEOUT_PERIODS) } else { set }
+    }
+
+    /// Catches up with what was due strictly before a frame arrives; bounded, because a node that was held up for long has a fault to latch and not a
+    /// past to live through.
+    pub(crate) fn catch_up(&mut self, now_us: u64) {
+        for _ in 0..CATCH_UP_EVENTS {
+            match self.wake_at_us() {
+                Some(due) if due < now_us => self.step_time(due),
+                _ => return,
+            }
+        }
+    }
+
+    fn step_time(&mut self, now_us: u64) {
+        self.start_clock(now_us);
+        if self.inbox.is_open() {
+            if self.timing.deadline_us().is_some_and(|due| due <= now_us) {
+                self.close(true);
+            }
+        } else if self.next_begin_us().is_some_and(|due| due <= now_us) {
+            self.go_on_without_sync(now_us);
+        } else if self.timing.sync_due_us().is_none() {
+            self.beat(now_us);
+        }
+    }
+
+    fn go_on_without_sync(&mut self, now_us: u64) {
+        if !self.axis.drive.is_energised() {
+            self.leave_the_cycle();
+            return;
+        }
+        if self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
+            self.latch(protocol::Fault::SyncMissing);
+        }
+        if let Some(counter) = self.sync.begin_without_sync() {
+            self.timing.begin_without_sync(now_us);
+            self.open(counter, false);
+        }
+    }
+
+    /// SYNC is not waited for any more; the next one is the first.
+    pub(crate) fn leave_the_cycle(&mut self) {
+        self.timing.stop();
+        self.sync = protocol::SyncTracker::default();
+        self.inbox = crate::inbox::Inbox::default();
+        self.axis.encoders.forget();
+    }
+
+    /// A frame shows that the next cycle is on although its SYNC did not come.
+    pub(crate) fn begin_by_evidence(&mut self, now_us: u64) {
+        if let Some(counter) = self.sync.begin_without_sync() {
+            self.timing.begin_without_sync(now_us);
+            self.open(counter, false);
+        }
+    }
+
+    pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64) {
+        let first = self.timing.sync_due_us().is_none();
+        self.timing.begin_by_sync(now_us, counter);
+        if first {
+            self.periodic.beat_now(now_us);
+        }
+        self.open(counter, true);
+    }
+
+    fn open(&mut self, counter: SyncCounter, in_sync: bool) {
+        if self.inbox.is_open() {
+            self.close(true);
+        }
+        let cycles = self.inbox.counter().map_or(1, |before| counter.cycles_since(before));
+        if cycles <= SYNC_OVERFLOW / 2 {
+            (1..cycles).for_each(|_| self.skip());
+        }
+        self.activate();
+        self.inbox.begin(counter);
+        self.in_sync = in_sync;
+    }
+
+    /// A committed set becomes active as a whole, between two cycles.
+    pub(crate) fn activate(&mut self) {
+        if let Some(settings) = self.committed.take() {
+            self.timing.set_period(settings.period_us);
+            self.active = Some(settings);
+        }
+    }
+
+    pub(crate) fn close_if_complete(&mut self) {
+        let wants_setpoint = self.active.as_ref().is_none_or(|settings| self.axis.expects_setpoint(settings));
+        if self.inbox.is_complete(wants_setpoint) {
+            self.close(false);
+        }
+    }
+
+    /// Closes the cycle: steps the axis and answers.
+    fn close(&mut self, by_deadline: bool) {
+        let contents = self.inbox.close();
+        let stage = self.step_axis(&contents);
+        let late = by_deadline || !self.in_sync;
+        let counts = &mut self.axis.watchdog.counts;
+        counts.by_deadline = counts.by_deadline.saturating_add(u32::from(late));
+        self.send_torque(stage);
+        self.send_periodic();
+        self.finish_nmt();
+    }
+
+    /// A cycle passed whose time and SYNC never came: everything in it counts as missing.
+    fn skip(&mut self) {
+        self.in_sync = false;
+        let _ = self.step_axis(&Contents::NOTHING);
+    }
+
+    fn step_axis(&mut self, contents: &Contents) -> StageOutput {
+        let circumstances = Circumstances {
+            period_fits: self.period_fits(),
+            listens: self.nmt == NmtState::Operational && self.pending_nmt.is_none(),
+            in_sync: self.in_sync,
+        };
+        let mut notices = Notices::new();
+        let Some(settings) = self.active.as_ref() else { return StageOutput::default() };
+        let stage = self.axis.cycle(settings, contents, circumstances, &mut notices);
+        self.send_notices(&notices);
+        stage
+    }
+
+    /// The SYNC period that the master declares and the one that is measured are that of the active set.
+    fn period_fits(&self) -> bool {
+        let declared = self.server.declared_period_us();
+        let set = self.active.as_ref().map_or(0, |settings| settings.period_us);
+        declared.is_none_or(|declared| declared == set) && !self.timing.period_is_off()
+    }
+}
+
+/// Events of the past that a frame waits for: a deadline and an own timer for each of the cycles until SYNC counts as gone.
+const CATCH_UP_EVENTS: u16 = 2 * SYNC_TIMEOUT_PERIODS;

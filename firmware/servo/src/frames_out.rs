@@ -1,0 +1,176 @@
+//! Frames out: torque in every cycle, status on change and every tenth cycle, heartbeats by time in every NMT state, EMCY for faults and refusals.
+
+use controller::PositionSource;
+use protocol::message::{self, EmergencyMessage, Status};
+use protocol::states::StatusWord;
+use protocol::table::{HEARTBEAT_EVERY_CYCLES, STATUS_EVERY_CYCLES};
+use protocol::weight::{FollowingError24, TorqueMicroNm, TorquePerMille};
+use protocol::{Fault, Message, SyncCounter};
+
+use crate::axis::{Notice, Notices};
+use crate::drive::Drive;
+use crate::sdo_server::Readings;
+use crate::stage::StageOutput;
+use crate::{Servo, emergency};
+
+/// What is sent, or expected, from time to time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Periodic {
+    /// Cycles until the next status.
+    status_in: u16,
+    said: Option<(StatusWord, Option<Fault>)>,
+    heartbeat_due_us: Option<u64>,
+    plant_heard_us: Option<u64>,
+}
+
+impl Periodic {
+    /// The first event after reset starts the clock.
+    pub(crate) fn start(&mut self, now_us: u64, period_us: u64) {
+        self.heartbeat_due_us.get_or_insert(now_us.saturating_add(period_us));
+    }
+
+    /// The first cycle carries a heartbeat, so that a run looks the same wherever it is made.
+    pub(crate) const fn beat_now(&mut self, now_us: u64) {
+        self.heartbeat_due_us = Some(now_us);
+        self.plant_heard_us = Some(now_us);
+    }
+
+    pub(crate) const fn heartbeat_due_us(&self) -> Option<u64> {
+        self.heartbeat_due_us
+    }
+
+    pub(crate) const fn hear_plant(&mut self, now_us: u64) {
+        self.plant_heard_us = Some(now_us);
+    }
+
+    fn plant_is_silent(&self, now_us: u64, allowed_us: u64) -> bool {
+        self.plant_heard_us.is_some_and(|heard| now_us.saturating_sub(heard) > allowed_us)
+    }
+
+    fn status_is_due(&mut self, now: (StatusWord, Option<Fault>)) -> bool {
+        // A warning is no change: it would be said every cycle on a bad bus. It goes with the next status.
+        let without_warning = (StatusWord(now.0.0 & !StatusWord::WARNING), now.1);
+        let due = self.status_in == 0 || self.said != Some(without_warning);
+        self.status_in = if due { STATUS_EVERY_CYCLES.saturating_sub(1) } else { self.status_in.saturating_sub(1) };
+        self.said = Some(without_warning);
+        due
+    }
+}
+
+impl Servo {
+    pub(crate) fn send(&mut self, message: Message) {
+        // The outbox holds more frames than one event can cause (see `Outbox`); a full one drops the newest.
+        let _ = self.outbox.push(message.encode(self.ids));
+    }
+
+    pub(crate) fn send_torque(&mut self, stage: StageOutput) {
+        let Some(counter) = self.inbox.counter() else { return };
+        let torque = TorqueMicroNm(stage.torque.to_micro_nm_lossy());
+        self.send(Message::Torque(message::Torque { torque, control: stage.control, counter }));
+    }
+
+    pub(crate) fn send_periodic(&mut self) {
+        let status = self.status();
+        if self.periodic.status_is_due((status.status, status.fault)) {
+            self.send(Message::Status(status));
+            self.axis.last.warning = false;
+        }
+        if let Some(now_us) = self.timing.began_us() {
+            self.beat(now_us);
+            self.watch_plant(now_us);
+        }
+    }
+
+    /// Sends the heartbeat when it is due.
+    pub(crate) fn beat(&mut self, now_us: u64) {
+        if self.periodic.heartbeat_due_us.is_some_and(|due| due <= now_us) {
+            self.periodic.heartbeat_due_us = Some(now_us.saturating_add(self.heartbeat_period_us()));
+            self.send(Message::ServoHeartbeat(self.nmt));
+        }
+    }
+
+    /// Starts the clock of the heartbeats, if this is the first event after reset.
+    pub(crate) fn start_clock(&mut self, now_us: u64) {
+        let period_us = self.heartbeat_period_us();
+        self.periodic.start(now_us, period_us);
+    }
+
+    fn heartbeat_period_us(&self) -> u64 {
+        self.timing.periods_us(HEARTBEAT_EVERY_CYCLES)
+    }
+
+    fn watch_plant(&mut self, now_us: u64) {
+        let allowed_us = self.active.as_ref().map_or(0, |settings| settings.limits.heartbeat_us);
+        if self.axis.drive.is_energised() && self.periodic.plant_is_silent(now_us, allowed_us) {
+            self.latch(Fault::HeartbeatLost);
+        }
+    }
+
+    pub(crate) fn latch(&mut self, fault: Fault) {
+        let mut notices = Notices::new();
+        if let Some(settings) = self.active.as_ref() {
+            self.axis.latch(fault, settings, &mut notices);
+        }
+        self.send_notices(&notices);
+    }
+
+    pub(crate) fn send_notices(&mut self, notices: &Notices) {
+        let counter = self.inbox.counter().map_or(0, SyncCounter::get);
+        for notice in notices {
+            let message = match notice {
+                Notice::Latched(fault) | Notice::Refused(fault) => {
+                    self.emergency = (fault.emergency_code(), counter);
+                    emergency(*fault, counter)
+                }
+                Notice::Reset => EmergencyMessage::error_reset(),
+            };
+            self.send(Message::ServoEmergency(message));
+        }
+    }
+
+    fn status(&self) -> Status {
+        let last = &self.axis.last;
+        let rated_mnm = self.active.as_ref().map_or(1, |settings| settings.rated_torque_mnm);
+        let per_mille = last.torque.to_micro_nm_lossy().checked_div(rated_mnm).unwrap_or(0);
+        Status {
+            status: self.status_word(),
+            following_error: FollowingError24::saturating(last.following_error.0.to_num()),
+            torque: TorquePerMille(i16::try_from(per_mille).unwrap_or(if per_mille < 0 { i16::MIN } else { i16::MAX })),
+            fault: self.axis.drive.fault(),
+        }
+    }
+
+    fn status_word(&self) -> StatusWord {
+        let drive = &self.axis.drive;
+        let follows = matches!(drive, Drive::OperationEnabled) && !self.axis.is_halted();
+        let stops = !follows && drive.is_energised();
+        let bits = [
+            (StatusWord::VOLTAGE_ENABLED, self.axis.stage.is_ready()),
+            (StatusWord::WARNING, self.axis.last.warning),
+            (StatusWord::REMOTE, self.pending_nmt.is_none()),
+            (StatusWord::TARGET_REACHED, stops && self.axis.is_standing()),
+            (StatusWord::INTERNAL_LIMIT, self.axis.last.limited),
+            (StatusWord::FOLLOWS_SETPOINT, follows),
+        ];
+        bits.into_iter()
+            .filter(|(_, is_set)| *is_set)
+            .fold(StatusWord::of(drive.state()), |word, (bit, _)| word.with(bit))
+    }
+
+    pub(crate) fn readings(&self) -> Readings {
+        let at = self.axis.encoders.position().unwrap_or_default();
+        let source = self.active.as_ref().map_or(PositionSource::Load, |settings| settings.config.position_source);
+        let (emergency_code, cycle) = self.emergency;
+        Readings {
+            error_register: u8::from(self.axis.drive.fault().is_some()),
+            emergency_code,
+            fault_detail: u32::from(cycle),
+            status_word: self.status_word().0,
+            position: at.of(source).0.saturating_to_num(),
+            motor_position: at.motor.0.saturating_to_num(),
+            load_position: at.load.0.saturating_to_num(),
+            following_error: self.axis.last.following_error.0.to_num(),
+            counts: self.counts(),
+        }
+    }
+}
