@@ -165,6 +165,7 @@ pub fn identify_axes(
 type Work = JoinHandle<Result<Identification, IdentificationError>>;
 
 fn begin(axis: &str, dataset: Dataset) -> Work {
+    progress::step(&format!("identifying axis {axis}"));
     let axis = axis.to_owned();
     std::thread::spawn(move || {
         identification::identify(&dataset, &mut |text| progress::step(&format!("axis {axis}: {text}")))
