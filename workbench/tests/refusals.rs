@@ -11,6 +11,8 @@ use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::states::{Command, ControlWord, DriveState, StatusWord};
 use protocol::weight::{FollowingError24, LoadIncrements24, MotorIncrements, TorqueMicroNm, TorquePerMille};
 use protocol::{CanFrame, Fault, Message, SyncCounter};
+use servo::objects::{self, Parameter};
+use servo::parameters::SetError;
 use workbench::error::Outcome;
 use workbench::interrupt::Interrupt;
 use workbench::link::{Link, axis_ids};
@@ -26,6 +28,10 @@ struct Drive {
     has_refused: bool,
     commands: Vec<ControlWord>,
     written: Vec<(Address, u32)>,
+    /// The object that it does not take, and why.
+    aborts: Option<(Address, AbortCode)>,
+    /// What 2F02h:1 and :2 say.
+    refused: (u32, u32),
     out: VecDeque<CanFrame>,
     /// The servo is dead; its plant goes on by its own timer, and its heartbeats never end.
     is_dead: bool,
@@ -43,6 +49,8 @@ impl Drive {
             has_refused: false,
             commands: Vec::new(),
             written: Vec::new(),
+            aborts: None,
+            refused: (0, 0),
             out: VecDeque::new(),
             is_dead: false,
             received: 0,
@@ -110,12 +118,16 @@ impl Drive {
         let response = match request {
             Request::Download(address, data) => {
                 self.written.push((address, data.to_u32()));
-                // A drive of before the object was invented.
-                if address == Address::new(0x2102, 0) {
-                    Response::Aborted(address, AbortCode::ObjectMissing.value())
-                } else {
-                    Response::Downloaded(address)
+                match self.aborts {
+                    Some((object, code)) if object == address => Response::Aborted(address, code.value()),
+                    _ => Response::Downloaded(address),
                 }
+            }
+            Request::Upload(objects::REFUSED_ROW) => {
+                Response::Uploaded(objects::REFUSED_ROW, Expedited::u32(self.refused.0))
+            }
+            Request::Upload(objects::REFUSED_REASON) => {
+                Response::Uploaded(objects::REFUSED_REASON, Expedited::u32(self.refused.1))
             }
             Request::Upload(address) => Response::Uploaded(address, Expedited::u32(0)),
             other => panic!("{other:?}"),
@@ -228,14 +240,46 @@ fn an_interruption_on_the_way_up_takes_the_drive_down() {
 }
 
 #[test]
-fn the_sync_period_is_declared_before_the_set_and_a_drive_without_the_object_is_taken_as_it_is() {
+fn the_sync_period_is_declared_before_the_set() {
     let machine = one_axis();
     let mut master = Master::start(Drive::new(0, None), &machine).unwrap();
     master.configure(&machine, &[]).unwrap();
     let written = master.into_link().written;
-    assert_eq!(written[0], (Address::new(0x2102, 0), 1000));
-    assert_eq!(written.last().unwrap().0, servo::objects::COMMIT);
+    assert_eq!(written[0], (objects::DECLARED_PERIOD, 1000));
+    assert_eq!(written.last().unwrap().0, objects::COMMIT);
     assert!(written.len() > 10);
+}
+
+#[test]
+fn a_drive_that_takes_no_declared_period_is_not_configured() {
+    let machine = one_axis();
+    let mut drive = Drive::new(0, None);
+    drive.aborts = Some((objects::DECLARED_PERIOD, AbortCode::ObjectMissing));
+    let mut master = Master::start(drive, &machine).unwrap();
+    let text = master.configure(&machine, &[]).unwrap_err().to_string();
+    assert!(text.starts_with("axis X: object 2102h:0: "), "{text}");
+    assert_eq!(master.into_link().written.len(), 1);
+}
+
+#[test]
+fn a_refused_set_names_parameter_and_reason_also_where_they_are_unknown() {
+    let machine = one_axis();
+    let row = |parameter: Parameter| u32::try_from(parameter as usize + 1).unwrap();
+    let brakes_hard = u32::from(SetError::BeyondAcceleration(Parameter::QuickStopDeceleration).code());
+    for (refused, wanted) in [
+        (
+            (row(Parameter::QuickStopDeceleration), brakes_hard),
+            "object 6085h:0 (deceleration of the quick-stop ramp): a ramp brakes harder than the axis' acceleration limit",
+        ),
+        ((999, 200), "row 999 of its object table: reason 200"),
+    ] {
+        let mut drive = Drive::new(0, None);
+        drive.aborts = Some((objects::COMMIT, AbortCode::ParameterIncompatible));
+        drive.refused = refused;
+        let mut master = Master::start(drive, &machine).unwrap();
+        let text = master.configure(&machine, &[]).unwrap_err().to_string();
+        assert_eq!(text, format!("axis X: the drive refuses the parameter set: {wanted}"));
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@ use protocol::states::DriveState;
 use protocol::weight::{LoadIncrements24, SetpointFine};
 use protocol::{Fault, Message, SyncCounter};
 
-use crate::drive::{COUNT_M, FINE_PER_COUNT};
+use crate::drive::{self, COUNT_M, FINE_PER_COUNT};
 use crate::error::{Failure, Outcome};
 use crate::link::{Link, axis_ids};
 
@@ -58,6 +58,8 @@ pub(super) struct AxisLink {
     way_m: f64,
     newton_per_micro_nm: f64,
     load: Option<(LoadIncrements24, i64)>,
+    /// The scale where the motor encoder is zero, counts of 10 nm.
+    relation_counts: i64,
     torque_n: f64,
     torque_seen: bool,
     silent_cycles: u32,
@@ -88,6 +90,7 @@ impl AxisLink {
             way_m,
             newton_per_micro_nm: axis.actual.newton_per_micro_nm(),
             load: None,
+            relation_counts: (drive::relation_m(axis) / COUNT_M).round() as i64,
             torque_n: 0.0,
             torque_seen: false,
             silent_cycles: 0,
@@ -146,10 +149,11 @@ impl AxisLink {
         }
     }
 
-    /// The load scale tells its low 24 bits; the first reading is taken to stand nearest to the motor.
+    /// The load scale tells its low 24 bits; the first reading is taken to stand nearest to where the motor and the relation of both encoders
+    /// expect it, as the drive does (2103h).
     fn unwrap(&self, load: LoadIncrements24) -> i64 {
         let (raw, counts) = self.load.unwrap_or_else(|| {
-            let counts = (self.now.motor_m / COUNT_M).round() as i64;
+            let counts = (self.now.motor_m / COUNT_M).round() as i64 + self.relation_counts;
             (LoadIncrements24::from_counts(counts), counts)
         });
         counts + i64::from(raw.step_to(load))

@@ -6,17 +6,14 @@ use plant_sim::Machine;
 use protocol::Message;
 use protocol::message::{Decoded, decode};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
-use servo::objects;
+use servo::objects::{self, Entry};
+use servo::parameters::SetError;
 
 use super::{ANSWER, Master, Patience};
 use crate::compensation::AxisCompensation;
 use crate::drive;
 use crate::error::{Failure, Outcome};
 use crate::link::Link;
-
-/// The SYNC period that the master declares, µs. It is refused by nobody, the drive compares it with the cycle time of the parameter set (1006h)
-/// when it is enabled.
-const DECLARED_PERIOD_US: Address = Address::new(0x2102, 0);
 
 impl<L: Link> Master<L> {
     /// Reads an object of the servo.
@@ -44,26 +41,32 @@ impl<L: Link> Master<L> {
     /// Downloads the parameters of all axes and makes each set active as a whole.
     ///
     /// # Errors
-    /// Where a value does not fit or the drive refuses it.
+    /// Where a value does not fit, or the drive refuses it or the whole set: with its parameter and reason.
     pub fn configure(&mut self, machine: &Machine, compensation: &[AxisCompensation]) -> Outcome<()> {
+        let period_us = u32::try_from(self.period.as_micros()).unwrap_or(u32::MAX);
         for (index, axis) in machine.axes.iter().enumerate() {
-            self.declare_period(index)?;
+            self.download(index, objects::DECLARED_PERIOD, Expedited::u32(period_us))?;
             let own = compensation.get(index).copied().unwrap_or_default();
             for (entry, value) in drive::parameters(axis, machine.period_s, &own)? {
                 self.download(index, entry.address, Expedited::i32(value))?;
             }
-            self.download(index, objects::COMMIT, Expedited::u32(objects::COMMIT_KEY))?;
+            self.commit(index)?;
         }
         Ok(())
     }
 
-    /// A drive without the object has nothing to compare with: that it is missing is no error.
-    fn declare_period(&mut self, index: usize) -> Outcome<()> {
-        let period_us = u32::try_from(self.period.as_micros()).unwrap_or(u32::MAX);
-        match self.ask(index, Request::Download(DECLARED_PERIOD_US, Expedited::u32(period_us)))? {
+    /// Makes the staged set active. A set that does not go together is refused as a whole, and 2F02h says why.
+    fn commit(&mut self, index: usize) -> Outcome<()> {
+        let request = Request::Download(objects::COMMIT, Expedited::u32(objects::COMMIT_KEY));
+        match self.ask(index, request)? {
             Response::Downloaded(_) => Ok(()),
-            Response::Aborted(_, code) if code == AbortCode::ObjectMissing.value() => Ok(()),
-            other => Err(self.refused(index, DECLARED_PERIOD_US, other)),
+            Response::Aborted(_, code) if code == AbortCode::ParameterIncompatible.value() => {
+                let row = self.upload(index, objects::REFUSED_ROW)?.to_u32();
+                let reason = self.upload(index, objects::REFUSED_REASON)?.to_u32();
+                let (name, why) = (&self.axes[index].name, refusal(row, reason));
+                Err(Failure::new(format!("axis {name}: the drive refuses the parameter set: {why}")))
+            }
+            other => Err(self.refused(index, objects::COMMIT, other)),
         }
     }
 
@@ -96,4 +99,16 @@ impl<L: Link> Master<L> {
         let Address { index: object, subindex } = address;
         Failure::new(format!("axis {}: object {object:04X}h:{subindex}: {why}", self.axes[index].name))
     }
+}
+
+/// The parameter and the reason of a refused commit, in words: rows of `docs/objects.md` count from 1, reasons are those of [`SetError`].
+fn refusal(row: u32, reason: u32) -> String {
+    let place = usize::try_from(row).ok().and_then(|row| row.checked_sub(1));
+    let parameter = place.and_then(|place| objects::TABLE.get(place)).map_or_else(
+        || format!("row {row} of its object table"),
+        |Entry { address, name, .. }| format!("object {:04X}h:{} ({name})", address.index, address.subindex),
+    );
+    let text = SetError::REASONS.iter().find(|(code, _)| u32::from(*code) == reason);
+    let text = text.map_or_else(|| format!("reason {reason}"), |(_, text)| (*text).to_owned());
+    format!("{parameter}: {text}")
 }
