@@ -161,7 +161,6 @@ impl Drive {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller::units::{Position, Velocity};
 
     fn stop() -> Stop {
         Stop::within(1)
