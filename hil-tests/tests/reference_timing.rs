@@ -20,7 +20,7 @@ fn trapezoid(time_s: f64) -> f64 {
 #[test]
 fn a_step_of_acceleration_costs_what_it_cost_without_a_preview() {
     let machine = quiet_reference();
-    let mut session = Session::open(&machine, &Place::InProcess, &vec![AxisCompensation::default(); 2], 0).unwrap();
+    let mut session = Session::open(&machine, &Place::InProcess, &[AxisCompensation::default(); 2], 0).unwrap();
     let mut error_m = 0.0_f64;
     let each = |_, axes: &[workbench::master::AxisCycle]| {
         error_m = error_m.max((axes[0].reference_m - axes[0].load_m).abs());

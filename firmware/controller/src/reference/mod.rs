@@ -19,6 +19,35 @@
 //! after a velocity or position limit was lowered in motion the overrun is at most v² / 2 a, and `overrun` says so.
 //!
 //! **Ramps** start from the commanded position, velocity and acceleration (`ramp`).
+//!
+//! ```
+//! use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
+//! use controller::units::{Position, Velocity};
+//! use fixed::types::I20F12;
+//!
+//! // 0.5 m/s, 5 m/s² and ±1 m at 1 kHz, in 10 nm per cycle and per cycle².
+//! let per_cycle = |counts: i32| Velocity(I20F12::from_num(counts));
+//! let ramp = Ramp { deceleration: per_cycle(500), jerk: per_cycle(100) };
+//! let config = ReferenceConfig {
+//!     velocity_limit: per_cycle(50_000),
+//!     acceleration_limit: per_cycle(500),
+//!     step: per_cycle(50),
+//!     position_min: Position::from_counts(-100_000_000),
+//!     position_max: Position::from_counts(100_000_000),
+//!     quick_stop: ramp,
+//!     slow_down: ramp,
+//!     filter_log2: 0,
+//!     setpoint_cycles: 1,
+//! };
+//! // 100 counts per cycle; the setpoint of cycle 8 is lost.
+//! let mut stage = ReferenceState::at(Position::from_counts(0), per_cycle(100));
+//! for cycle in 0..12 {
+//!     let preview = (cycle + 1 != 8).then(|| Position::from_counts(100 * (cycle + 1)));
+//!     let reference = stage.step(&config, &ReferenceInput { present: None, preview, mode: Mode::Follow });
+//!     assert_eq!(reference.position, Position::from_counts(100 * cycle));
+//!     assert_eq!(reference.bridged, cycle + 1 == 8);
+//! }
+//! ```
 
 mod follow;
 mod ingest;
