@@ -1,4 +1,5 @@
-//! When the feedforward acts, seen at the table: a step of acceleration, and a circle whose acceleration changes quickly.
+//! When the feedforward acts, seen at the table: a step of acceleration, and a circle whose acceleration changes
+//! quickly.
 
 use hil_tests::rig::quiet_reference;
 use workbench::ballbar;
@@ -26,7 +27,8 @@ fn a_step_of_acceleration_costs_what_it_cost_without_a_preview() {
         error_m = error_m.max((axes[0].reference_m - axes[0].load_m).abs());
     };
     session.follow(0.5, |time_s| vec![trapezoid(time_s), 0.0], each).unwrap();
-    // 134.96 µm on 2026-11-21, with the second difference centred on k − 1: a step waits for the setpoint that confirms it.
+    // 134.96 µm on 2026-11-21, with the second difference centred on k − 1: a step waits for the setpoint that confirms
+    // it.
     assert!((134.0..135.5).contains(&(1.0e6 * error_m)), "{error_m} m");
 }
 

@@ -172,7 +172,8 @@ mod tests {
         }
     }
 
-    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows' second differences.
+    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows'
+    /// second differences.
     fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
         let mut dataset = dataset();
         let form = crate::record::ControllerForm { position_sensor: None, ..controller() };
