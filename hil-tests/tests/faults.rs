@@ -16,7 +16,7 @@ const CYCLES: u32 = 20_000;
 
 /// A sine of 10 mm with 26 mm/s at most.
 fn path(cycle: u32) -> f64 {
-    0.010 * (std::f64::consts::TAU * f64::from(cycle) / 2400.0).sin()
+    0.010 * (1.0 - (std::f64::consts::TAU * f64::from(cycle) / 2400.0).cos())
 }
 
 fn default_of(parameter: Parameter) -> u16 {

@@ -235,11 +235,14 @@ impl Interfaces {
         }
     }
 
-    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that took too long moves it.
+    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that begins more than half a period late moves it, because
+    /// two SYNCs close together are worse for the nodes than one that is late.
     fn wait_for_the_clock(&mut self, cycle: Duration) {
         let now = Instant::now();
-        let start = self.cycle_end.map_or(now, |end| end.max(now));
-        std::thread::sleep(start - now);
+        let due = self.cycle_end.unwrap_or(now);
+        std::thread::sleep(due.saturating_duration_since(now));
+        let woke = Instant::now();
+        let start = if woke.saturating_duration_since(due) > cycle / 2 { woke } else { due };
         self.cycle_end = Some(start + cycle);
     }
 

@@ -136,8 +136,8 @@ impl Servo {
 
     /// Closes the cycle: steps the axis and answers.
     fn close(&mut self, by_deadline: bool) {
-        let contents = self.inbox.close();
-        let stage = self.step_axis(&contents);
+        self.inbox.close();
+        let stage = self.step_axis(None);
         let late = by_deadline || !self.in_sync;
         let counts = &mut self.axis.watchdog.counts;
         counts.by_deadline = counts.by_deadline.saturating_add(u32::from(late));
@@ -149,10 +149,11 @@ impl Servo {
     /// A cycle passed whose time and SYNC never came: everything in it counts as missing.
     fn skip(&mut self) {
         self.in_sync = false;
-        let _ = self.step_axis(&Contents::NOTHING);
+        let _ = self.step_axis(Some(&Contents::NOTHING));
     }
 
-    fn step_axis(&mut self, contents: &Contents) -> StageOutput {
+    /// `instead` of what is in the inbox.
+    fn step_axis(&mut self, instead: Option<&Contents>) -> StageOutput {
         let circumstances = Circumstances {
             period_fits: self.period_fits(),
             listens: self.nmt == NmtState::Operational && self.pending_nmt.is_none(),
@@ -160,6 +161,7 @@ impl Servo {
         };
         let mut notices = Notices::new();
         let Some(settings) = self.active.as_ref() else { return StageOutput::default() };
+        let contents = instead.unwrap_or_else(|| self.inbox.contents());
         let stage = self.axis.cycle(settings, contents, circumstances, &mut notices);
         self.send_notices(&notices);
         stage
