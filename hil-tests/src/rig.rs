@@ -4,9 +4,11 @@ use plant_sim::Machine;
 use plant_sim::brake::BrakeParameters;
 use plant_sim::friction::Law;
 use plant_sim::machine::PositionSensor;
+use protocol::sdo::Expedited;
+use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
 use workbench::compensation::AxisCompensation;
-use workbench::error::Outcome;
-use workbench::link::InProcess;
+use workbench::error::{Failure, Outcome};
+use workbench::link::{InProcess, Link};
 use workbench::master::Master;
 
 /// The reference machine without noise, for figures that have to repeat to the digit.
@@ -138,3 +140,16 @@ pub fn enabled(machine: &Machine) -> Outcome<Master<InProcess>> {
 pub const PLANT: usize = 0;
 /// Place of the servo.
 pub const SERVO: usize = 1;
+
+/// Writes parameters of an axis and makes them active as a whole, as an engineer would over SDO; in motion as well.
+///
+/// # Errors
+/// Where the drive refuses a value or the set.
+pub fn set<L: Link>(master: &mut Master<L>, axis: usize, values: &[(Parameter, i32)]) -> Outcome<()> {
+    for (parameter, value) in values {
+        let entry = TABLE.iter().find(|entry| entry.parameter == *parameter);
+        let entry = entry.ok_or_else(|| Failure::new("the drive has no such object"))?;
+        master.download(axis, entry.address, Expedited::i32(*value))?;
+    }
+    master.download(axis, COMMIT, Expedited::u32(COMMIT_KEY))
+}

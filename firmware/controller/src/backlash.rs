@@ -36,6 +36,12 @@ pub struct BacklashState {
 }
 
 impl BacklashState {
+    /// The offset of the last cycle.
+    #[must_use]
+    pub const fn offset(&self) -> PositionError {
+        self.offset
+    }
+
     /// Advances by one cycle; gives the offset and its velocity.
     pub fn step(
         &mut self,

@@ -106,6 +106,12 @@ impl State {
     pub fn moving(self, motor: Position, velocity: Velocity) -> Self {
         Self { cascade: self.cascade.moving(velocity), motor: Some(motor.after(velocity.reversed())), ..self }
     }
+
+    /// Where the backlash unit has the motor, beside the setpoint.
+    #[must_use]
+    pub const fn backlash_offset(&self) -> PositionError {
+        self.backlash.offset()
+    }
 }
 
 /// What comes in, once per cycle.

@@ -2,7 +2,7 @@
 
 use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::NmtState;
-use protocol::{CanFrame, SyncCounter};
+use protocol::{CanFrame, Fault, SyncCounter};
 
 use crate::Servo;
 use crate::axis::{Circumstances, Notices};
@@ -72,12 +72,16 @@ impl Servo {
             self.leave_the_cycle();
             return;
         }
-        if self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
-            self.latch(protocol::Fault::SyncMissing);
-        }
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false);
+        self.begin_without_sync(now_us);
+    }
+
+    /// The next cycle begins by the own timer, or because a frame shows that it is on although its SYNC did not come.
+    pub(crate) fn begin_without_sync(&mut self, now_us: u64) {
+        let Some(counter) = self.sync.begin_without_sync() else { return };
+        self.timing.begin_without_sync(now_us);
+        self.open(counter, false);
+        if self.axis.drive.is_energised() && self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
+            self.latch(Fault::SyncMissing);
         }
     }
 
@@ -87,14 +91,6 @@ impl Servo {
         self.sync = protocol::SyncTracker::default();
         self.inbox = crate::inbox::Inbox::default();
         self.axis.encoders.forget();
-    }
-
-    /// A frame shows that the next cycle is on although its SYNC did not come.
-    pub(crate) fn begin_by_evidence(&mut self, now_us: u64) {
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false);
-        }
     }
 
     pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64) {

@@ -93,7 +93,7 @@ impl Servo {
     fn on_setpoint(&mut self, setpoint: Setpoint, now_us: u64) {
         let mut taken = self.inbox.setpoint(setpoint);
         if taken == Taken::NextCycle {
-            self.begin_by_evidence(now_us);
+            self.begin_without_sync(now_us);
             taken = self.inbox.setpoint(setpoint);
         }
         self.axis.watchdog.taken(taken);
@@ -102,7 +102,7 @@ impl Servo {
     fn on_feedback(&mut self, feedback: Feedback, now_us: u64) {
         let mut taken = self.inbox.feedback(feedback);
         if taken == Taken::NextCycle {
-            self.begin_by_evidence(now_us);
+            self.begin_without_sync(now_us);
             taken = self.inbox.feedback(feedback);
         }
         self.axis.watchdog.taken(taken);
@@ -126,7 +126,10 @@ impl Servo {
 
     fn on_plant_emergency(&mut self, emergency: EmergencyMessage) {
         if !emergency.is_error_reset() && self.axis.drive.is_energised() {
-            self.latch(Fault::PeerFault);
+            let [code, ..] = emergency.vendor_specific;
+            // A drop-out is said by EMCY before the status: the fault has the name of what happened.
+            let dropped_out = Fault::from_code(code) == Some(Fault::StageLost);
+            self.latch(if dropped_out { Fault::StageLost } else { Fault::PeerFault });
         }
     }
 
