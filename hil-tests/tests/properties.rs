@@ -18,9 +18,7 @@ use controller::reference::Reference;
 use hil_tests::rig::one_axis;
 use plant_sim::PlantNode;
 use protocol::cob::AxisIds;
-use protocol::message::{
-    Decoded, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, decode,
-};
+use protocol::message::{Decoded, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, decode};
 use protocol::sdo::{Expedited, Request};
 use protocol::states::{BrakeState, Command, ControlWord, DriveState, StatusWord};
 use protocol::weight::{LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm};
@@ -252,7 +250,10 @@ impl Witness {
         for (beyond, begun) in [(at - limits.high, from - limits.high), (limits.low - at, limits.low - from)] {
             assert!(beyond <= begun.max(0) + braking, "{beyond} beyond the travel, {braking} allowed: {context}");
             let outwards = beyond > begun.max(0) + 2 * speed + 2;
-            assert!(!outwards || self.servo.drive().fault().is_some(), "no fault {beyond} beyond the travel: {context}");
+            assert!(
+                !outwards || self.servo.drive().fault().is_some(),
+                "no fault {beyond} beyond the travel: {context}"
+            );
         }
     }
 
@@ -367,7 +368,8 @@ impl PointMass {
             _ => DriveState::SwitchOnDisabled,
         };
         let acts = self.state == DriveState::OperationEnabled;
-        self.next_n = if acts { f64::from(torque.torque.0) * 1.0e-6 * std::f64::consts::TAU / Self::LEAD_M } else { 0.0 };
+        self.next_n =
+            if acts { f64::from(torque.torque.0) * 1.0e-6 * std::f64::consts::TAU / Self::LEAD_M } else { 0.0 };
         if self.state != before {
             send(self.status().encode(self.ids));
         }
@@ -428,8 +430,7 @@ const WAY_UP: [ControlWord; 6] = [
     ControlWord::SWITCH_ON,
     ControlWord::ENABLE_OPERATION,
 ];
-const EVERY_WORD: [u16; 12] =
-    [0x00, 0x02, 0x06, 0x07, 0x0F, 0x0F, 0x0F, 0x80, 0x8F, 0x010F, 0x0107, 0xFFFF];
+const EVERY_WORD: [u16; 12] = [0x00, 0x02, 0x06, 0x07, 0x0F, 0x0F, 0x0F, 0x80, 0x8F, 0x010F, 0x0107, 0xFFFF];
 
 impl Chaos {
     fn new(bus: InProcessBus, ids: AxisIds, seed: u64) -> Self {

@@ -231,6 +231,44 @@ fn a_hole_at_a_step_of_acceleration_is_caught_up_within_the_limits() {
     assert!(deviation(60) == 0.0 || deviation(60) < 1.0e-3, "{} µm", deviation(60));
 }
 
+/// A velocity, then `acceleration` for 60 cycles from `begin` on (in cycles, fractions too), then the velocity that it came to.
+fn sudden(cycle: u32, velocity: f64, acceleration: f64, begin: f64) -> f64 {
+    let after = |begin: f64| (f64::from(cycle) - begin).max(0.0) * PERIOD_S;
+    velocity * f64::from(cycle) * PERIOD_S + 0.5 * acceleration * (after(begin).powi(2) - after(begin + 60.0).powi(2))
+}
+
+/// The largest deviation, and that which is left at the end, µm, over a step of 5 m/s² and its end with any one setpoint near them lost; refusals in a row.
+fn lost_at_a_step(config: &ReferenceConfig) -> (f64, f64, u16) {
+    let (mut worst, mut left, mut refusals) = (0.0_f64, 0.0_f64, 0);
+    for (velocity, acceleration, begin) in
+        [(0.0, 5.0, 50.0), (0.05, 5.0, 50.25), (0.05, -5.0, 50.5), (-0.05, 5.0, 50.75)]
+    {
+        let base = |cycle| sudden(cycle, velocity, acceleration, begin);
+        for lost in (46..56).chain(106..116) {
+            let mut state = ReferenceState::at(fine(base(0)), Velocity::ZERO);
+            for cycle in 0..400 {
+                let preview = (cycle + 1 != lost).then(|| fine(base(cycle + 1)));
+                let reference = state.step(config, &previewed(preview));
+                // A path that moves from the first cycle on is caught up first.
+                let off = if cycle < 40 { 0.0 } else { 1.0e6 * (metres(reference.position) - base(cycle)).abs() };
+                (worst, refusals) = (worst.max(off), refusals.max(state.refusals()));
+                left = if cycle > 350 { left.max(off) } else { 0.0 };
+            }
+        }
+    }
+    (worst, left, refusals)
+}
+
+#[test]
+fn a_setpoint_lost_at_a_step_of_acceleration_is_caught_up_and_nothing_is_refused() {
+    let with_reserve = ReferenceConfig { acceleration_limit: per_cycle(625.0), ..config() };
+    let (worst, left, refusals) = lost_at_a_step(&with_reserve);
+    assert!((7.0..8.0).contains(&worst) && left < 1.0e-3 && refusals == 0, "{worst} µm, {left} µm, {refusals}");
+    // A path that takes all that the axis may leaves nothing to catch up with before it ends: three quarters of a cycle's speed, for 60 cycles.
+    let (worst, left, refusals) = lost_at_a_step(&config());
+    assert!((220.0..228.0).contains(&worst) && left < 1.0e-3 && refusals == 0, "{worst} µm, {left} µm, {refusals}");
+}
+
 #[test]
 fn a_late_setpoint_fills_its_hole() {
     let base = |cycle| start_of_motion(cycle, 5.0, 50.0);
