@@ -166,8 +166,10 @@ impl Witness {
             self.seen.sets += 1;
             self.begin_anew();
         }
+        // A cycle that was closed in this event may have had a reference that a fault later in the event took away.
+        let was_energised = fault != self.fault_before || steps != self.steps_before + 1;
         for frame in frames {
-            self.look_at_frame(frame, &limits);
+            self.look_at_frame(frame, &limits, was_energised);
         }
         if steps > self.steps_before {
             self.look_at_cycles(steps - self.steps_before, &limits, fault);
@@ -181,20 +183,22 @@ impl Witness {
     }
 
     fn begin_anew(&mut self) {
-        if let Some(reference) = self.before {
-            let [now, next] = [reference.velocity, reference.next_velocity].map(|v| i64::from(v.0.to_bits()));
-            self.begun = (reference.position.0.to_bits(), if now.abs() > next.abs() { now } else { next });
+        if let Some(reference) = &self.before {
+            self.begun = begun(reference);
         }
     }
 
-    fn look_at_frame(&mut self, frame: &CanFrame, limits: &Limits) {
+    fn look_at_frame(&mut self, frame: &CanFrame, limits: &Limits, was_energised: bool) {
         let Ok(Decoded::Message(Message::Torque(torque))) = decode(self.servo.ids(), frame) else { return };
         let magnitude = i64::from(torque.torque.0).abs();
         assert!(magnitude <= limits.torque, "torque {magnitude} above its limit {}", limits.torque);
-        let has_reference = self.servo.reference().is_some();
+        let has_reference = was_energised || self.servo.reference().is_some();
         assert!(magnitude == 0 || has_reference, "torque {magnitude} without a reference");
         let enables = torque.control.command() == Some(Command::EnableOperation);
-        assert!(!enables || self.servo.drive().is_energised(), "the stage is enabled without a reason");
+        assert!(
+            !enables || was_energised || self.servo.drive().is_energised(),
+            "the stage is enabled without a reason"
+        );
     }
 
     fn look_at_cycles(&mut self, cycles: u64, limits: &Limits, fault: Option<Fault>) {
@@ -211,16 +215,10 @@ impl Witness {
         if let (Some(before), Some(now)) = (self.before, reference) {
             self.look_at_reference(cycles, limits, &before, &now);
         } else if let Some(now) = reference {
-            self.begun = (now.position.0.to_bits(), 0);
+            self.begun = begun(&now);
         }
         // After a following error the track begins where the axis is.
         self.before = reference.filter(|_| !rebased);
-        if self.before.is_some() && self.begun == REBASED {
-            self.begin_anew();
-        }
-        if rebased {
-            self.begun = REBASED;
-        }
     }
 
     fn look_at_reference(&mut self, cycles: u64, limits: &Limits, before: &Reference, now: &Reference) {
@@ -266,8 +264,11 @@ impl Witness {
     }
 }
 
-/// No position has this many bits: the next reference is where the limits have to be kept from.
-const REBASED: (i64, i64) = (i64::MAX / 4, 0);
+/// Position and the faster of the two velocities that are commanded already.
+fn begun(reference: &Reference) -> (i64, i64) {
+    let [now, next] = [reference.velocity, reference.next_velocity].map(|velocity| i64::from(velocity.0.to_bits()));
+    (reference.position.0.to_bits(), now.abs().max(next.abs()))
+}
 
 impl Station for Witness {
     fn ids(&self) -> AxisIds {
@@ -624,21 +625,35 @@ fn run(seed: u64, ticks: u64, plant: Box<dyn Station>) -> Seen {
 fn expect_all(seen: &Seen, ticks: u64) {
     assert!(seen.cycles > ticks / 2, "{seen:?}");
     assert!(seen.enabled > ticks / 10 && seen.moving > ticks / 10, "hardly ever enabled or moving: {seen:?}");
-    assert!(seen.sets > ticks / 2000 && seen.bridged > 0 && seen.offsets > 0 && seen.overruns > 0, "{seen:?}");
+    assert!(seen.sets > ticks / 2000 && seen.bridged > 0 && seen.offsets > 0, "{seen:?}");
+    // A limit that is lowered while the axis is beyond it is rare.
+    let overrun = seen.overruns > 0 && seen.faults[usize::from(Fault::LimitOverrun.code())] > 0;
+    assert!(overrun || ticks < RARE, "no limit was lowered in motion: {seen:?}");
+}
+
+/// Ticks in which everything happens at least once.
+const RARE: u64 = 40_000;
+
+/// Seed and ticks of each run.
+fn runs() -> Vec<(u64, u64)> {
+    let ticks = Scope::now().pick(10_000, 40_000, 1_000_000);
+    let seeds = Scope::now().rows("seeds", &[2, 1, 3, 4, 5], 1, 1);
+    seeds.iter().map(|seed| (*seed, ticks)).collect()
 }
 
 #[test]
 fn whatever_the_bus_says_the_servo_with_the_plant_stays_within_its_limits() {
-    let ticks = Scope::now().pick(10_000, 40_000, 1_000_000);
-    let ids = AxisIds::of_axis(0).unwrap();
-    let axis = one_axis().axes.remove(0).actual;
-    let seen = run(1, ticks, Box::new(PlantNode::new(ids, axis, 1.0e-3, 7)));
-    expect_all(&seen, ticks);
+    for (seed, ticks) in runs() {
+        let ids = AxisIds::of_axis(0).unwrap();
+        let axis = one_axis().axes.remove(0).actual;
+        expect_all(&run(seed, ticks, Box::new(PlantNode::new(ids, axis, 1.0e-3, seed))), ticks);
+    }
 }
 
 #[test]
 fn whatever_the_bus_says_the_servo_with_a_point_mass_stays_within_its_limits() {
-    let ticks = Scope::now().pick(10_000, 40_000, 1_000_000);
-    let seen = run(2, ticks, Box::new(PointMass::new(AxisIds::of_axis(0).unwrap(), 3)));
-    expect_all(&seen, ticks);
+    for (seed, ticks) in runs() {
+        let plant = PointMass::new(AxisIds::of_axis(0).unwrap(), seed);
+        expect_all(&run(seed, ticks, Box::new(plant)), ticks);
+    }
 }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! One cycle k in lock-step (`cycle`): SYNC k, setpoints k + 1, then wait until the torque k of every axis was seen. A cycle whose torque does
-//! not come within the timeout counts as missed and the run goes on; what that means is the business of the nodes' watchdogs. `way` brings the
+//! not come while the link waits counts as missed and the run goes on; what that means is the business of the nodes' watchdogs. `way` brings the
 //! drives up and down, each step confirmed by their status. `halt` stops all axes where one has trouble, or where the operator wants it.
 
 mod axis_link;

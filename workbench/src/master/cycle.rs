@@ -1,7 +1,7 @@
 //! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for the torque k of every axis.
 //!
-//! A wait ends with the torques, after a time without any frame, or with evidence that a node has begun the next cycle by its own timer: heartbeats
-//! and feedback of others never go quiet, so silence alone would not end it.
+//! A wait ends with the torques, with the patience of the link (in process and at clock pace the end of the cycle, in lock-step over interfaces one
+//! and a half deadlines of the nodes), or with evidence that a node has begun the next cycle by its own timer.
 //!
 //! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the others must not starve
 //! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
