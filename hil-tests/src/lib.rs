@@ -7,6 +7,7 @@
 //! `golden::check_some` holds the part of a golden table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
 pub mod golden;
+pub mod paths;
 pub mod plans;
 pub mod program;
 pub mod records;

@@ -35,7 +35,8 @@ pub fn one_axis() -> Machine {
     machine
 }
 
-/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens in 30 ms and bites after 40 ms.
+/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens
+/// in 30 ms and bites after 40 ms.
 #[must_use]
 pub fn vertical() -> Machine {
     vertical_with_brake(0.030, 0.040)
@@ -52,7 +53,8 @@ pub fn vertical_with_brake(open_s: f64, close_s: f64) -> Machine {
     machine
 }
 
-/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in 8 ms.
+/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in
+/// 8 ms.
 #[must_use]
 pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     [
@@ -62,7 +64,8 @@ pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     ]
 }
 
-/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from zero.
+/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from
+/// zero.
 #[must_use]
 pub fn absolute_scale(table_m: f64) -> Machine {
     let mut machine = one_axis();
@@ -73,8 +76,8 @@ pub fn absolute_scale(table_m: f64) -> Machine {
     machine
 }
 
-/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way, five times the 2^31 of the frame, within the
-/// 21.5 m that a setpoint can say.
+/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way,
+/// five times the 2^31 of the frame, within the 21.5 m that a setpoint can say.
 #[must_use]
 pub fn long_way() -> Machine {
     let mut machine = one_axis();
@@ -96,7 +99,8 @@ pub fn gap_outside(gap_m: f64) -> Machine {
     machine
 }
 
-/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the prototype's figures.
+/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the
+/// prototype's figures.
 #[must_use]
 pub fn gap_inside(gap_m: f64) -> Machine {
     let mut machine = quiet_reference();

@@ -16,7 +16,7 @@ const CYCLES: u32 = 20_000;
 
 /// A sine of 10 mm with 26 mm/s at most.
 fn path(cycle: u32) -> f64 {
-    0.010 * (std::f64::consts::TAU * f64::from(cycle) / 2400.0).sin()
+    0.010 * (1.0 - (std::f64::consts::TAU * f64::from(cycle) / 2400.0).cos())
 }
 
 fn default_of(parameter: Parameter) -> u16 {
@@ -56,7 +56,7 @@ fn survive(plan: FaultPlan) -> (Master<InProcess>, Seen) {
         seen.enabled_cycles += u32::from(servo.borrow().drive().state() == DriveState::OperationEnabled);
         if servo.borrow().drive().fault().is_some() && servo.borrow().drive().state() == DriveState::Fault {
             seen.faults += 1;
-            assert_eq!(master.expect_enabled().is_err(), master.state(0) != Some(DriveState::OperationEnabled));
+            assert!(master.expect_enabled().is_err(), "the EMCY tells at once, the status may be ten cycles old");
             master.reset_fault().unwrap();
             // Under faults the way up may need another try.
             while master.enable().is_err() {
@@ -257,15 +257,16 @@ fn two_runs_say_the_same_byte_for_byte() {
         machine.axes[0].actual.force_noise_n = 4.5;
         let mut master = enabled(&machine).unwrap();
         (0..3000).for_each(|cycle| master.cycle(&[path(cycle)]).unwrap());
+        let cycles = master.cycles();
         let mut link = master.into_link();
-        workbench::link::Link::take_logs(&mut link).remove(0)
+        (workbench::link::Link::take_logs(&mut link).remove(0), cycles)
     };
-    let (first, second) = (run(), run());
+    let ((first, cycles), (second, _)) = (run(), run());
     assert_eq!(first.frames(), second.frames());
     assert!(first.frames().len() > 12_000);
     let ids = protocol::AxisIds::of_axis(0).unwrap();
     let syncs = first.frames().iter().filter(|(_, frame)| {
         matches!(protocol::message::decode(ids, frame), Ok(protocol::message::Decoded::Message(Message::Sync(_))))
     });
-    assert_eq!(syncs.count(), 3027);
+    assert_eq!(u64::try_from(syncs.count()).unwrap(), cycles);
 }

@@ -601,7 +601,8 @@ fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
         30 => prop::bool::weighted(0.1).prop_map(|lost| Event::Sync { lost }),
         1 => (1..=240_u8).prop_map(Event::Stray),
-        30 => (-9000.0..9000.0, control, behind).prop_map(|(force_n, control, behind)| Event::Torque { force_n, control, behind }),
+        30 => (-9000.0..9000.0, control, behind)
+            .prop_map(|(force_n, control, behind)| Event::Torque { force_n, control, behind }),
         3 => nmt.prop_map(Event::Nmt),
         1 => (0..20_000_u64).prop_map(|us| Event::Pause { us }),
         1 => Just(Event::DropOut),
@@ -634,7 +635,8 @@ proptest! {
         bench.nmt(NmtCommand::StartRemoteNode);
         for event in events {
             happen(&mut bench, event);
-            let enabled = bench.node.drive() == TorqueDrive::OperationEnabled && bench.node.nmt() == NmtState::Operational;
+            let enabled =
+                bench.node.drive() == TorqueDrive::OperationEnabled && bench.node.nmt() == NmtState::Operational;
             prop_assert!(enabled || bench.node.commanded_n() == 0.0, "{event:?}: torque in {:?}", bench.node.drive());
             prop_assert!(enabled || bench.truth().brake == BrakeState::Closed, "{event:?}: {:?}", bench.truth().brake);
             prop_assert!(bench.node.bridged() <= 3);

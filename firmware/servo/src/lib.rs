@@ -92,6 +92,8 @@ pub struct Servo {
     server: SdoServer,
     active: Option<Settings>,
     committed: Option<Settings>,
+    /// What the present event has to say.
+    outbox: Outbox,
 }
 
 impl Servo {
@@ -113,6 +115,7 @@ impl Servo {
             server: SdoServer::default(),
             active,
             committed: None,
+            outbox: Outbox::new(),
         }
     }
 

@@ -193,7 +193,7 @@ parameters! {
     FeedbackMissesAllowed = (0x2130, 2), "feedbacks missed in a row before torque zero", CYCLES, MISSES, 3;
     RefusalsAllowed = (0x2130, 3), "setpoints refused in a row before the ramp", CYCLES, MISSES, 3;
     EncoderJumpLimit = (0x2130, 4), "encoder jump beyond the expected way", COUNT, WINDOW, 100_000;
-    HeartbeatTimeout = (0x2130, 5), "plant heartbeat timeout (0: 250 periods)", MILLISECOND, (0, 60_000), 0;
+    HeartbeatTimeout = (0x2130, 5), "plant heartbeat timeout (0: 450 periods)", MILLISECOND, (0, 60_000), 0;
     FollowingErrorWindow = (0x6065, 0), "following error window", COUNT, WINDOW, 100_000;
     SyncTimeout = (0x2131, 0), "SYNC timeout (0: 5 periods)", MICROSECOND, (0, 60_000_000), 0;
     StageCycles = (0x2132, 0), "power stage confirms within", CYCLES, (1, 100), 3;

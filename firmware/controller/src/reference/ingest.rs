@@ -1,8 +1,9 @@
 //! Ingest: which setpoints are believed.
 //!
-//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies off it by no more than `step` is believed at once. What lies
-//! farther off is a step of acceleration or an outlier, and the next setpoint tells which. With the deviations d1 and d2 of the two setpoints from the track
-//! extrapolated over both (one cycle between them):
+//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies off it by no more
+//! than `step` is believed at once. What lies farther off is a step of acceleration or an outlier, and the next
+//! setpoint tells which. With the deviations d1 and d2 of the two setpoints from the track extrapolated over both (one
+//! cycle between them):
 //!
 //! | what happened | d1 | d2 | believed: d2 − 3 d1 | wrong: d2 |
 //! |---|---|---|---|---|
@@ -11,16 +12,19 @@
 //! | the first setpoint is wrong by e | e | 0 | −3 e | 0 |
 //! | the position shifted by J | J | J | −2 J | J |
 //!
-//! The last two columns are the jumps of acceleration that would be left; the smaller wins among what the axis can do. A setpoint that is not believed is replaced by
-//! its extrapolation, and the next one is judged in the same way: a shifted position is refused again and again, and that is the caller's fault to latch.
-//! Until the decision the track goes on along its extrapolation; both fall before the setpoint is due.
+//! The last two columns are the jumps of acceleration that would be left; the smaller wins among what the axis can do.
+//! A setpoint that is not believed is replaced by its extrapolation, and the next one is judged in the same way: a
+//! shifted position is refused again and again, and that is the caller's fault to latch. Until the decision the track
+//! goes on along its extrapolation; both fall before the setpoint is due.
 //!
-//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1, and a deviation of d1 is shared out as a constant step would:
-//! velocity 2 d1 / (m + 1), acceleration 2 d1 / (m (m + 1)).
+//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1. A deviation d1 within `step` is
+//! shared out as a constant step would: velocity 2 d1 / (m + 1), acceleration 2 d1 / (m (m + 1)). A larger one waits for
+//! d2, which tells the velocity d2 − d1 itself. Where the setpoint that would decide is lost, what the axis can do is
+//! believed: a step is more likely than a second thing that went wrong.
 
 use fixed::types::I56F8;
 
-use super::track::{Track, Way, moved, way, within};
+use super::track::{Track, Way, limited, moved, way, within};
 
 /// What the axis can do between two setpoints.
 #[derive(Clone, Copy, Debug)]
@@ -133,13 +137,21 @@ impl Ingest {
 
     fn decide(&mut self, bounds: Bounds, judged: bool, first: Way, next: Option<I56F8>) -> Option<Revision> {
         let second = next.map(|next| way(self.track.ahead().position, next));
-        if !judged || second.is_some_and(|second| self.is_believable(bounds, first, second)) {
-            return Some(self.revised(first));
+        // Where the next one is lost, a step is more likely than a second thing that went wrong.
+        let is_believed = match second {
+            None => self.is_possible(bounds, self.hole.saturating_add(1), first),
+            Some(second) => self.is_believable(bounds, first, second),
+        };
+        if judged && !is_believed {
+            self.hole = self.hole.saturating_add(1);
+            self.refusals = self.refusals.saturating_add(1);
+            return None;
         }
-        // However many are refused: what the axis can reach does not grow with them.
-        self.hole = self.hole.max(1);
-        self.refusals = self.refusals.saturating_add(1);
-        None
+        match second.filter(|_| self.hole > 0) {
+            None => self.believe(first),
+            Some(second) => self.believe_both(bounds, first, second),
+        }
+        Some(Revision { track: self.track, by: first })
     }
 
     fn revised(&mut self, by: Way) -> Revision {
@@ -158,7 +170,8 @@ impl Ingest {
         believed && !(otherwise && left.saturating_abs().saturating_add(bounds.step) >= second.saturating_abs())
     }
 
-    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m (m + 1) / 2.
+    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m
+    /// (m + 1) / 2.
     fn is_possible(&self, bounds: Bounds, cycles: u8, deviation: Way) -> bool {
         let cycles = i32::from(cycles);
         let times = cycles.saturating_mul(cycles.saturating_add(1)).wrapping_shr(1);
@@ -204,6 +217,24 @@ impl Ingest {
             position: moved(self.track.position, deviation),
             velocity: self.track.velocity.saturating_add(velocity),
             acceleration: self.track.acceleration.saturating_add(acceleration),
+        };
+        self.hole = 0;
+        self.refusals = 0;
+    }
+
+    /// The newest setpoint after a hole of m − 1 cycles and the one that follows it are part of the track. The way between them is a velocity, the way over the hole a
+    /// mean velocity, (m + 1) / 2 cycles earlier; the acceleration is their difference over that time.
+    fn believe_both(&mut self, bounds: Bounds, first: Way, second: Way) {
+        let cycles = i32::from(self.hole).saturating_add(1);
+        let velocity = second.saturating_sub(first);
+        let difference = velocity.saturating_mul_int(cycles).saturating_sub(first).saturating_mul_int(2);
+        let share = difference.checked_div_int(cycles.saturating_mul(cycles.saturating_add(1))).unwrap_or_default();
+        let acceleration = limited(self.track.acceleration.saturating_add(share), bounds.acceleration);
+        let next_velocity = self.track.velocity.saturating_add(self.track.acceleration).saturating_add(velocity);
+        self.track = Track {
+            position: moved(self.track.position, first),
+            velocity: next_velocity.saturating_sub(acceleration),
+            acceleration,
         };
         self.hole = 0;
         self.refusals = 0;
