@@ -122,6 +122,9 @@ fn cut(master: &mut Master<InProcess>, kind: FrameKind, place: usize) {
     master.link_mut().bus_mut(0).inject(place, 1, plan);
 }
 
+/// What happens to a machine that is held.
+type Event = fn(&mut Master<InProcess>);
+
 #[test]
 fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_plant_does_where_not() {
     let mut rows = Vec::new();
@@ -148,7 +151,7 @@ fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_
             |m| cut(m, FrameKind::Setpoint, SERVO),
             DriveState::Fault,
         ));
-        let events: [(&str, Option<Fault>, fn(&mut Master<InProcess>)); 5] = [
+        let events: [(&str, Option<Fault>, Event); 5] = [
             ("disable voltage", None, |m| m.command(ControlWord::DISABLE_VOLTAGE)),
             ("feedback gone", Some(Fault::FeedbackMissing), |m| cut(m, FrameKind::Feedback, SERVO)),
             ("power stage drops out", Some(Fault::StageLost), |m| m.link_mut().plant(0).borrow_mut().drop_out()),
