@@ -33,6 +33,9 @@ fn torque(force_n: f64) -> i32 {
     (force_n * 0.010 / std::f64::consts::TAU * 1.0e6).round() as i32
 }
 
+/// What happens to the standing axis.
+type Event = fn(&mut Master<InProcess>);
+
 /// The axis hangs on its brake; its preset is off by a share.
 fn hanging(machine: &Machine, preset: f64) -> Master<InProcess> {
     let mut master = Master::start(InProcess::new(machine, 0).unwrap(), machine).unwrap();
@@ -74,7 +77,7 @@ fn enable(name: &str, machine: &Machine, preset: f64) -> Measured {
     row(name, way, "um")
 }
 
-fn held(name: &str, machine: &Machine, event: fn(&mut Master<InProcess>), end: DriveState) -> Measured {
+fn held(name: &str, machine: &Machine, event: Event, end: DriveState) -> Measured {
     let mut master = standing(machine);
     event(&mut master);
     let way = way_um(&mut master);
@@ -96,7 +99,7 @@ fn alone_um(mut axis: Axis) -> f64 {
 }
 
 /// Drop with the drive, and of the plant alone from the instant at which torque ends; the way until then is the drive's.
-fn dropped(name: &str, machine: &Machine, fault: Option<Fault>, event: fn(&mut Master<InProcess>)) -> [Measured; 2] {
+fn dropped(name: &str, machine: &Machine, fault: Option<Fault>, event: Event) -> [Measured; 2] {
     let mut master = standing(machine);
     let (servo, plant) = (master.link_mut().servo(0), master.link_mut().plant(0));
     let from_m = table_m(&plant.borrow());
