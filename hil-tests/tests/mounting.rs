@@ -3,13 +3,10 @@
 //! The workbench tells the drive the brake's times, the relation of both encoders (2103h) and the torque that carries the axis (2141h);
 //! these are the ways of the table with them, and without the torque.
 
-use hil_tests::rig::{absolute_scale, enabled, vertical, vertical_axes};
-use plant_sim::Machine;
+use hil_tests::rig::{absolute_scale, enabled, set, vertical, vertical_axes};
 use plant_sim::machine::PositionSensor;
-use protocol::sdo::Expedited;
 use protocol::states::{BrakeState, DriveState};
-use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
-use workbench::error::Outcome;
+use servo::objects::Parameter;
 use workbench::link::InProcess;
 use workbench::master::Master;
 
@@ -65,27 +62,13 @@ fn a_machine_whose_scale_stands_at_100_mm_comes_up_there_with_either_loop() {
     }
 }
 
-/// The machine with one parameter otherwise than the workbench writes it.
-fn enabled_with(machine: &Machine, parameter: Parameter, value: i32) -> Outcome<Master<InProcess>> {
-    let mut master = Master::start(InProcess::new(machine, 0)?, machine)?;
-    master.configure(machine, &[])?;
-    let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
-    master.download(0, entry.address, Expedited::i32(value))?;
-    master.download(0, COMMIT, Expedited::u32(COMMIT_KEY))?;
-    master.enable()?;
-    Ok(master)
-}
-
 #[test]
 fn without_the_preset_the_axis_sags_until_the_integral_carries_it() {
-    let mut master = enabled_with(&vertical(), Parameter::PresetTorque, 0).unwrap();
+    let machine = vertical();
+    let mut master = Master::start(InProcess::new(&machine, 0).unwrap(), &machine).unwrap();
+    master.configure(&machine, &[]).unwrap();
+    set(&mut master, 0, &[(Parameter::PresetTorque, 0)]).unwrap();
+    master.enable().unwrap();
     let sag_m = furthest_m(&mut master, 200, 0.0);
     assert!((-150.0e-6..-115.0e-6).contains(&sag_m), "{sag_m} m");
-}
-
-#[test]
-fn without_the_relation_the_drive_refuses_to_close_a_loop_on_a_scale_that_stands_elsewhere() {
-    let Err(refusal) = enabled_with(&absolute_scale(0.1), Parameter::RelationOffset, 0) else { panic!("it came up") };
-    let text = refusal.to_string();
-    assert!(text.contains("EncoderRelation: "), "{text}");
 }

@@ -126,14 +126,13 @@ fn a_lost_setpoint_on_the_way_up_never_leaves_operation_enabled_without_a_stage(
 
 #[test]
 fn a_scale_at_a_hundred_millimetres_with_the_motor_at_zero_is_refused_until_its_relation_is_set() {
-    let machine = absolute_scale(0.1);
-    let mut master = configured(&machine);
-    // The workbench sets the relation of the machine file; a drive that was never told it has zero.
+    let mut master = configured(&absolute_scale(0.1));
     set(&mut master, 0, &[(Parameter::RelationOffset, 0)]).unwrap();
     expect_refused(master, Fault::EncoderRelation);
-    let mut master = configured(&machine);
-    set(&mut master, 0, &[(Parameter::RelationOffset, 10_000_000)]).unwrap();
-    master.enable().unwrap();
+    // The workbench writes the relation of the machine file.
+    master = configured(&absolute_scale(0.1));
+    way_up(&mut master, 0.1);
+    master.expect_enabled().unwrap();
     let truth = master.axis(0).truth.unwrap();
     assert!((truth.table_m - 0.1).abs() < 1.0e-6, "{}", truth.table_m);
 }
