@@ -627,9 +627,9 @@ fn run(seed: u64, ticks: u64, plant: Box<dyn Station>) -> Seen {
 fn expect_all(seen: &Seen, ticks: u64) {
     assert!(seen.cycles > ticks / 2, "{seen:?}");
     assert!(seen.enabled > ticks / 10 && seen.moving > ticks / 10, "hardly ever enabled or moving: {seen:?}");
-    assert!(seen.sets > ticks / 2000 && seen.bridged > 0 && seen.offsets > 0, "{seen:?}");
-    // A limit that is lowered while the axis is beyond it is rare.
-    let overrun = seen.overruns > 0 && seen.faults[usize::from(Fault::LimitOverrun.code())] > 0;
+    assert!(seen.sets > ticks / 2000 && seen.bridged > 0, "{seen:?}");
+    // A gap that is compensated, and a limit that is lowered while the axis is beyond it, are rare.
+    let overrun = seen.offsets > 0 && seen.overruns > 0 && seen.faults[usize::from(Fault::LimitOverrun.code())] > 0;
     assert!(overrun || ticks < RARE, "no limit was lowered in motion: {seen:?}");
 }
 
