@@ -141,6 +141,12 @@ impl Velocity {
         PositionError(I24F8::saturating_from_num(self.0))
     }
 
+    /// Whether it is faster than a limit, either way.
+    #[must_use]
+    pub fn is_beyond(self, limit: Self) -> bool {
+        self.0.saturating_abs() > limit.0
+    }
+
     /// `self` limited to `±limit`; a negative limit counts as zero.
     #[must_use]
     pub fn limited(self, limit: Self) -> Self {

@@ -10,7 +10,7 @@
 //! and the law never sees a hole. Nothing here knows frames, time or identifiers.
 
 use controller::reference::{Mode, Reference, ReferenceInput, ReferenceState};
-use controller::units::{Position, PositionError, Torque};
+use controller::units::{Position, PositionError, Torque, Velocity};
 use controller::{Input, Output, State};
 use heapless::Vec;
 use protocol::Fault;
@@ -259,12 +259,20 @@ impl Axis {
         self.refusal = refusal;
     }
 
-    /// Torque comes: the reference starts where the axis stands, the integral with the torque that held it last.
+    /// Torque comes: the reference starts where the axis is and as it moves, the integral with the torque that held it last.
     fn energise(&mut self, settings: &Settings) {
         let preset = settings.preset;
         let torque = self.held.filter(|_| preset.from_last).unwrap_or(preset.torque);
         self.law = State::holding(torque);
-        self.track = self.position(settings).map(|at| ReferenceState::at(at, controller::units::Velocity::ZERO));
+        let Some(at) = self.encoders.position() else { return };
+        let source = settings.config.position_source;
+        // What an axis can stop within a cycle is no motion but the resolution of its encoder.
+        let moves = self.encoders.velocity(source).is_beyond(settings.config.reference.acceleration_limit);
+        let velocity = if moves { self.encoders.velocity(source) } else { Velocity::ZERO };
+        if moves {
+            self.law = self.law.moving(at.motor, self.encoders.velocity(controller::PositionSource::Motor));
+        }
+        self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
 
     /// No torque: the law and the reference start anew.

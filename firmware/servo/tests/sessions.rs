@@ -694,3 +694,29 @@ fn the_brake_is_told_to_open_when_the_preset_acts_two_cycles_after_the_stage_con
     // One cycle until the status is there, two until the torque acts.
     assert_eq!(released - enabled, 3);
 }
+
+#[test]
+fn an_axis_that_moves_is_taken_over_as_it_moves_and_ramps_from_there() {
+    let mut bench = Bench::new(&[(Parameter::EnableWindow, 100_000), (Parameter::PresetTorque, 0)]);
+    let coast = |bench: &mut Bench, cycles: u32| {
+        for _ in 0..cycles {
+            bench.position += if bench.servo.reference().is_none() { 5_000 } else { 0 };
+            bench.setpoint = bench.position;
+            bench.cycle();
+        }
+    };
+    for control in [ControlWord::SHUTDOWN, ControlWord::SWITCH_ON] {
+        bench.control = control;
+        coast(&mut bench, 5);
+    }
+    bench.control = ControlWord::ENABLE_OPERATION;
+    coast(&mut bench, 1);
+    assert_eq!(bench.speed(), 5_000.0);
+    let torque = bench.servo.torque().to_micro_nm_lossy();
+    assert!(torque.abs() < 9_000_000, "5 m/s\u{b2} of 931.65 kg at 10 mm of lead are 7.4 N m: {torque}");
+    let before = bench.speed();
+    coast(&mut bench, 1);
+    assert!((before - bench.speed()).abs() <= 500.0);
+    coast(&mut bench, 100);
+    assert_eq!((bench.state(), bench.servo.drive().fault()), (DriveState::OperationEnabled, None));
+}
