@@ -80,6 +80,8 @@ pub struct Run {
     pub force_n: Vec<f64>,
     /// Faults latched.
     pub faults: Vec<Fault>,
+    /// Frames that went wrong in a port.
+    pub injected: u32,
     /// Counted by the servo.
     pub servo: Counted,
     /// Counted by the plant.
@@ -153,6 +155,7 @@ pub fn run(machine: &Machine, path: &dyn Fn(f64) -> f64, cycles: u32, plans: Pla
     let mut run = Run::default();
     for cycle in 0..cycles + CALM_CYCLES {
         if cycle == cycles {
+            run.injected = axis.master.link_mut().bus_mut(0).injected();
             axis.inject(Plans::default());
         }
         axis.cycle(path(1.0e-3 * f64::from(cycle)));
