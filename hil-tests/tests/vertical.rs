@@ -133,9 +133,6 @@ fn cut(master: &mut Master<InProcess>, kind: FrameKind, place: usize) {
     master.link_mut().bus_mut(0).inject(place, 1, plan);
 }
 
-/// What happens to a machine that is held.
-type Event = fn(&mut Master<InProcess>);
-
 #[test]
 fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_plant_does_where_not() {
     let mut rows = Vec::new();
