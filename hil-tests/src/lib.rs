@@ -7,6 +7,8 @@
 //! `golden::check_some` holds the part of a golden table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
 pub mod golden;
+pub mod losses;
+pub mod matrix;
 pub mod paths;
 pub mod plans;
 pub mod program;

@@ -305,6 +305,8 @@ impl Drive {
         };
         match (self, how) {
             (Self::Faulted(_), _) => self,
+            // A stop that is on its way needs no connection: a master may fall silent once it has commanded one.
+            (Self::Stopping(_) | Self::Holding(..), _) if matches!(reaction(fault), Reaction::AbortConnection) => self,
             (Self::SwitchOnDisabled | Self::ReadyToSwitchOn | Self::SwitchedOn, _) => Self::Faulted(first),
             (_, StopOption::DisableAtOnce) => Self::Faulted(first),
             // A ramp that runs goes on, and so does a brake that closes.
@@ -501,6 +503,13 @@ mod tests {
         let first = Drive::OperationEnabled.faulted(Fault::SetpointMissing, &options());
         assert!(first.is_energised());
         assert_eq!(first.faulted(Fault::FeedbackMissing, &options()), Drive::Faulted(Fault::SetpointMissing));
+    }
+
+    #[test]
+    fn a_master_that_falls_silent_after_it_commanded_a_stop_makes_no_fault() {
+        let stopping = command(Drive::OperationEnabled, Command::QuickStop);
+        assert_eq!(stopping.faulted(Fault::SetpointMissing, &options()), stopping);
+        assert_eq!(stopping.faulted(Fault::LimitOverrun, &options()).fault(), Some(Fault::LimitOverrun));
     }
 
     #[test]
