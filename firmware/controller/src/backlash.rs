@@ -68,10 +68,12 @@ impl BacklashState {
         (self.offset, self.velocity)
     }
 
-    /// It still moves away from where it should go: it brakes before the end on that side.
+    /// It still moves away from where it should go: it brakes before the end on that side, and stops where a narrower gap has put it beyond that.
     fn limited_by_the_end_behind(&self, config: &BacklashConfig, velocity: Velocity) -> Velocity {
         let left = remaining(config.half_gap, Direction::of(velocity), self.offset);
-        velocity.limited(Velocity(braking_velocity(left, config.acceleration_limit).0.saturating_abs()))
+        let brake = braking_velocity(left, config.acceleration_limit);
+        let allowed = if same_way(velocity, brake) { brake.0.saturating_abs() } else { I20F12::ZERO };
+        velocity.limited(Velocity(allowed))
     }
 }
 
@@ -134,6 +136,28 @@ mod tests {
             before = total;
         }
         largest
+    }
+
+    #[test]
+    fn a_gap_made_narrower_on_the_way_never_lets_the_offset_grow_beyond_it() {
+        // Half a gap of 50 µm, 5 m/s² at 1 kHz; narrower at each cycle of the way in turn.
+        for narrower_at in 1..20 {
+            let mut state = BacklashState::default();
+            let (wide, narrow) = (config(10_000, 50_000, 500.0), config(1_000, 50_000, 500.0));
+            for cycle in 0..60 {
+                let before = state.offset.magnitude();
+                let config = if cycle < narrower_at { &wide } else { &narrow };
+                // The commanded direction turns as the gap is made narrower, or stays.
+                for direction in [Direction::Positive, Direction::Negative] {
+                    let turned = if cycle < narrower_at { Direction::Positive } else { direction };
+                    let mut one = state;
+                    one.step(config, Some(turned), Velocity::ZERO);
+                    assert!(one.offset.magnitude() <= before.max(config.half_gap), "{narrower_at} {cycle}: {one:?}");
+                }
+                state.step(config, Some(Direction::Positive), Velocity::ZERO);
+            }
+            assert_eq!(state.offset, narrow.half_gap);
+        }
     }
 
     proptest! {
