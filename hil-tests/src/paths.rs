@@ -74,7 +74,8 @@ mod tests {
 
     #[test]
     fn a_profile_is_the_integral_of_its_phases() {
-        let path = Profile::new(&[Phase::Jerk(0.1, 50.0), Phase::Jerk(0.1, -50.0), Phase::Jump(-5.0), Phase::Jerk(0.1, 0.0)]);
+        let path =
+            Profile::new(&[Phase::Jerk(0.1, 50.0), Phase::Jerk(0.1, -50.0), Phase::Jump(-5.0), Phase::Jerk(0.1, 0.0)]);
         // 0.5 m/s after 0.2 s on 50 mm, then braked at 5 m/s² for 0.1 s, then 0 m/s.
         for (time_s, at) in [(0.2, 0.05), (0.3, 0.075), (0.5, 0.075)] {
             assert!((path.at(time_s) - at).abs() < 1.0e-12, "{time_s}: {}", path.at(time_s));

@@ -4,9 +4,11 @@ use plant_sim::Machine;
 use plant_sim::brake::BrakeParameters;
 use plant_sim::friction::Law;
 use plant_sim::machine::PositionSensor;
+use protocol::sdo::Expedited;
+use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
 use workbench::compensation::AxisCompensation;
-use workbench::error::Outcome;
-use workbench::link::InProcess;
+use workbench::error::{Failure, Outcome};
+use workbench::link::{InProcess, Link};
 use workbench::master::Master;
 
 /// The reference machine without noise, for figures that have to repeat to the digit.
@@ -33,7 +35,8 @@ pub fn one_axis() -> Machine {
     machine
 }
 
-/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens in 30 ms and bites after 40 ms.
+/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens
+/// in 30 ms and bites after 40 ms.
 #[must_use]
 pub fn vertical() -> Machine {
     vertical_with_brake(0.030, 0.040)
@@ -50,7 +53,8 @@ pub fn vertical_with_brake(open_s: f64, close_s: f64) -> Machine {
     machine
 }
 
-/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in 8 ms.
+/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in
+/// 8 ms.
 #[must_use]
 pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     [
@@ -58,6 +62,30 @@ pub fn vertical_axes() -> [(&'static str, Machine); 3] {
         ("brake of 10 ms", vertical_with_brake(0.008, 0.010)),
         ("brake of 40 ms", vertical()),
     ]
+}
+
+/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from
+/// zero.
+#[must_use]
+pub fn absolute_scale(table_m: f64) -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.mounting.start_m = table_m;
+        axis.actual.mounting.motor_zero_m = table_m;
+    }
+    machine
+}
+
+/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way,
+/// five times the 2^31 of the frame, within the 21.5 m that a setpoint can say.
+#[must_use]
+pub fn long_way() -> Machine {
+    let mut machine = one_axis();
+    for axis in &mut machine.axes {
+        axis.actual.lead_m_per_rev = 1.0e-3;
+        axis.limits.travel_m = 10.0;
+    }
+    machine
 }
 
 /// The paper's Fig. 4: a gap outside the position loop.
@@ -71,7 +99,8 @@ pub fn gap_outside(gap_m: f64) -> Machine {
     machine
 }
 
-/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the prototype's figures.
+/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the
+/// prototype's figures.
 #[must_use]
 pub fn gap_inside(gap_m: f64) -> Machine {
     let mut machine = quiet_reference();
@@ -111,3 +140,16 @@ pub fn enabled(machine: &Machine) -> Outcome<Master<InProcess>> {
 pub const PLANT: usize = 0;
 /// Place of the servo.
 pub const SERVO: usize = 1;
+
+/// Writes parameters of an axis and makes them active as a whole, as an engineer would over SDO; in motion as well.
+///
+/// # Errors
+/// Where the drive refuses a value or the set.
+pub fn set<L: Link>(master: &mut Master<L>, axis: usize, values: &[(Parameter, i32)]) -> Outcome<()> {
+    for (parameter, value) in values {
+        let entry = TABLE.iter().find(|entry| entry.parameter == *parameter);
+        let entry = entry.ok_or_else(|| Failure::new("the drive has no such object"))?;
+        master.download(axis, entry.address, Expedited::i32(*value))?;
+    }
+    master.download(axis, COMMIT, Expedited::u32(COMMIT_KEY))
+}

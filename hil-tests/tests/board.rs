@@ -87,7 +87,7 @@ fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
     let bytes = std::fs::read(&image).unwrap();
     let file = object::File::parse(&*bytes).unwrap();
     let names: Vec<&str> = file.symbols().filter_map(|symbol| symbol.name().ok()).collect();
-    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_lost", "entry_time"] {
+    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_time", "entry_due"] {
         assert!(names.contains(&entry), "{entry} is not in the image");
     }
     let soft = |name: &&&str| {

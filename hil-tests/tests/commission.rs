@@ -5,12 +5,13 @@ use std::path::Path;
 use hil_tests::golden::{self, row};
 use workbench::cli::{Commission, MachineArguments};
 use workbench::commission;
+use workbench::interrupt::Interrupt;
 
 #[test]
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     let out = tempfile::tempdir().unwrap();
     let machine = MachineArguments::default();
-    commission::command(&Commission { machine, out: out.path().to_path_buf() }).unwrap();
+    commission::command(&Commission { machine, out: out.path().to_path_buf() }, &Interrupt::never()).unwrap();
 
     let text = std::fs::read_to_string(out.path().join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -9,6 +9,7 @@ use plant_sim::Machine;
 use workbench::ballbar::{self, Point};
 use workbench::commission;
 use workbench::compensation::AxisCompensation;
+use workbench::interrupt::Interrupt;
 use workbench::master::AxisCycle;
 use workbench::plots::{self, Trace};
 use workbench::run::{Place, Session};
@@ -72,7 +73,9 @@ fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up
 fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
     let gap_m = 1.0e-4;
     let machine = gap_outside(gap_m);
-    let rows = commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 500.0)).unwrap();
+    let rows =
+        commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 500.0), &Interrupt::never())
+            .unwrap();
     let of = |row: &(f64, AxisCycle)| row.1.truth.unwrap();
     // While table − motor goes through the middle half of the gap.
     let crossing: Vec<(f64, f64)> = rows
@@ -121,7 +124,9 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
 #[test]
 fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     let machine = dry_friction();
-    let rows = commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 2000.0)).unwrap();
+    let rows =
+        commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 2000.0), &Interrupt::never())
+            .unwrap();
     for (place, svg) in commission::six_curves(&machine, "Fig. 8(a)", &rows).unwrap().iter().enumerate() {
         keep(&format!("fig-8a-{}.svg", place + 1), svg);
     }

@@ -5,6 +5,7 @@ use hil_tests::rig::quiet_reference;
 use hil_tests::{Scope, on_all_cores};
 use workbench::ballbar::{self, CircleFigures};
 use workbench::compensation::{AxisCompensation, Compensation};
+use workbench::interrupt::Interrupt;
 use workbench::run::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 use workbench::tune;
@@ -61,7 +62,8 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
     if Scope::now().leaves_row_to("tests/commission.rs, which tunes at R 100 F 2000") {
         return;
     }
-    let tuned = tune::pulse(&quiet_reference(), &Place::InProcess, &circle(100.0, 2000.0), 0.0).unwrap();
+    let tuned =
+        tune::pulse(&quiet_reference(), &Place::InProcess, &circle(100.0, 2000.0), 0.0, &Interrupt::never()).unwrap();
     let cells = Scope::now().rows("reference-machine", &CIRCLES, 1, 3);
     let rows = on_all_cores(cells, |cell| figures(cell, &tuned.compensation)).concat();
     golden::check_some("reference-machine", &rows, &cells.iter().map(name).collect::<Vec<_>>());

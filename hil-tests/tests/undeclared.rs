@@ -7,6 +7,7 @@ use hil_tests::{Scope, on_all_cores};
 use identification::report::Report;
 use plant_sim::Machine;
 use workbench::commission;
+use workbench::interrupt::Interrupt;
 use workbench::run::Place;
 
 /// An axis: its effect, the keys that differ from the plain axis, and what it declares.
@@ -113,7 +114,7 @@ fn commissioned(pair: &[Hidden]) -> (Vec<(String, Vec<String>)>, Vec<Measured>) 
     let axes: String = pair.iter().zip(["X", "Y"]).map(|(hidden, name)| axis(name, hidden)).collect();
     let text = format!("name = \"{}\"\n{HEAD}{axes}", pair[0].effect);
     let machine = Machine::parse("machine.toml", &text).unwrap();
-    let results = commission::identify_axes(&machine, &Place::InProcess, out.path()).unwrap();
+    let results = commission::identify_axes(&machine, &Place::InProcess, out.path(), &Interrupt::never()).unwrap();
     let each = pair.iter().zip(&results);
     let found = each.clone().map(|(hidden, result)| (hidden.effect.to_owned(), names(&result.report))).collect();
     (found, each.flat_map(|(hidden, result)| rows(hidden, &result.report)).collect())

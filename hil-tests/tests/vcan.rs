@@ -10,10 +10,11 @@ use std::time::{Duration, Instant};
 
 use hil_tests::rig::shared_bus;
 use hil_tests::{Scope, program};
-use protocol::Fault;
+use protocol::message::{Decoded, decode};
+use protocol::{Fault, Message};
 use quadrant_host::Pace;
 use workbench::compensation::AxisCompensation;
-use workbench::link::{Interfaces, Link};
+use workbench::link::{Interfaces, Link, axis_ids};
 use workbench::master::Master;
 
 /// The scenarios of a scope by their names, and what the runner says when all of them passed.
@@ -191,18 +192,19 @@ fn kernel_frames() -> u64 {
 #[ignore = "run by over_vcan, in a kernel that has vcan"]
 fn separate_processes_say_byte_for_byte_what_one_process_says_and_say_it_again() {
     let in_process = by_identifier(&circle("in-process", None));
-    let before = kernel_frames();
-    let first = {
+    let (first, counted) = {
         let _nodes = Nodes::start(Setup::default());
-        circle("first", Some("vcan0"))
+        let before = kernel_frames();
+        let first = circle("first", Some("vcan0"));
+        (first, kernel_frames() - before)
     };
-    let counted = kernel_frames() - before;
     let second = {
         let _nodes = Nodes::start(Setup::default());
         circle("second", Some("vcan0"))
     };
-    // Four processes announce themselves before the workbench listens.
-    assert_eq!(counted, first.len() as u64 + 4, "the kernel counts every frame of the log and four boot-ups");
+    // Outside the log there are heartbeats of four nodes, before the workbench listens and after it has closed its log.
+    let outside = counted - first.len() as u64;
+    assert!(outside <= 8, "the kernel counts every frame of the log, and {outside} more");
     println!("vcan: {} frames in the log, {counted} counted by the kernel", first.len());
     for (name, other) in
         [("first run over vcan", by_identifier(&first)), ("second run over vcan", by_identifier(&second))]
@@ -220,8 +222,9 @@ fn separate_processes_say_byte_for_byte_what_one_process_says_and_say_it_again()
     }
 }
 
+/// From rest: 10 mm to and fro with 26 mm/s at most.
 fn path(cycle: u32) -> Vec<f64> {
-    let x = 0.010 * (std::f64::consts::TAU * f64::from(cycle) / 2400.0).sin();
+    let x = 0.010 * (1.0 - (std::f64::consts::TAU * f64::from(cycle) / 2400.0).cos());
     vec![x, x]
 }
 
@@ -271,25 +274,33 @@ fn dead_processes_and_a_silent_workbench_are_noticed_over_vcan() {
     assert_eq!(master.fault(0), Some(Fault::FeedbackMissing), "servo of X");
     drop(nodes);
 
-    // The workbench falls silent: everybody notices, after three deadlines and a few periods of the clock at most.
+    // The workbench falls silent: after three deadlines (a frame of the peer delays each once) time follows the clock, and both axes notice.
     let _nodes = Nodes::start(setup);
     let mut master = setup.enabled();
     (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
-    let reported = reports(&mut master.into_link(), Fault::SyncMissing, Duration::from_secs(3));
-    println!("SYNC gone: {reported:?}");
-    assert!(reported.len() >= 2, "{reported:?}");
-    assert!(reported[0] >= deadline * 9 / 10 && reported[1] < 3 * deadline + Duration::from_secs(1), "{reported:?}");
+    let reported = emergencies(&mut master.into_link(), Duration::from_secs(3));
+    println!("the workbench is silent: {reported:?}");
+    for axis in 0..2 {
+        let first = reported.iter().find(|(_, of, _)| *of == axis).map(|(at, _, fault)| (*at, *fault));
+        let (at, fault) = first.unwrap_or_else(|| panic!("axis {axis} reports nothing: {reported:?}"));
+        assert!(matches!(fault, Fault::SetpointMissing | Fault::SyncMissing), "axis {axis}: {fault:?}");
+        assert!(at >= 3 * deadline * 9 / 10 && at < 6 * deadline, "axis {axis}: {at:?}");
+    }
 }
 
-/// When the first two EMCY frames with a fault came, from now on.
-fn reports(link: &mut Interfaces, fault: Fault, patience: Duration) -> Vec<Duration> {
+/// The faults that nodes report for some time from now on: when, which axis, what.
+fn emergencies(link: &mut Interfaces, patience: Duration) -> Vec<(Duration, usize, Fault)> {
     let begun = Instant::now();
     let mut reported = Vec::new();
-    while begun.elapsed() < patience && reported.len() < 2 {
+    while begun.elapsed() < patience {
         let Some(frame) = link.receive(0, Duration::from_millis(50)).unwrap() else { continue };
-        let code = fault.emergency_code().to_le_bytes();
-        if frame.payload().first_chunk() == Some(&code) && frame.payload().get(3) == Some(&fault.code()) {
-            reported.push(begun.elapsed());
+        for axis in 0..2 {
+            if let Ok(Decoded::Message(Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency))) =
+                decode(axis_ids(axis).unwrap(), &frame)
+            {
+                let fault = Fault::from_code(emergency.vendor_specific[0]);
+                reported.extend(fault.map(|fault| (begun.elapsed(), axis, fault)));
+            }
         }
     }
     reported

@@ -18,8 +18,8 @@ pub const SUB_STEP_S: f64 = 1.0e-3 / 16.0;
 /// How an axis is mounted: what pulls at it, what holds it, where it ends and where it stands when it is switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mounting {
-    /// Force of gravity on the table towards positive position, N: −2500 where positive is up. Identification finds it as an `offset` of the
-    /// opposite sign, because an offset is counted against positive motion.
+    /// Force of gravity on the table towards positive position, N: −2500 where positive is up. Identification finds it
+    /// as an `offset` of the opposite sign, because an offset is counted against positive motion.
     pub gravity_n: f64,
     /// Brake on the motor.
     pub brake: Option<BrakeParameters>,
@@ -243,7 +243,8 @@ fn lag_share(dt_s: f64, time_constant_s: f64) -> f64 {
     if time_constant_s > 0.0 { -(-dt_s / time_constant_s).exp_m1() } else { 1.0 }
 }
 
-/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at once.
+/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at
+/// once.
 fn mean_share(lag: f64) -> f64 {
     if lag >= 1.0 { 0.0 } else { lag / -(-lag).ln_1p() }
 }

@@ -1,15 +1,18 @@
 //! A spring-applied brake on the motor shaft: it holds without current and lets go under current.
 //!
 //! ```text
-//! told to open   ──▶ full strength for open_s, then none                 (disengagement time t2 of a data sheet)
-//! told to close  ──▶ none for close_s − rise_s, then linear to full      (response delay t11, rise t12; t1 = t11 + t12 = close_s)
+//! told to open   ──▶ full strength for open_s, then none                (t2, disengagement)
+//! told to close  ──▶ none for close_s − rise_s, then linear to full     (t11, then t12; t1 = t11 + t12 = close_s)
 //! ```
 //!
-//! While it holds it is dry friction: it takes any force up to its rated one and lets the shaft stand exactly still; above that it slips against
-//! the rated force. [`crate::mechanics`] solves for that together with the screw, so a held shaft does not chatter and a slipping one never
-//! reverses. All forces are at the table, in newtons.
+//! The times are those of a data sheet: t2 disengagement, t11 response delay, t12 rise, t1 engagement.
 //!
-//! `rise_s` is zero unless a data sheet says it: the brake then bites late and at once, which is the longest way that its times allow.
+//! While it holds it is dry friction: it takes any force up to its rated one and lets the shaft stand exactly still;
+//! above that it slips against the rated force. [`crate::mechanics`] solves for that together with the screw, so a held
+//! shaft does not chatter and a slipping one never reverses. All forces are at the table, in newtons.
+//!
+//! `rise_s` is zero unless a data sheet says it: the brake then bites late and at once, which is the longest way that
+//! its times allow.
 
 use protocol::states::BrakeState;
 use serde::{Deserialize, Serialize};
@@ -62,7 +65,8 @@ impl Brake {
         Self { parameters, released: false, strength: 1.0, left_s: 0.0 }
     }
 
-    /// Tells it to open (`release`) or to close. A command that comes before the armature has left its place costs no time.
+    /// Tells it to open (`release`) or to close. A command that comes before the armature has left its place costs no
+    /// time.
     pub fn command(&mut self, release: bool) {
         if release == self.released {
             return;

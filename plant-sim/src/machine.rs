@@ -1,7 +1,7 @@
 //! Machine files: TOML in SI units, actual and declared effects apart.
 //!
-//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and impossible values are errors that name key
-//! and line. An axis may say `like = "X"` and leave out everything else.
+//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and impossible values are errors
+//! that name key and line. An axis may say `like = "X"` and leave out everything else.
 
 use std::fmt;
 use std::ops::Range;
@@ -540,8 +540,8 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// The feedback carries the low 32 bits of the increments and the drive unwraps them: one cycle at the velocity limit, 20 ms at most, has to
-    /// stay below half of that.
+    /// The feedback carries the low 32 bits of the increments and the drive unwraps them: one cycle at the velocity
+    /// limit, 20 ms at most, has to stay below half of that.
     fn check_increments(
         &self,
         part: &Range<usize>,
@@ -592,7 +592,8 @@ impl Source<'_> {
         self.range(part, "rise_s", brake.rise_s, 0.0, brake.close_s)
     }
 
-    /// The sub-step has to resolve the stop as well: ω · dt below one half, and no more than half of the velocity damped away in one.
+    /// The sub-step has to resolve the stop as well: ω · dt below one half, and no more than half of the velocity
+    /// damped away in one.
     fn check_stops(
         &self,
         part: &Range<usize>,

@@ -6,9 +6,10 @@
 //! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: only pushing where there is a gap, and damping only in contact
 //! ```
 //!
-//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken implicitly. The screw is
-//! integrated at second order, the bristles' coefficients lag by half a sub-step and make the whole first order: 6·10⁻⁵ of the way at the sub-step that is
-//! used (`tests/mechanics.rs`, against a high-accuracy integration).
+//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken
+//! implicitly. The screw is integrated at second order, the bristles' coefficients lag by half a sub-step and make the
+//! whole first order: 6·10⁻⁵ of the way at the sub-step that is used (`tests/mechanics.rs`, against a high-accuracy
+//! integration).
 
 use crate::friction::{Friction, Table};
 
@@ -140,8 +141,8 @@ impl Kick {
         motion.motor_m_per_s = (p1 + half * motion.table_m_per_s) / (m1 + half);
     }
 
-    /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its force; else it slips against that force. The
-    /// motor's velocity grows with its momentum, so a slipping shaft keeps its direction.
+    /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its force; else it slips
+    /// against that force. The motor's velocity grows with its momentum, so a slipping shaft keeps its direction.
     fn braked(self, motion: &mut Motion, friction: &mut Friction, brake_n: f64) {
         let bristles = friction.state();
         let mass = self.m2 + self.half;

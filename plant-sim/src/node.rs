@@ -1,27 +1,29 @@
 //! The plant as a CAN node, sans-I/O: a CiA 402 torque drive with encoders and a brake.
 //!
-//! SYNC k: integrate one period with the torque that is due; torque k − 1 becomes active; read the encoders, send feedback k. Torque k comes in
-//! during the cycle and becomes active with SYNC k + 1; that is the one cycle of transport delay of the loop.
+//! SYNC k: integrate one period with the torque that is due; torque k − 1 becomes active; read the encoders, send
+//! feedback k. Torque k comes in during the cycle and becomes active with SYNC k + 1; that is the one cycle of
+//! transport delay of the loop.
 //!
 //! A frame comes or does not:
 //!
-//! - SYNC k + 1 does not come: the node's own timer begins the cycle ([`bus_time`]), or a torque frame with counter k + 1, which shows that it is on. The axis moves on
-//!   and feedback k + 1 is sent.
-//! - Torque k does not come: the last one is held, for [`TORQUE_MISSES_ALLOWED`] cycles in a row ([`torque`]); then torque zero, brake, and a fault: `TorqueMissing`, or
-//!   `SyncMissing` where SYNC is gone as well. While SYNC alone is gone, torque goes on to act as long as the servo sends it: it is ramping down.
+//! - SYNC k + 1 does not come: the node's own timer begins the cycle ([`bus_time`]), or a torque frame with counter k +
+//!   1, which shows that it is on. The axis moves on and feedback k + 1 is sent.
+//! - Torque k does not come: the last one is held, for [`TORQUE_MISSES_ALLOWED`] cycles in a row ([`torque`]); then
+//!   torque zero, brake, and a fault: `TorqueMissing`, or `SyncMissing` where SYNC is gone as well. While SYNC alone is
+//!   gone, torque goes on to act as long as the servo sends it: it is ramping down.
 //! - Nobody commands torque, SYNC is gone and the axis stands: the timer stops until the next SYNC.
 //!
-//! The states of the power stage are in [`stage`]. What a control word changes (torque zero, brake) counts from the begin of the cycle in which it came.
+//! The states of the power stage are in [`stage`]. What a control word changes (torque zero, brake) counts from the
+//! begin of the cycle in which it came.
 //!
-//! NMT stop, pre-operational and reset wait until torque no longer acts. A reset is the node's, not the machine's: an axis that moves goes on moving, its encoders
-//! counting and its noise going on, and so does one whose reset had to wait. Only an axis that stands without torque when the reset comes starts over from its
-//! start position, with its noise from the beginning, so that a run that begins with a reset is the same run every time.
+//! NMT stop, pre-operational and reset wait until torque no longer acts. A reset is the node's, not the machine's: an
+//! axis that moves goes on moving, its encoders counting and its noise going on, and so does one whose reset had to
+//! wait. Only an axis that stands without torque when the reset comes starts over from its start position, with its
+//! noise from the beginning, so that a run that begins with a reset is the same run every time.
 
-use protocol::cob::{AxisIds, FrameKind, NodeId};
+use protocol::cob::{AxisIds, FrameKind};
 use protocol::counter::SYNC_OVERFLOW;
-use protocol::message::{
-    self, Decoded, EmergencyMessage, ErrorRegister, Feedback, NmtCommand, NmtState, PlantStatus, Torque,
-};
+use protocol::message::{self, Decoded, Feedback, NmtCommand, NmtState, PlantStatus};
 use protocol::states::{BrakeState, StatusWord};
 use protocol::table::PLANT_STATUS_EVERY_CYCLES;
 use protocol::weight::{LoadIncrements24, MotorIncrements, TorqueMicroNm};
@@ -31,6 +33,7 @@ use crate::axis::{Axis, AxisParameters};
 use crate::mechanics::Motion;
 
 pub mod bus_time;
+mod frames;
 pub mod stage;
 pub mod torque;
 
@@ -41,8 +44,12 @@ use bus_time::BusTime;
 use stage::PowerStage;
 use torque::TorqueInput;
 
-/// An axis slower than this counts as standing, m/s: where a record counts a sample as moving, and a way of 1 µm for the reference axis to come to rest.
+/// An axis slower than this counts as standing, m/s: where a record counts a sample as moving, and a way of 1 µm for
+/// the reference axis to come to rest.
 const STANDING_M_PER_S: f64 = 1.0e-3;
+/// … for this long, so that a table which rings on its screw is not caught at its turning point: a period of 50 Hz,
+/// below the resonance of any screw drive.
+const STANDING_S: f64 = 0.020;
 
 /// Where a node puts its frames.
 type Send<'a> = &'a mut dyn FnMut(CanFrame);
@@ -84,6 +91,8 @@ pub struct PlantNode {
     stage: PowerStage,
     torque: TorqueInput,
     reported: Option<Reported>,
+    /// How long the axis has been slow enough to count as standing.
+    slow_s: f64,
     /// Cycles begun since NMT start.
     cycle: u32,
 }
@@ -106,6 +115,7 @@ impl PlantNode {
             stage: PowerStage::default(),
             torque: TorqueInput::default(),
             reported: None,
+            slow_s: STANDING_S,
             cycle: 0,
         }
     }
@@ -130,6 +140,12 @@ impl PlantNode {
             commanded_n: self.torque.due_n(),
             brake: self.axis.brake(),
         }
+    }
+
+    /// The axis itself; a clone of it shows what it would do if it were let alone from here on.
+    #[must_use]
+    pub const fn axis(&self) -> &Axis {
+        &self.axis
     }
 
     /// Puts the axis somewhere, in motion or not; for tests.
@@ -196,8 +212,18 @@ impl PlantNode {
 
     /// Whether the machine moves on by itself: speed, or a brake on its way.
     fn moves(&self) -> bool {
+        self.slow_s < STANDING_S || self.is_fast() || self.axis.brake() == BrakeState::Moving
+    }
+
+    fn is_fast(&self) -> bool {
         let Motion { motor_m_per_s, table_m_per_s, .. } = *self.axis.motion();
-        motor_m_per_s.abs().max(table_m_per_s.abs()) > STANDING_M_PER_S || self.axis.brake() == BrakeState::Moving
+        motor_m_per_s.abs().max(table_m_per_s.abs()) > STANDING_M_PER_S
+    }
+
+    /// The machine goes on for one period.
+    fn advance(&mut self) {
+        self.axis.advance(self.torque.due_n(), self.period_s);
+        self.slow_s = if self.is_fast() { 0.0 } else { self.slow_s + self.period_s };
     }
 }
 
@@ -308,11 +334,11 @@ impl PlantNode {
     fn integrate(&mut self, send: Send<'_>) {
         if !self.is_operational() {
             if self.moves() {
-                self.axis.advance(0.0, self.period_s);
+                self.advance();
             }
             return;
         }
-        self.axis.advance(self.torque.due_n(), self.period_s);
+        self.advance();
         if self.torque.close(self.stage.is_enabled()) {
             let gone = self.time.sync_is_gone();
             self.latch(if gone { Fault::SyncMissing } else { Fault::TorqueMissing }, send);
@@ -325,127 +351,6 @@ impl PlantNode {
             self.time.beaten(now_us);
             send(Message::PlantHeartbeat(self.nmt).encode(self.ids));
         }
-    }
-}
-
-/// What frames do.
-impl PlantNode {
-    fn on_message(&mut self, message: Message, now_us: u64, send: Send<'_>) {
-        match message {
-            Message::Nmt(command, node) => self.on_nmt(command, node, now_us, send),
-            Message::Sync(counter) => self.on_sync(counter, now_us, send),
-            Message::Torque(torque) => self.on_torque(torque, now_us, send),
-            Message::Feedback(_)
-            | Message::Setpoint(_)
-            | Message::PlantStatus(_)
-            | Message::Status(_)
-            | Message::ServoHeartbeat(_)
-            | Message::PlantHeartbeat(_)
-            | Message::ServoEmergency(_)
-            | Message::PlantEmergency(_)
-            | Message::SdoRequest(_)
-            | Message::SdoResponse(_) => {}
-        }
-    }
-
-    fn on_torque(&mut self, torque: Torque, now_us: u64, send: Send<'_>) {
-        let Some(now) = self.sync.now().filter(|_| self.is_operational()) else { return };
-        if torque.counter == now.next() {
-            self.begin_without_sync(now_us, send);
-        }
-        if self.sync.now() != Some(torque.counter) || !self.is_operational() {
-            return self.torque.refuse();
-        }
-        self.notice_dropout(send);
-        let fault = self.stage.fault();
-        self.stage.obey(torque.control);
-        self.torque.take(f64::from(torque.torque.0) * self.newton_per_micro_nm, self.stage.is_enabled());
-        if fault.is_some() && self.stage.fault().is_none() {
-            send(Message::PlantEmergency(EmergencyMessage::error_reset()).encode(self.ids));
-        }
-        self.settle(now_us, send);
-    }
-
-    /// What follows from the state of the power stage: brake, status, an NMT command that waited for it.
-    fn settle(&mut self, now_us: u64, send: Send<'_>) {
-        self.axis.command_brake(self.stage.releases_brake());
-        self.report(send);
-        if !self.stage.is_enabled()
-            && let Some(command) = self.deferred.take()
-        {
-            self.obey_nmt(command, now_us, send);
-        }
-    }
-
-    fn notice_dropout(&mut self, send: Send<'_>) {
-        if self.stage.dropped_out() {
-            self.latch(Fault::StageLost, send);
-        }
-    }
-
-    fn latch(&mut self, fault: Fault, send: Send<'_>) {
-        self.stage.fail(fault);
-        self.torque.zero();
-        self.axis.command_brake(false);
-        let detail = [fault.code(), self.sync.now().map_or(0, SyncCounter::get), 0, 0, 0];
-        let emergency = EmergencyMessage::new(fault.emergency_code(), ErrorRegister(ErrorRegister::GENERIC), detail);
-        send(Message::PlantEmergency(emergency).encode(self.ids));
-    }
-
-    fn on_nmt(&mut self, command: NmtCommand, node: Option<NodeId>, now_us: u64, send: Send<'_>) {
-        if node.is_some_and(|node| node != self.ids.plant) {
-            return;
-        }
-        self.deferred = None;
-        if self.stage.is_enabled() && command != NmtCommand::StartRemoteNode {
-            self.deferred = Some(command);
-            return;
-        }
-        if matches!(command, NmtCommand::ResetNode | NmtCommand::ResetCommunication) && !self.moves() {
-            self.axis.start_over();
-        }
-        self.obey_nmt(command, now_us, send);
-    }
-
-    fn obey_nmt(&mut self, command: NmtCommand, now_us: u64, send: Send<'_>) {
-        match command {
-            NmtCommand::StartRemoteNode => self.start(send),
-            NmtCommand::StopRemoteNode => self.leave_operational(NmtState::Stopped),
-            NmtCommand::EnterPreOperational => self.leave_operational(NmtState::PreOperational),
-            NmtCommand::ResetNode | NmtCommand::ResetCommunication => self.reset(now_us, send),
-        }
-    }
-
-    fn start(&mut self, send: Send<'_>) {
-        if !self.is_operational() {
-            self.nmt = NmtState::Operational;
-            self.sync = SyncTracker::default();
-            self.torque.forget();
-            self.cycle = 0;
-            self.reported = None;
-        }
-        self.report(send);
-    }
-
-    fn leave_operational(&mut self, next: NmtState) {
-        self.nmt = next;
-        self.stage.switch_off();
-        self.torque.zero();
-        self.axis.command_brake(false);
-    }
-
-    /// The node starts again; the machine is where it is.
-    fn reset(&mut self, now_us: u64, send: Send<'_>) {
-        self.leave_operational(NmtState::PreOperational);
-        self.stage.reset();
-        self.sync = SyncTracker::default();
-        self.torque = TorqueInput::default();
-        if !self.moves() {
-            self.time.stop();
-        }
-        self.boot(send);
-        self.time.beat_now(now_us);
-        self.time.beaten(now_us);
     }
 }
 

@@ -4,8 +4,9 @@
 //! F = −(K·depth + C·ẋ), never pulling            at ±position, on the table
 //! ```
 //!
-//! Units: m, N. The stop is a stiff spring with damping on one side only, taken explicitly in the middle of the drift of [`crate::mechanics`], so it takes energy out as
-//! long as the sub-step resolves it; the machine file's ranges see to that.
+//! Units: m, N. The stop is a stiff spring with damping on one side only, taken explicitly in the middle of the drift
+//! of [`crate::mechanics`], so it takes energy out as long as the sub-step resolves it; the machine file's ranges see
+//! to that.
 
 use serde::{Deserialize, Serialize};
 

@@ -106,7 +106,8 @@ fn a_moving_axis_comes_to_rest_in_the_brakes_way_and_stays_there() {
 
 #[test]
 fn a_vertical_axis_drops_until_its_brake_bites() {
-    // Pulled by gravity less Coulomb friction, then stopped by brake and friction: ½·a·t²·(1 + a/b). Viscous friction takes up to a tenth of it.
+    // Pulled by gravity less Coulomb friction, then stopped by brake and friction: ½·a·t²·(1 + a/b). Viscous friction
+    // takes up to a tenth of it.
     let (a, b) = ((2500.0 - 400.0) / 931.65, (4000.0 + 400.0 - 2500.0) / 931.65);
     for close_s in [0.0, 0.010, 0.040] {
         let brake = BrakeParameters { open_s: 0.0, close_s, ..BRAKE };

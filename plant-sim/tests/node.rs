@@ -278,6 +278,30 @@ fn three_torques_in_a_row_are_bridged_and_the_fourth_ends_torque_and_closes_the_
 }
 
 #[test]
+fn a_vertical_axis_whose_servo_dies_drops_no_farther_than_its_brake_makes_it() {
+    for (open_s, close_s, most_m) in [(0.0, 0.0, 1.0e-6), (0.008, 0.010, 0.3e-3), (0.030, 0.040, 4.0e-3)] {
+        let brake = BrakeParameters { open_s, close_s, ..BRAKE };
+        let mut bench = Bench::enabled(Mounting { gravity_n: -2500.0, brake: Some(brake), ..Mounting::default() });
+        (0..60).for_each(|_| bench.cycle(2500.0, RUN.with(ControlWord::RELEASE_BRAKE)));
+        while bench.node.fault().is_none() {
+            bench.sync();
+        }
+        let mut alone = bench.node.axis().clone();
+        alone.command_brake(false);
+        let before = bench.truth().table_m;
+        bench.pass_to(bench.now_us + 300_400);
+        (0..300).for_each(|_| alone.advance(0.0, 1.0e-3));
+        // The timer stops once the axis is slower than 1 mm/s: its last ringing is below 1.3 µm.
+        let (drop, wanted) = (before - bench.truth().table_m, before - alone.motion().table_m);
+        assert!(
+            (drop - wanted).abs() < 1.3e-6,
+            "brake of {close_s} s: {drop} m, {wanted} m with torque zero and brake at once"
+        );
+        assert!(drop < most_m && drop >= 0.3 * most_m - 1.0e-6, "brake of {close_s} s: {drop} m");
+    }
+}
+
+#[test]
 fn while_sync_alone_is_gone_the_servo_may_ramp_down() {
     let mut bench = Bench::enabled(Mounting::default());
     for _ in 0..80 {
@@ -577,7 +601,8 @@ fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
         30 => prop::bool::weighted(0.1).prop_map(|lost| Event::Sync { lost }),
         1 => (1..=240_u8).prop_map(Event::Stray),
-        30 => (-9000.0..9000.0, control, behind).prop_map(|(force_n, control, behind)| Event::Torque { force_n, control, behind }),
+        30 => (-9000.0..9000.0, control, behind)
+            .prop_map(|(force_n, control, behind)| Event::Torque { force_n, control, behind }),
         3 => nmt.prop_map(Event::Nmt),
         1 => (0..20_000_u64).prop_map(|us| Event::Pause { us }),
         1 => Just(Event::DropOut),
@@ -610,7 +635,8 @@ proptest! {
         bench.nmt(NmtCommand::StartRemoteNode);
         for event in events {
             happen(&mut bench, event);
-            let enabled = bench.node.drive() == TorqueDrive::OperationEnabled && bench.node.nmt() == NmtState::Operational;
+            let enabled =
+                bench.node.drive() == TorqueDrive::OperationEnabled && bench.node.nmt() == NmtState::Operational;
             prop_assert!(enabled || bench.node.commanded_n() == 0.0, "{event:?}: torque in {:?}", bench.node.drive());
             prop_assert!(enabled || bench.truth().brake == BrakeState::Closed, "{event:?}: {:?}", bench.truth().brake);
             prop_assert!(bench.node.bridged() <= 3);

@@ -1,5 +1,7 @@
 //! `quadrant circle` and `quadrant tune`.
 
+use std::path::Path;
+
 use plant_sim::Machine;
 use serde::Serialize;
 
@@ -8,10 +10,11 @@ use crate::cli::{self, MachineArguments, Method};
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::{Failure, Outcome};
 use crate::identify::write;
+use crate::interrupt::Interrupt;
 use crate::nodes::refuse_overload;
 use crate::plots::{self, Trace};
 use crate::progress;
-use crate::recording;
+use crate::recording::{self, Part};
 use crate::run::{Place, Session};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD};
 use crate::tune;
@@ -74,8 +77,6 @@ pub struct CircleRun {
     pub report: CircleReport,
     /// Turns that count, counter-clockwise.
     pub points: Vec<Point>,
-    /// Logs of all buses.
-    pub logs: Vec<bus::BusLog>,
 }
 
 /// Largest backlash of the machine's axes that its files tell of; it widens the window about the reversals.
@@ -83,30 +84,43 @@ fn backlash_m(machine: &Machine) -> f64 {
     machine.axes.iter().map(|axis| axis.actual.mechanics.backlash_m).fold(0.0, f64::max)
 }
 
-/// Runs a circle counter-clockwise, and clockwise for the hysteresis.
+/// Runs a circle counter-clockwise, and clockwise for the hysteresis; the frames go to `log`, also where the circle breaks off.
 ///
 /// # Errors
 /// Where it cannot be run.
-pub fn run(machine: &Machine, place: &Place, circle: &Circle, compensation: &[AxisCompensation]) -> Outcome<CircleRun> {
-    let mut session = Session::open(machine, place, compensation, 0)?;
+pub fn run(
+    machine: &Machine,
+    place: &Place,
+    circle: &Circle,
+    compensation: &[AxisCompensation],
+    log: Option<&Path>,
+    interrupt: &Interrupt,
+) -> Outcome<CircleRun> {
+    let session = Session::connect(machine, place, 0, interrupt)?;
+    session.perform(compensation, log, |session| {
+        let mut run = measured(session, machine, circle)?;
+        run.report.compensation = name(compensation);
+        Ok(run)
+    })
+}
+
+fn measured(session: &mut Session<'_>, machine: &Machine, circle: &Circle) -> Outcome<CircleRun> {
     progress::step(&format!("circle R {} mm, F {} mm/min", 1.0e3 * circle.radius_m, 6.0e4 * circle.feed_m_per_s));
     let points = session.circle(circle)?;
     let clockwise = session.circle(&Circle { turns: 1, counter_clockwise: false, ..*circle })?;
     let mut figures = ballbar::figures(&points, circle.radius_m, backlash_m(machine), MEASURE_FROM_RAD);
     figures.circular_hysteresis_h_um = Some(ballbar::hysteresis_um(&points, &clockwise, circle.radius_m));
-    let deviation_of = if session.sees_truth() { "table" } else { "load scale" };
-    let missed_cycles = session.missed();
     let report = CircleReport {
         machine: machine.name.clone(),
         radius_mm: 1.0e3 * circle.radius_m,
         feed_mm_min: 6.0e4 * circle.feed_m_per_s,
-        compensation: name(compensation),
-        deviation_of,
+        compensation: String::new(),
+        deviation_of: if session.sees_truth() { "table" } else { "load scale" },
         bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
-        missed_cycles,
+        missed_cycles: session.missed(),
         figures,
     };
-    Ok(CircleRun { report, points, logs: session.close()? })
+    Ok(CircleRun { report, points })
 }
 
 fn name(compensation: &[AxisCompensation]) -> String {
@@ -122,12 +136,12 @@ fn name(compensation: &[AxisCompensation]) -> String {
 ///
 /// # Errors
 /// Where an argument, a file or the machine is wrong.
-pub fn command(arguments: &cli::CircleArguments) -> Outcome<()> {
+pub fn command(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = machine(&arguments.machine)?;
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
     crate::run::check_circle(&machine, &circle)?;
-    let compensation = compensation_of(arguments, &machine, &place)?;
-    let run = run(&machine, &place, &circle, &compensation)?;
+    let compensation = compensation_of(arguments, &machine, &place, interrupt)?;
+    let run = run(&machine, &place, &circle, &compensation, arguments.candump.as_deref(), interrupt)?;
     print(&run.report);
     if let Some(path) = &arguments.json {
         let text = serde_json::to_string_pretty(&run.report).map_err(|error| Failure::new(error.to_string()))?;
@@ -139,24 +153,14 @@ pub fn command(arguments: &cli::CircleArguments) -> Outcome<()> {
         let svg = plots::polar(&title, &[trace])?;
         write(path, &plots::standalone(&svg))?;
     }
-    arguments.candump.as_deref().map_or(Ok(()), |path| write_logs(path, &run.logs))
-}
-
-/// Writes the logs of all buses into one candump log.
-///
-/// # Errors
-/// Where it cannot be written.
-pub fn write_logs(path: &std::path::Path, logs: &[bus::BusLog]) -> Outcome<()> {
-    let failed = |error: std::io::Error| Failure::file(path, &error);
-    let mut file = std::io::BufWriter::new(std::fs::File::create(path).map_err(failed)?);
-    logs.iter().try_for_each(|log| log.write(&mut file)).map_err(failed)?;
-    std::io::Write::flush(&mut file).map_err(failed)
+    Ok(())
 }
 
 fn compensation_of(
     arguments: &cli::CircleArguments,
     machine: &Machine,
     place: &Place,
+    interrupt: &Interrupt,
 ) -> Outcome<Vec<AxisCompensation>> {
     let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let none = vec![AxisCompensation::default(); names.len()];
@@ -166,7 +170,7 @@ fn compensation_of(
         (Method::None, Some(_)) => Err(Failure::new(
             "--compensation-file: needs --compensation pulse or coulomb; without it the file would not be used",
         )),
-        (Method::Coulomb, None) => measured_coulomb(machine, place),
+        (Method::Coulomb, None) => measured_coulomb(machine, place, interrupt),
         (Method::Pulse, None) => Err(Failure::new(
             "--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`",
         )),
@@ -191,15 +195,15 @@ fn compensation_of(
 }
 
 /// Coulomb friction of every axis as its declared model sees it on a record, for the bare feedforward.
-fn measured_coulomb(machine: &Machine, place: &Place) -> Outcome<Vec<AxisCompensation>> {
+fn measured_coulomb(machine: &Machine, place: &Place, interrupt: &Interrupt) -> Outcome<Vec<AxisCompensation>> {
     progress::step("recording the axes for their Coulomb friction");
     let none = vec![AxisCompensation::default(); machine.axes.len()];
-    let mut session = Session::open(machine, place, &none, 1)?;
-    let records = recording::record(&mut session, machine, false)?;
-    session.close()?;
+    let mut records = Vec::new();
+    Session::connect(machine, place, 1, interrupt)?
+        .perform(&none, None, |session| recording::record(session, machine, Part::Train, &mut records))?;
     let folder = std::env::temp_dir().join(format!("quadrant-{}", std::process::id()));
     let of_axis = |(axis, record): (&plant_sim::machine::MachineAxis, &recording::AxisRecord)| {
-        recording::write_dataset(&folder, machine, axis, record, record)?;
+        Part::BOTH.iter().try_for_each(|part| recording::write_part(&folder, machine, axis, (*part, record), None))?;
         let dataset = identification::Dataset::read(&folder, None, None)?;
         let force_n = identification::outcome::declared_coulomb(&dataset)?;
         Ok(AxisCompensation { reversal: Compensation::Coulomb { force_n }, backlash_m: 0.0 })
@@ -241,7 +245,7 @@ pub fn print(report: &CircleReport) {
 ///
 /// # Errors
 /// Where an argument or the machine is wrong.
-pub fn tune(arguments: &cli::Tune) -> Outcome<()> {
+pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = machine(&arguments.machine)?;
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
     crate::run::check_circle(&machine, &circle)?;
@@ -249,7 +253,7 @@ pub fn tune(arguments: &cli::Tune) -> Outcome<()> {
         return Err(Failure::new(format!("--start-delay-ms: must be 0 to 1000 ms, got {}", arguments.start_delay_ms)));
     }
     let tuned = match arguments.method {
-        cli::TuneMethod::Pulse => tune::pulse(&machine, &place, &circle, 1.0e-3 * arguments.start_delay_ms)?,
+        cli::TuneMethod::Pulse => tune::pulse(&machine, &place, &circle, 1.0e-3 * arguments.start_delay_ms, interrupt)?,
     };
     let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let head = format!(

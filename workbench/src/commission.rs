@@ -1,9 +1,12 @@
 //! `quadrant commission`: the main job, from recording to the circle with compensation.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
-use identification::{Dataset, Identification};
+use identification::{Dataset, Identification, IdentificationError};
 use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
 use serde::Serialize;
 
 use crate::circle::{self, CircleReport, CircleRun};
@@ -11,11 +14,12 @@ use crate::cli;
 use crate::compensation::{self, AxisCompensation};
 use crate::error::{Failure, Outcome};
 use crate::identify::{self, write};
+use crate::interrupt::Interrupt;
 use crate::master::AxisCycle;
 use crate::model_file::{self, Known};
 use crate::plots::{self, Curve, Trace};
 use crate::progress;
-use crate::recording::{self, AxisRecord};
+use crate::recording::{self, Part};
 use crate::report::{self, Page};
 use crate::run::{Place, Session};
 use crate::trajectory::Circle;
@@ -45,8 +49,8 @@ struct AxisSummary<'a> {
 /// Runs the main job.
 ///
 /// # Errors
-/// Where an argument, a file or the machine is wrong.
-pub fn command(arguments: &cli::Commission) -> Outcome<()> {
+/// Where an argument, a file or the machine is wrong, or the operator interrupts. What was recorded until then is in the folder.
+pub fn command(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = circle::machine(&arguments.machine)?;
     let reference = fitting_circle(&machine);
     crate::run::check_circle(&machine, &reference)?;
@@ -54,33 +58,149 @@ pub fn command(arguments: &cli::Commission) -> Outcome<()> {
     std::fs::create_dir_all(out).map_err(|error| Failure::file(out, &error))?;
     let load = machine.bus_load_per_mille();
     println!("machine {}: {} axes, computed bus load {}.{} %", machine.name, machine.axes.len(), load / 10, load % 10);
-
-    let results = identify_axes(&machine, &place, out)?;
-    let none = vec![AxisCompensation::default(); machine.axes.len()];
-    progress::step("circle without compensation");
-    let before = circle::run(&machine, &place, &reference, &none)?;
-    println!("circle before: largest burst {:.2} µm", before.report.figures.peak_max_um);
-    progress::step("tuning the pulse on circles");
-    let tuned = tune::pulse(&machine, &place, &reference, 0.0)?;
-    let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
-    circle::print_tuned(&names, &tuned);
-    progress::step("downloading the compensation; circle with it");
-    let after = circle::run(&machine, &place, &reference, &tuned.compensation)?;
-    let reduction = 100.0 * (1.0 - after.report.figures.peak_max_um / before.report.figures.peak_max_um);
-    println!("circle after: largest burst {:.2} µm, {reduction:.1} % less", after.report.figures.peak_max_um);
-
-    let job = Job {
-        machine: &machine,
-        place: &place,
-        results: &results,
-        before: &before,
-        after: &after,
-        tuned: &tuned,
-        reduction,
-    };
-    job.write(out, &names)?;
+    let bench = Bench { machine: &machine, place: &place, circle: &reference, out, interrupt };
+    bench.record()?;
+    let kept = |failure: Failure| Failure::new(format!("{failure}; the records are in {}", out.display()));
+    bench.compensate().map_err(kept)?;
     println!("report: {}", out.join("report.html").display());
     Ok(())
+}
+
+/// What the steps of the job share.
+struct Bench<'a> {
+    machine: &'a Machine,
+    place: &'a Place,
+    circle: &'a Circle,
+    out: &'a Path,
+    interrupt: &'a Interrupt,
+}
+
+impl Bench<'_> {
+    /// Everything after the records: identify, circle, tune, circle again, report.
+    fn compensate(&self) -> Outcome<()> {
+        let names: Vec<String> = self.machine.axes.iter().map(|axis| axis.name.clone()).collect();
+        write(&self.out.join("quadrant.dbc"), &dbc(self.machine)?)?;
+        let results = self.identify()?;
+        write(&self.out.join("model.toml"), &model(self.machine, &names, &results))?;
+        let none = vec![AxisCompensation::default(); names.len()];
+        progress::step("circle without compensation");
+        let before = self.run_circle(&none, "circle-before.candump.log")?;
+        println!("circle before: largest burst {:.2} µm", before.report.figures.peak_max_um);
+        progress::step("tuning the pulse on circles");
+        let tuned = tune::pulse(self.machine, self.place, self.circle, 0.0, self.interrupt)?;
+        write(&self.out.join("compensation.toml"), &compensation::text(&names, &tuned.compensation)?)?;
+        circle::print_tuned(&names, &tuned);
+        progress::step("downloading the compensation; circle with it");
+        let after = self.run_circle(&tuned.compensation, "circle-after.candump.log")?;
+        let reduction = 100.0 * (1.0 - after.report.figures.peak_max_um / before.report.figures.peak_max_um);
+        println!("circle after: largest burst {:.2} µm, {reduction:.1} % less", after.report.figures.peak_max_um);
+        Job { bench: self, results: &results, before: &before, after: &after, tuned: &tuned, reduction }.write()
+    }
+
+    fn run_circle(&self, compensation: &[AxisCompensation], log: &str) -> Outcome<CircleRun> {
+        let log = self.out.join(log);
+        circle::run(self.machine, self.place, self.circle, compensation, Some(&log), self.interrupt)
+    }
+
+    /// Training and validation record of all axes, each on disk as soon as it ends or breaks off.
+    fn record(&self) -> Outcome<()> {
+        let none = vec![AxisCompensation::default(); self.machine.axes.len()];
+        let session = Session::connect(self.machine, self.place, 1, self.interrupt)?;
+        session.perform(&none, Some(&self.out.join("records.candump.log")), |session| {
+            Part::BOTH.iter().try_for_each(|part| self.record_part(session, *part))
+        })
+    }
+
+    fn record_part(&self, session: &mut Session<'_>, part: Part) -> Outcome<()> {
+        progress::step(match part {
+            Part::Train => "recording: slow and fast runs, reversals",
+            Part::Validate => "recording the validation record",
+        });
+        let mut records = Vec::new();
+        let outcome = recording::record(session, self.machine, part, &mut records);
+        for (axis, record) in self.machine.axes.iter().zip(&records) {
+            let broke_off = outcome.as_ref().err();
+            recording::write_part(&self.records(&axis.name), self.machine, axis, (part, record), broke_off)?;
+        }
+        outcome.map_err(|failure| {
+            let rows = records.first().map_or(0, |record| record.rows.len());
+            let (file, out) = (part.file(), self.out.display());
+            Failure::new(format!("{failure}; {file} broke off after {rows} rows, what was recorded is in {out}"))
+        })
+    }
+
+    fn records(&self, axis: &str) -> PathBuf {
+        self.out.join(format!("records-{axis}"))
+    }
+
+    /// Identifies every axis in a thread of its own: their records have nothing in common.
+    fn identify(&self) -> Outcome<Vec<Identification>> {
+        let begin = |axis: &MachineAxis| Ok(begin(&axis.name, Dataset::read(&self.records(&axis.name), None, None)?));
+        let works = self.machine.axes.iter().map(begin).collect::<Outcome<Vec<_>>>()?;
+        let results = works.into_iter().map(|work| end(work, self.interrupt)).collect::<Outcome<Vec<_>>>()?;
+        for (axis, result) in self.machine.axes.iter().zip(&results) {
+            println!("axis {}:", axis.name);
+            identify::print(result);
+        }
+        Ok(results)
+    }
+}
+
+/// Records the axes of a machine and identifies them: the first half of the job. Writes the records below `out`.
+///
+/// # Errors
+/// Where a file or the machine is wrong, or the operator interrupts.
+pub fn identify_axes(
+    machine: &Machine,
+    place: &Place,
+    out: &Path,
+    interrupt: &Interrupt,
+) -> Outcome<Vec<Identification>> {
+    let bench = Bench { machine, place, circle: &fitting_circle(machine), out, interrupt };
+    bench.record()?;
+    bench.identify()
+}
+
+/// An identification that is being computed.
+type Work = JoinHandle<Result<Identification, IdentificationError>>;
+
+fn begin(axis: &str, dataset: Dataset) -> Work {
+    progress::step(&format!("identifying axis {axis}"));
+    let axis = axis.to_owned();
+    std::thread::spawn(move || {
+        identification::identify(&dataset, &mut |text| progress::step(&format!("axis {axis}: {text}")))
+    })
+}
+
+/// How often the computation is asked whether it is done, and the operator whether he still wants it.
+const ASK_EVERY: Duration = Duration::from_millis(50);
+
+/// Waits for a result. Nothing moves meanwhile, so an interruption need not wait for it.
+fn end(work: Work, interrupt: &Interrupt) -> Outcome<Identification> {
+    while !work.is_finished() {
+        interrupt.check()?;
+        std::thread::sleep(ASK_EVERY);
+    }
+    match work.join() {
+        Ok(result) => Ok(result?),
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// The identified models as a machine file.
+fn model(machine: &Machine, names: &[String], results: &[Identification]) -> String {
+    let known = machine.axes.iter().map(|axis| Known::of_machine(axis, machine.period_s));
+    let models: Vec<(String, Known, &Identification)> =
+        names.iter().zip(known).zip(results).map(|((name, known), r)| (name.clone(), known, r)).collect();
+    model_file::text(&format!("{}, identified", machine.name), &models)
+}
+
+/// The DBC of a machine's nodes, for the candump logs beside it.
+fn dbc(machine: &Machine) -> Outcome<String> {
+    let axes = (0..machine.axes.len()).map(crate::link::axis_ids).collect::<Outcome<Vec<_>>>()?;
+    let mut text = String::new();
+    protocol::dbc::write(&mut text, &axes).map_err(|error| Failure::new(error.to_string()))?;
+    Ok(text)
 }
 
 /// The usual circle, or a smaller and slower one where the axes are short or slow.
@@ -93,53 +213,8 @@ fn fitting_circle(machine: &Machine) -> Circle {
     Circle { radius_m, feed_m_per_s, ..CIRCLE }
 }
 
-/// Records the axes of a machine and identifies them: the first half of the job. Writes the records below `out`.
-///
-/// # Errors
-/// Where a file or the machine is wrong.
-pub fn identify_axes(machine: &Machine, place: &Place, out: &Path) -> Outcome<Vec<Identification>> {
-    progress::step("recording: slow and fast runs, reversals");
-    let none = vec![AxisCompensation::default(); machine.axes.len()];
-    let mut session = Session::open(machine, place, &none, 1)?;
-    let train = recording::record(&mut session, machine, false)?;
-    progress::step("recording the validation record");
-    let validate = recording::record(&mut session, machine, true)?;
-    circle::write_logs(&out.join("records.candump.log"), &session.close()?)?;
-    let results = on_a_core_each(machine, out, &train, &validate)?;
-    for (axis, result) in machine.axes.iter().zip(&results) {
-        println!("axis {}:", axis.name);
-        identify::print(result);
-    }
-    Ok(results)
-}
-
-/// Identifies every axis in a thread of its own: their records have nothing in common.
-fn on_a_core_each(
-    machine: &Machine,
-    out: &Path,
-    train: &[AxisRecord],
-    validate: &[AxisRecord],
-) -> Outcome<Vec<Identification>> {
-    std::thread::scope(|scope| {
-        let records = machine.axes.iter().zip(train.iter().zip(validate));
-        let threads: Vec<_> = records
-            .map(|(axis, (train, validate))| {
-                let folder = out.join(format!("records-{}", axis.name));
-                scope.spawn(move || {
-                    recording::write_dataset(&folder, machine, axis, train, validate)?;
-                    let dataset = Dataset::read(&folder, None, None)?;
-                    let mut say = |text: &str| progress::step(&format!("axis {}: {text}", axis.name));
-                    Ok(identification::identify(&dataset, &mut say)?)
-                })
-            })
-            .collect();
-        threads.into_iter().map(|axis| axis.join().unwrap_or_else(|why| std::panic::resume_unwind(why))).collect()
-    })
-}
-
 struct Job<'a> {
-    machine: &'a Machine,
-    place: &'a Place,
+    bench: &'a Bench<'a>,
     results: &'a [Identification],
     before: &'a CircleRun,
     after: &'a CircleRun,
@@ -148,25 +223,11 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn write(&self, out: &Path, names: &[String]) -> Outcome<()> {
-        let known = self.machine.axes.iter().map(|axis| Known::of_machine(axis, self.machine.period_s));
-        let models: Vec<(String, Known, &Identification)> =
-            names.iter().zip(known).zip(self.results).map(|((name, known), r)| (name.clone(), known, r)).collect();
-        write(&out.join("model.toml"), &model_file::text(&format!("{}, identified", self.machine.name), &models))?;
-        write(&out.join("compensation.toml"), &compensation::text(names, &self.tuned.compensation)?)?;
+    fn write(&self) -> Outcome<()> {
+        let out = self.bench.out;
         write(&out.join("summary.json"), &self.summary()?)?;
-        circle::write_logs(&out.join("circle-after.candump.log"), &self.after.logs)?;
-        write(&out.join("quadrant.dbc"), &self.dbc()?)?;
         write(&out.join("circle.svg"), &plots::standalone(&self.polar()?))?;
         write(&out.join("report.html"), &self.page()?)
-    }
-
-    /// The DBC of this machine's nodes, for the candump logs beside it.
-    fn dbc(&self) -> Outcome<String> {
-        let axes = (0..self.machine.axes.len()).map(crate::link::axis_ids).collect::<Outcome<Vec<_>>>()?;
-        let mut text = String::new();
-        protocol::dbc::write(&mut text, &axes).map_err(|error| Failure::new(error.to_string()))?;
-        Ok(text)
     }
 
     fn polar(&self) -> Outcome<String> {
@@ -182,24 +243,24 @@ impl Job<'_> {
     }
 
     fn summary(&self) -> Outcome<String> {
-        let axes = self.machine.axes.iter().zip(self.results);
+        let axes = self.bench.machine.axes.iter().zip(self.results);
         let summary = Summary {
-            machine: &self.machine.name,
+            machine: &self.bench.machine.name,
             axes: axes.map(|(axis, result)| AxisSummary { name: &axis.name, report: &result.report }).collect(),
             circle_before: &self.before.report,
             circle_after: &self.after.report,
             burst_reduction_percent: self.reduction,
             tuning_circles: self.tuned.circles,
-            bus_load_percent: f64::from(self.machine.bus_load_per_mille()) / 10.0,
+            bus_load_percent: f64::from(self.bench.machine.bus_load_per_mille()) / 10.0,
         };
         let text = serde_json::to_string_pretty(&summary).map_err(|error| Failure::new(error.to_string()))?;
         Ok(text + "\n")
     }
 
     fn page(&self) -> Outcome<String> {
-        let mut page = Page::new(&format!("Commissioning of machine {}", self.machine.name));
+        let mut page = Page::new(&format!("Commissioning of machine {}", self.bench.machine.name));
         self.overview(&mut page)?;
-        for (axis, result) in self.machine.axes.iter().zip(self.results) {
+        for (axis, result) in self.bench.machine.axes.iter().zip(self.results) {
             report::identification(&mut page, &format!("Axis {}: what the model lacks", axis.name), result)?;
         }
         self.reversal(&mut page)?;
@@ -220,7 +281,7 @@ impl Job<'_> {
 
     fn overview_table(&self) -> Vec<Vec<String>> {
         let mut rows = vec![["", "before", "after", "unit"].map(String::from).to_vec()];
-        for (axis, result) in self.machine.axes.iter().zip(self.results) {
+        for (axis, result) in self.bench.machine.axes.iter().zip(self.results) {
             let errors = &result.report.validate;
             rows.push(row(
                 &format!("force error of the model, axis {}, validation record", axis.name),
@@ -253,10 +314,11 @@ impl Job<'_> {
             "The six curves of the paper's Fig. 8(a) about a reversal of the first axis, before and after: setpoint, table, disturbance \
              (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
         );
-        let none = vec![AxisCompensation::default(); self.machine.axes.len()];
+        let bench = self.bench;
+        let none = vec![AxisCompensation::default(); bench.machine.axes.len()];
         for (name, compensation) in [("before", &none), ("after", &self.tuned.compensation)] {
-            let rows = reversal_rows(self.machine, self.place, compensation, &fitting_circle(self.machine))?;
-            page.pictures(&six_curves(self.machine, name, &rows)?);
+            let rows = reversal_rows(bench.machine, bench.place, compensation, bench.circle, bench.interrupt)?;
+            page.pictures(&six_curves(bench.machine, name, &rows)?);
         }
         Ok(())
     }
@@ -279,8 +341,13 @@ pub fn reversal_rows(
     place: &Place,
     compensation: &[AxisCompensation],
     circle: &Circle,
+    interrupt: &Interrupt,
 ) -> Outcome<Vec<(f64, AxisCycle)>> {
-    let mut session = Session::open(machine, place, compensation, 2)?;
+    let session = Session::connect(machine, place, 2, interrupt)?;
+    session.perform(compensation, None, |session| about_reversal(session, machine, circle))
+}
+
+fn about_reversal(session: &mut Session<'_>, machine: &Machine, circle: &Circle) -> Outcome<Vec<(f64, AxisCycle)>> {
     // One turn is enough, and it ends at rest.
     let circle = Circle { turns: 1, ..*circle };
     let rest = vec![0.0; machine.axes.len() - 1];
@@ -301,7 +368,6 @@ pub fn reversal_rows(
             }
         },
     )?;
-    session.close()?;
     Ok(rows)
 }
 

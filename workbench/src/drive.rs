@@ -32,6 +32,7 @@ pub fn parameters(axis: &MachineAxis, period_s: f64, compensation: &AxisCompensa
     set.encoder(axis)?;
     set.filter(axis, period_s)?;
     set.limits(axis)?;
+    set.mounting(axis)?;
     set.compensation(compensation)?;
     set.checked()
 }
@@ -129,6 +130,17 @@ impl Set {
         self.put(Parameter::FollowingErrorWindow, "following error window", FOLLOWING_ERROR_M)
     }
 
+    /// Brake, encoder relation and the weight of the axis. The preset is the torque that carries it: against gravity.
+    fn mounting(&mut self, axis: &MachineAxis) -> Outcome<()> {
+        let mounting = &axis.actual.mounting;
+        let (open_s, close_s) = mounting.brake.map_or((0.0, 0.0), |brake| (brake.open_s, brake.close_s));
+        let preset_nm = -mounting.gravity_n * self.torque_per_newton;
+        self.put(Parameter::BrakeOpening, "open_s", open_s)?;
+        self.put(Parameter::BrakeClosing, "close_s", close_s)?;
+        self.put(Parameter::RelationOffset, "motor_zero_m", relation_m(axis))?;
+        self.put(Parameter::PresetTorque, "gravity_n", preset_nm)
+    }
+
     fn compensation(&mut self, compensation: &AxisCompensation) -> Outcome<()> {
         let (mut coulomb_n, mut height, mut constant_s, mut delay_s) = (0.0, 0.0, 0.0, 0.0);
         match compensation.reversal {
@@ -144,6 +156,12 @@ impl Set {
         self.put(Parameter::PulseStartDelay, "pulse start_delay_s", delay_s)?;
         self.put(Parameter::BacklashGap, "backlash_m", compensation.backlash_m)
     }
+}
+
+/// Where the load scale stands when the motor encoder is zero, m; what a user reads off both at power-up.
+#[must_use]
+pub fn relation_m(axis: &MachineAxis) -> f64 {
+    axis.actual.mounting.motor_zero_m - axis.actual.mounting.load_zero_m
 }
 
 /// An encoder may jump by this without being implausible: it leaves room for a gap that closes.
@@ -189,6 +207,7 @@ fn notch(hz: f64, period_s: f64) -> [f64; 5] {
 mod tests {
     use super::*;
     use plant_sim::Machine;
+    use plant_sim::brake::BrakeParameters;
     use servo::settings::Settings;
 
     fn settings(machine: &Machine, compensation: &AxisCompensation) -> Settings {
@@ -244,6 +263,45 @@ mod tests {
         assert_same("decay", config.pulse.decay.to_num(), (-0.05_f64).exp());
         assert_eq!(config.pulse.start_delay_cycles, 3);
         assert_same("half gap", config.backlash.half_gap.0.to_num(), 2000.0);
+    }
+
+    #[test]
+    fn an_axis_that_is_not_mounted_otherwise_has_no_brake_no_preset_and_encoders_that_agree() {
+        let settings = settings(&Machine::reference(), &AxisCompensation::default());
+        assert_eq!((settings.brake.open_cycles, settings.brake.close_cycles), (0, 0));
+        assert_eq!((settings.preset.torque.to_micro_nm_lossy(), settings.relation.offset), (0, 0));
+    }
+
+    #[test]
+    fn the_preset_holds_against_gravity_and_the_brake_has_its_times() {
+        let mut machine = Machine::reference();
+        let brake = BrakeParameters { rated_force_n: 4000.0, open_s: 0.030, close_s: 0.0405, rise_s: 0.0 };
+        let mounting = &mut machine.axes[0].actual.mounting;
+        (mounting.gravity_n, mounting.brake) = (-2500.0, Some(brake));
+        let up = settings(&machine, &AxisCompensation::default());
+        assert_eq!((up.brake.open_cycles, up.brake.close_cycles), (30, 41), "whole cycles, rounded up");
+        // 2500 N at a lead of 10 mm: 2500 · 0.010 / 2π N·m.
+        assert_eq!(up.preset.torque.to_micro_nm_lossy(), 3_978_874);
+        assert!(!up.preset.from_last);
+        machine.axes[0].actual.mounting.gravity_n = 2500.0;
+        let down = settings(&machine, &AxisCompensation::default());
+        assert_eq!(down.preset.torque.to_micro_nm_lossy(), -3_978_874);
+    }
+
+    #[test]
+    fn an_axis_heavier_than_its_motor_names_gravity() {
+        let mut machine = Machine::reference();
+        machine.axes[0].actual.mounting.gravity_n = -9001.0;
+        let error = parameters(&machine.axes[0], machine.period_s, &AxisCompensation::default()).unwrap_err();
+        assert!(error.to_string().starts_with("gravity_n: the drive cannot hold"), "{error}");
+    }
+
+    #[test]
+    fn the_relation_is_the_scale_where_the_motor_encoder_is_zero() {
+        let mut machine = Machine::reference();
+        let mounting = &mut machine.axes[0].actual.mounting;
+        (mounting.motor_zero_m, mounting.load_zero_m) = (0.1, -0.02);
+        assert_eq!(settings(&machine, &AxisCompensation::default()).relation.offset, 12_000_000, "10 nm");
     }
 
     #[test]

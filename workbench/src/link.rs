@@ -30,11 +30,12 @@ pub trait Link {
     /// Where the interface is gone.
     fn receive(&mut self, bus: usize, timeout: Duration) -> Outcome<Option<CanFrame>>;
     /// Waits for a frame of the present cycle; `None` when the cycle does not wait any longer: in process and at clock pace at its end, in
-    /// lock-step over interfaces after some time ([`Interfaces::with_pace`]).
+    /// lock-step over interfaces after some time ([`Interfaces::with_pace`]). Where nobody but silent nodes is waited for, `most` ends the wait
+    /// earlier.
     ///
     /// # Errors
     /// Where the interface is gone.
-    fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<CanFrame>>;
+    fn receive_in_cycle(&mut self, bus: usize, most: Option<Duration>) -> Outcome<Option<CanFrame>>;
     /// The next cycle begins.
     fn pass(&mut self, cycle: Duration);
     /// What the axis truly does, where an instrument can see it; `None` over a cable.
@@ -141,7 +142,8 @@ impl Link for InProcess {
         Ok(self.buses[bus].receive(micros(timeout)))
     }
 
-    fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<CanFrame>> {
+    /// The end of the cycle is patience enough: nobody is late in process.
+    fn receive_in_cycle(&mut self, bus: usize, _most: Option<Duration>) -> Outcome<Option<CanFrame>> {
         let bus = &mut self.buses[bus];
         let begun_us = bus.cycle_start_us().unwrap_or(bus.now_us());
         Ok(bus.receive_until(begun_us.saturating_add(self.period_us)))
@@ -233,11 +235,14 @@ impl Interfaces {
         }
     }
 
-    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that took too long moves it.
+    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that begins more than half a period late moves it, because
+    /// two SYNCs close together are worse for the nodes than one that is late.
     fn wait_for_the_clock(&mut self, cycle: Duration) {
         let now = Instant::now();
-        let start = self.cycle_end.map_or(now, |end| end.max(now));
-        std::thread::sleep(start - now);
+        let due = self.cycle_end.unwrap_or(now);
+        std::thread::sleep(due.saturating_duration_since(now));
+        let woke = Instant::now();
+        let start = if woke.saturating_duration_since(due) > cycle / 2 { woke } else { due };
         self.cycle_end = Some(start + cycle);
     }
 
@@ -275,11 +280,15 @@ impl Link for Interfaces {
         Ok(received)
     }
 
-    fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<CanFrame>> {
+    fn receive_in_cycle(&mut self, bus: usize, most: Option<Duration>) -> Outcome<Option<CanFrame>> {
         if self.pace == Pace::Clock {
             self.left = self.patience();
         }
-        let received = self.ports[bus].receive_within(&mut self.left).map_err(|error| self.failed(bus, &error))?;
+        // A short wait on this bus takes what it lasted, and no more, from the patience with the others.
+        let allowed = most.map_or(self.left, |most| most.min(self.left));
+        let mut left = allowed;
+        let received = self.ports[bus].receive_within(&mut left).map_err(|error| self.failed(bus, &error))?;
+        self.left = self.left.saturating_sub(allowed.saturating_sub(left));
         if let Some(frame) = received {
             self.note(bus, &frame);
         }

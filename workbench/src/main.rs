@@ -1,9 +1,15 @@
 //! The `quadrant` program.
 
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use clap::Parser as _;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 use workbench::cli::{Cli, Command};
+use workbench::error::{Failure, Outcome};
+use workbench::interrupt::Interrupt;
 use workbench::{circle, commission, identify, nodes};
 
 /// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off, and printing then panics.
@@ -23,6 +29,36 @@ fn one_line(text: &str) -> String {
     format!("{}; see `quadrant --help`", text.trim_start_matches("error: "))
 }
 
+/// The first signal asks the machine to stop, the second one ends the process at once. A process that a signal ended says 128 + its number, as
+/// shells do.
+fn stop_on_signals() -> Outcome<Interrupt> {
+    let interrupt = Interrupt::never();
+    let armed = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // In this order: the first signal finds the way out still closed.
+        flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&armed))
+            .and_then(|_| flag::register(signal, Arc::clone(&armed)))
+            .and_then(|_| flag::register_usize(signal, interrupt.cell(), signal.unsigned_abs() as usize))
+            .map_err(|error| Failure::new(format!("signal {signal} cannot be handled: {error}")))?;
+    }
+    Ok(interrupt)
+}
+
+/// Runs a command that moves a machine; an interrupted one ends with the code of its signal.
+fn moving(command: impl FnOnce(&Interrupt) -> Outcome<()>) -> (Outcome<()>, Option<i32>) {
+    match stop_on_signals() {
+        Ok(interrupt) => (command(&interrupt), interrupt.signal()),
+        Err(failure) => (Err(failure), None),
+    }
+}
+
+fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
+    let Err(failure) = outcome else { return ExitCode::SUCCESS };
+    eprintln!("quadrant: {failure}");
+    let code = signal.and_then(|signal| u8::try_from(128 + signal).ok());
+    ExitCode::from(code.unwrap_or(2))
+}
+
 fn main() -> ExitCode {
     end_quietly_on_a_closed_pipe();
     let cli = match Cli::try_parse() {
@@ -34,23 +70,17 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let outcome = match cli.command {
-        Command::Commission(arguments) => commission::command(&arguments),
-        Command::Identify(arguments) => identify::run(&arguments),
-        Command::Circle(arguments) => circle::command(&arguments),
-        Command::Tune(arguments) => circle::tune(&arguments),
-        Command::Plant(arguments) => nodes::plant(&arguments),
-        Command::Servo(arguments) => nodes::servo(&arguments),
+    let still = |outcome| (outcome, None);
+    exit_code(match cli.command {
+        Command::Commission(arguments) => moving(|interrupt| commission::command(&arguments, interrupt)),
+        Command::Circle(arguments) => moving(|interrupt| circle::command(&arguments, interrupt)),
+        Command::Tune(arguments) => moving(|interrupt| circle::tune(&arguments, interrupt)),
+        Command::Identify(arguments) => still(identify::run(&arguments)),
+        Command::Plant(arguments) => still(nodes::plant(&arguments)),
+        Command::Servo(arguments) => still(nodes::servo(&arguments)),
         Command::Machine => {
             print!("{}", plant_sim::Machine::reference_text());
-            Ok(())
+            still(Ok(()))
         }
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("quadrant: {failure}");
-            ExitCode::from(2)
-        }
-    }
+    })
 }

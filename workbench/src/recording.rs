@@ -11,6 +11,8 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::error::{Failure, Outcome};
 use crate::excitation::{self, Burst};
+use crate::identify::write;
+use crate::link::Link;
 use crate::master::AxisCycle;
 use crate::run::Session;
 
@@ -21,18 +23,55 @@ pub struct AxisRecord {
     pub rows: Vec<(f64, AxisCycle)>,
 }
 
-/// Moves all axes by their own bursts and records them together.
+/// Which of the two records of a dataset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The model is fitted on it.
+    Train,
+    /// It judges the model.
+    Validate,
+}
+
+impl Part {
+    /// Both, in the order of recording.
+    pub const BOTH: [Self; 2] = [Self::Train, Self::Validate];
+
+    /// Name of its file.
+    #[must_use]
+    pub const fn file(self) -> &'static str {
+        match self {
+            Self::Train => "train.csv",
+            Self::Validate => "validate.csv",
+        }
+    }
+
+    /// Each record has a noise stream of its own.
+    const fn stream(self) -> u64 {
+        match self {
+            Self::Train => 1,
+            Self::Validate => 2,
+        }
+    }
+}
+
+/// Moves all axes by their own bursts and records them together, one record per axis. What was recorded before a failure stays in `records`.
 ///
 /// # Errors
-/// Where a drive faults.
-pub fn record(session: &mut Session<'_>, machine: &Machine, validation: bool) -> Outcome<Vec<AxisRecord>> {
+/// Where a drive faults, or the operator interrupts.
+pub fn record<L: Link>(
+    session: &mut Session<'_, L>,
+    machine: &Machine,
+    part: Part,
+    records: &mut Vec<AxisRecord>,
+) -> Outcome<()> {
     let bursts: Vec<Vec<Burst>> =
-        machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, validation)).collect();
+        machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, part == Part::Validate)).collect();
     let duration_s = bursts.iter().map(|bursts| excitation::duration_s(bursts)).fold(0.0, f64::max);
+    records.clear();
+    records.resize(machine.axes.len(), AxisRecord::default());
     session.go_to(&vec![0.0; machine.axes.len()])?;
     // Times are since the drive was switched on: what warms up does not start cold in the second record.
     let origin_s = session.cycles() as f64 * machine.period_s;
-    let mut records = vec![AxisRecord::default(); machine.axes.len()];
     session.follow(
         duration_s,
         |time_s| bursts.iter().map(|bursts| excitation::at(bursts, time_s)).collect(),
@@ -41,30 +80,26 @@ pub fn record(session: &mut Session<'_>, machine: &Machine, validation: bool) ->
                 record.rows.push((origin_s + time_s, *axis));
             }
         },
-    )?;
-    Ok(records)
+    )
 }
 
-/// Writes the two records of an axis as a dataset folder. The effort is what a drive's current sensor would show: the active command with the
-/// sensor's noise, seeded by the machine.
+/// Writes a record of an axis, and what the dataset is, into its folder. The effort is what a drive's current sensor would show: the active command
+/// with the sensor's noise, seeded by the machine. A record that `broke_off` says so in `dataset.toml`.
 ///
 /// # Errors
 /// Where the folder cannot be written.
-pub fn write_dataset(
+pub fn write_part(
     folder: &Path,
     machine: &Machine,
     axis: &MachineAxis,
-    train: &AxisRecord,
-    validate: &AxisRecord,
+    (part, record): (Part, &AxisRecord),
+    broke_off: Option<&Failure>,
 ) -> Outcome<()> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
-    for (name, record, stream) in [("train.csv", train, 1), ("validate.csv", validate, 2)] {
-        let path = folder.join(name);
-        let text = csv(record, axis.force_record_noise_n, machine.seed.wrapping_add(stream));
-        std::fs::write(&path, text).map_err(|error| Failure::file(&path, &error))?;
-    }
-    let path = folder.join("dataset.toml");
-    std::fs::write(&path, dataset_toml(machine, axis)).map_err(|error| Failure::file(&path, &error))
+    let text = csv(record, axis.force_record_noise_n, machine.seed.wrapping_add(part.stream()));
+    write(&folder.join(part.file()), &text)?;
+    let note = broke_off.map_or_else(String::new, |why| format!("# {} broke off: {why}\n", part.file()));
+    write(&folder.join("dataset.toml"), &(note + &dataset_toml(machine, axis)))
 }
 
 fn csv(record: &AxisRecord, noise_n: f64, seed: u64) -> String {

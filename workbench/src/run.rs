@@ -1,4 +1,6 @@
-//! Runs on a machine: connect, configure, enable, move, record.
+//! Runs on a machine: connect, configure, enable, move; and whatever happens, stop, disable, write the log.
+
+use std::path::Path;
 
 use plant_sim::Machine;
 use quadrant_host::Pace;
@@ -6,6 +8,7 @@ use quadrant_host::Pace;
 use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
 use crate::error::{Failure, Outcome};
+use crate::interrupt::Interrupt;
 use crate::link::{InProcess, Interfaces, Link};
 use crate::master::{AxisCycle, Master};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD, Move};
@@ -25,10 +28,11 @@ pub enum Place {
     },
 }
 
-/// A machine that is ready to move.
-pub struct Session<'a> {
+/// A machine that moves, and stops as one where an axis has trouble or the operator wants it.
+pub struct Session<'a, L: Link = Box<dyn Link>> {
     machine: &'a Machine,
-    master: Master<Box<dyn Link>>,
+    master: Master<L>,
+    interrupt: Interrupt,
 }
 
 impl Link for Box<dyn Link> {
@@ -48,8 +52,12 @@ impl Link for Box<dyn Link> {
         self.as_mut().receive(bus, timeout)
     }
 
-    fn receive_in_cycle(&mut self, bus: usize) -> Outcome<Option<protocol::CanFrame>> {
-        self.as_mut().receive_in_cycle(bus)
+    fn receive_in_cycle(
+        &mut self,
+        bus: usize,
+        most: Option<std::time::Duration>,
+    ) -> Outcome<Option<protocol::CanFrame>> {
+        self.as_mut().receive_in_cycle(bus, most)
     }
 
     fn pass(&mut self, cycle: std::time::Duration) {
@@ -75,14 +83,82 @@ impl<'a> Session<'a> {
     /// # Errors
     /// Where a node does not answer, or a drive does not come up.
     pub fn open(machine: &'a Machine, place: &Place, compensation: &[AxisCompensation], run: u64) -> Outcome<Self> {
+        let mut session = Self::connect(machine, place, run, &Interrupt::never())?;
+        session.ready(compensation)?;
+        Ok(session)
+    }
+
+    /// Connects to a machine; nothing is sent yet.
+    ///
+    /// # Errors
+    /// Where an interface cannot be opened.
+    pub fn connect(machine: &'a Machine, place: &Place, run: u64, interrupt: &Interrupt) -> Outcome<Self> {
         let link: Box<dyn Link> = match place {
             Place::InProcess => Box::new(InProcess::new(machine, run)?),
             Place::Can { names, pace } => Box::new(Interfaces::open(machine, names)?.with_pace(*pace)),
         };
-        let mut master = Master::start(link, machine)?;
-        master.configure(machine, compensation)?;
-        master.enable()?;
-        Ok(Self { machine, master })
+        Self::on(link, machine, interrupt)
+    }
+}
+
+impl<'a, L: Link> Session<'a, L> {
+    /// A session on a link; nothing is sent yet.
+    ///
+    /// # Errors
+    /// Beyond 16 axes.
+    pub fn on(link: L, machine: &'a Machine, interrupt: &Interrupt) -> Outcome<Self> {
+        let master = Master::on(link, machine)?.until(interrupt.clone());
+        Ok(Self { machine, master, interrupt: interrupt.clone() })
+    }
+
+    /// Finds the nodes, downloads the parameters and enables the drives.
+    ///
+    /// # Errors
+    /// Where a node does not answer, a drive does not come up, or the operator has interrupted.
+    pub fn ready(&mut self, compensation: &[AxisCompensation]) -> Outcome<()> {
+        self.interrupt.check()?;
+        let configured = self.master.find_nodes().and_then(|()| self.master.configure(self.machine, compensation));
+        // A signal ends the waiting for an answer too: that is no silence of the node.
+        self.interrupt.check()?;
+        configured?;
+        self.master.enable()
+    }
+
+    /// Enables the drives, does `work`, disables them and writes the candump log: whatever becomes of the work.
+    ///
+    /// # Errors
+    /// The first of: enabling, the work, disabling, writing.
+    pub fn perform<T>(
+        mut self,
+        compensation: &[AxisCompensation],
+        log: Option<&Path>,
+        work: impl FnOnce(&mut Self) -> Outcome<T>,
+    ) -> Outcome<T> {
+        let outcome = self.ready(compensation).and_then(|()| work(&mut self));
+        // A machine that has never cycled has nothing to disable and nothing to tell.
+        if self.master.cycles() == 0 {
+            return outcome;
+        }
+        let disabled = self.master.disable();
+        let logs = self.master.into_link().take_logs();
+        let written = log.map_or(Ok(()), |path| write_logs(path, &logs));
+        match (outcome, log, written) {
+            (Ok(done), _, written) => disabled.and(written).map(|()| done),
+            (Err(failure), None, _) => Err(failure),
+            (Err(failure), Some(path), Ok(())) => Err(Failure::new(format!("{failure}; log: {}", path.display()))),
+            (Err(failure), Some(_), Err(lost)) => Err(Failure::new(format!("{failure}; and its log was lost: {lost}"))),
+        }
+    }
+
+    /// The master: what the drives told last.
+    #[must_use]
+    pub const fn master(&self) -> &Master<L> {
+        &self.master
+    }
+
+    /// The master, for tests that pull plugs.
+    pub fn master_mut(&mut self) -> &mut Master<L> {
+        &mut self.master
     }
 
     /// Changes the compensation of drives that are running.
@@ -110,7 +186,7 @@ impl<'a> Session<'a> {
     /// Follows a trajectory; `each` sees every cycle with the time since the begin.
     ///
     /// # Errors
-    /// Where a drive faults on the way: the axis is then in its safe state.
+    /// Where an axis faults or falls silent on the way, or the operator interrupts: all axes stand then, and are disabled.
     pub fn follow(
         &mut self,
         duration_s: f64,
@@ -129,11 +205,11 @@ impl<'a> Session<'a> {
             }
             each(index * period_s, &now);
             index += 1.0;
-            if self.master.has_lost_a_servo() {
-                break;
+            if self.master.must_stop() {
+                return Err(self.master.stop());
             }
         }
-        self.master.expect_enabled()
+        Ok(())
     }
 
     /// Runs a circle and gives the turns that count.
@@ -186,6 +262,17 @@ impl<'a> Session<'a> {
     pub const fn cycles(&self) -> u64 {
         self.master.cycles()
     }
+}
+
+/// Writes the logs of all buses into one candump log.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_logs(path: &Path, logs: &[bus::BusLog]) -> Outcome<()> {
+    let failed = |error: std::io::Error| Failure::file(path, &error);
+    let mut file = std::io::BufWriter::new(std::fs::File::create(path).map_err(failed)?);
+    logs.iter().try_for_each(|log| log.write(&mut file)).map_err(failed)?;
+    std::io::Write::flush(&mut file).map_err(failed)
 }
 
 /// Rest after a move, so that nothing of it is left on the record.

@@ -13,6 +13,7 @@ use plant_sim::Machine;
 use crate::ballbar::{self, CircleFigures, Point, REVERSALS};
 use crate::compensation::{AxisCompensation, Compensation, Pulse};
 use crate::error::{Failure, Outcome};
+use crate::interrupt::Interrupt;
 use crate::progress;
 use crate::run::{Place, Session};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD};
@@ -42,27 +43,35 @@ const STEPS: [f64; 2] = [0.12, 0.15];
 /// Tunes the pulse of both axes at one circle.
 ///
 /// # Errors
-/// Where a circle cannot be run, or the machine shows no burst.
-pub fn pulse(machine: &Machine, place: &Place, circle: &Circle, start_delay_s: f64) -> Outcome<Tuned> {
-    let bench = RefCell::new(Bench::open(machine, place, circle)?);
+/// Where a circle cannot be run, the machine shows no burst, or the operator interrupts.
+pub fn pulse(
+    machine: &Machine,
+    place: &Place,
+    circle: &Circle,
+    start_delay_s: f64,
+    interrupt: &Interrupt,
+) -> Outcome<Tuned> {
+    let none = vec![AxisCompensation::default(); machine.axes.len()];
+    let session = Session::connect(machine, place, TUNING_RUN, interrupt)?;
+    session.perform(&none, None, |session| search(&RefCell::new(Bench::on(session, circle)), machine, start_delay_s))
+}
+
+fn search(bench: &RefCell<Bench<'_, '_>>, machine: &Machine, start_delay_s: f64) -> Outcome<Tuned> {
     let mut compensation = vec![AxisCompensation::default(); machine.axes.len()];
     let points = bench.borrow_mut().points(&compensation)?;
-    let before = bench.borrow().figures(&points);
-    let before_um = axis_bursts(&before);
-    let starts = [0, 1].map(|axis| start(&points, axis, circle, machine));
+    let before_um = axis_bursts(&bench.borrow().figures(&points));
+    let circle = bench.borrow().circle;
+    let starts = [0, 1].map(|axis| start(&points, axis, &circle, machine));
     for axis in 0..2 {
         let start = starts[axis].ok_or_else(|| {
             Failure::new(format!("axis {}: no burst to compensate on this circle", machine.axes[axis].name))
         })?;
-        let search =
-            Search { bench: &bench, axis, others: compensation.clone(), start_delay_s, failure: RefCell::new(None) };
+        let search = Search { bench, axis, others: compensation.clone(), start_delay_s, failure: RefCell::new(None) };
         compensation[axis].reversal = Compensation::Pulse(search.run(start)?);
     }
     let tuned = bench.borrow_mut().points(&compensation)?;
     let after_um = axis_bursts(&bench.borrow().figures(&tuned));
-    let bench = bench.into_inner();
-    let circles = bench.circles;
-    bench.session.close()?;
+    let circles = bench.borrow().circles;
     Ok(Tuned { compensation, before_um, after_um, circles })
 }
 
@@ -76,19 +85,17 @@ pub fn axis_bursts(figures: &CircleFigures) -> [f64; 2] {
     [of(0), of(1)]
 }
 
-struct Bench<'a> {
-    session: Session<'a>,
+struct Bench<'a, 'm> {
+    session: &'a mut Session<'m>,
     circle: Circle,
     backlash_m: f64,
     circles: u32,
 }
 
-impl<'a> Bench<'a> {
-    fn open(machine: &'a Machine, place: &Place, circle: &Circle) -> Outcome<Self> {
-        let none = vec![AxisCompensation::default(); machine.axes.len()];
-        let session = Session::open(machine, place, &none, TUNING_RUN)?;
-        // One turn shows each reversal once; noise is far below the burst.
-        Ok(Self { session, circle: Circle { turns: 1, ..*circle }, backlash_m: 0.0, circles: 0 })
+impl<'a, 'm> Bench<'a, 'm> {
+    /// One turn shows each reversal once; noise is far below the burst.
+    fn on(session: &'a mut Session<'m>, circle: &Circle) -> Self {
+        Self { session, circle: Circle { turns: 1, ..*circle }, backlash_m: 0.0, circles: 0 }
     }
 
     fn points(&mut self, compensation: &[AxisCompensation]) -> Outcome<Vec<Point>> {
@@ -129,15 +136,15 @@ fn start(points: &[Point], axis: usize, circle: &Circle, machine: &Machine) -> O
     Some(Pulse { height_m_per_s: way_m / time_constant_s, time_constant_s, start_delay_s: 0.0 })
 }
 
-struct Search<'a, 'b> {
-    bench: &'b RefCell<Bench<'a>>,
+struct Search<'a, 'b, 'm> {
+    bench: &'b RefCell<Bench<'a, 'm>>,
     axis: usize,
     others: Vec<AxisCompensation>,
     start_delay_s: f64,
     failure: RefCell<Option<Failure>>,
 }
 
-impl Search<'_, '_> {
+impl Search<'_, '_, '_> {
     fn run(self, start: Pulse) -> Outcome<Pulse> {
         let corner = vec![(start.height_m_per_s * start.time_constant_s).ln(), start.time_constant_s.ln()];
         let moved = |place: usize| {
@@ -178,7 +185,7 @@ impl Search<'_, '_> {
     }
 }
 
-impl CostFunction for &Search<'_, '_> {
+impl CostFunction for &Search<'_, '_, '_> {
     type Param = Vec<f64>;
     type Output = f64;
 

@@ -30,10 +30,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// A servo of any axis.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_new(axis: u8, timeout_us: u32, place: &mut MaybeUninit<Servo>) -> bool {
+extern "C" fn entry_new(axis: u8, place: &mut MaybeUninit<Servo>) -> bool {
     match AxisIds::of_axis(axis) {
         Some(ids) => {
-            place.write(Servo::new(ids).with_sync_timeout_us(timeout_us));
+            place.write(Servo::new(ids));
             true
         }
         None => false,

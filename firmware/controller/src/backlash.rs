@@ -1,13 +1,14 @@
 //! Backlash compensation: a rate-limited offset on the setpoint.
 //!
 //! On a change of commanded direction the offset goes from −gap/2 to +gap/2 (or back), so that the table, not the
-//! motor, follows the setpoint. The way there is a motion like any other: velocity and acceleration of *setpoint plus offset*
-//! never pass the axis' limits, provided that the setpoint alone does not. The offset starts as fast as the headroom allows and brakes by
+//! motor, follows the setpoint. The way there is a motion like any other: velocity and acceleration of *setpoint plus
+//! offset* never pass the axis' limits, provided that the setpoint alone does not. The offset starts as fast as the
+//! headroom allows and brakes by
 //! `v = √(2 a s)` with half the acceleration.
 //!
-//! A setpoint that decelerates with more than the other half, or stops at once, leaves the offset no acceleration to brake with. Then the sum passes the
-//! acceleration limit, by half of it at most, and the offset keeps its braking curve: it is never beyond half the gap. (When the limit won,
-//! the offset went on to 8.9 mm with half a gap of 20 µm.)
+//! A setpoint that decelerates with more than the other half, or stops at once, leaves the offset no acceleration to
+//! brake with. Then the sum passes the acceleration limit, by half of it at most, and the offset keeps its braking
+//! curve: it is never beyond half the gap. (When the limit won, the offset went on to 8.9 mm with half a gap of 20 µm.)
 
 use fixed::types::{I20F12, I22F10, I24F8};
 
@@ -35,6 +36,12 @@ pub struct BacklashState {
 }
 
 impl BacklashState {
+    /// The offset of the last cycle.
+    #[must_use]
+    pub const fn offset(&self) -> PositionError {
+        self.offset
+    }
+
     /// Advances by one cycle; gives the offset and its velocity.
     pub fn step(
         &mut self,
@@ -81,8 +88,9 @@ fn remaining(half_gap: PositionError, direction: Option<Direction>, offset: Posi
     PositionError(target.saturating_sub(offset.0))
 }
 
-/// The velocity that b = a / 2 brings to rest in the way that is left, `√(2 b s + b² / 4) − b / 2`: half the axis' acceleration, so that the offset can brake while the
-/// setpoint accelerates. Counted in cycles the sum `v + (v − b) + …` is v² / 2 b + v / 2, hence the terms in b. Never more than what is left.
+/// The velocity that b = a / 2 brings to rest in the way that is left, `√(2 b s + b² / 4) − b / 2`: half the axis'
+/// acceleration, so that the offset can brake while the setpoint accelerates. Counted in cycles the sum `v + (v − b) +
+/// …` is v² / 2 b + v / 2, hence the terms in b. Never more than what is left.
 fn braking_velocity(left: PositionError, acceleration_limit: Velocity) -> Velocity {
     let way = left.magnitude().0;
     let limit = acceleration_limit.0.max(I20F12::ZERO);
@@ -109,7 +117,8 @@ mod tests {
         }
     }
 
-    /// Largest velocity and change of velocity of setpoint plus offset along a setpoint that accelerates in pieces, at most by a share of the limit.
+    /// Largest velocity and change of velocity of setpoint plus offset along a setpoint that accelerates in pieces, at
+    /// most by a share of the limit.
     fn extremes(gap: i32, share: f64, changes: &[(f64, usize)]) -> (f64, f64) {
         let config = config(gap, 3000, 20.0);
         let (mut state, mut commanded, mut before, mut direction) = (BacklashState::default(), 0.0_f64, 0.0_f64, None);
@@ -147,7 +156,8 @@ mod tests {
     }
 
     proptest! {
-        /// Paths that jump in velocity, which no axis can follow: the limits then cannot hold as well, and the offset wins.
+        /// Paths that jump in velocity, which no axis can follow: the limits then cannot hold as well, and the offset
+        /// wins.
         #[test]
         fn the_offset_is_never_beyond_half_the_gap(
             gap in 0_i32..40_000, changes in proptest::collection::vec((-3000_i32..3000, 1_usize..200), 1..20),

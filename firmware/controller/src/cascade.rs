@@ -8,7 +8,8 @@
 //! ```
 //!
 //! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the torque that is really
-//! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it further.
+//! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it
+//! further.
 
 use fixed::FixedI64;
 use fixed::types::{I2F30, I20F12};

@@ -1,9 +1,10 @@
 //! Optional second-order filter on the torque command: low-pass or notch.
 //!
-//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form 1, coefficients in Q29 computed on the host. What rounding
-//! cuts off is carried into the next cycle (first-order error feedback), so that the gain at rest is exact and small torques do not stick.
-//! Headroom: inputs and outputs stay within [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and [`FilterConfig::new`] takes no set whose magnitudes add up to more than
-//! 7 < 2³, so the accumulator stays below 2⁶⁰.
+//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form 1, coefficients in
+//! Q29 computed on the host. What rounding cuts off is carried into the next cycle (first-order error feedback), so
+//! that the gain at rest is exact and small torques do not stick. Headroom: inputs and outputs stay within
+//! [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7 < 2³,
+//! so the accumulator stays below 2⁶⁰.
 
 use crate::units::Torque;
 
@@ -55,8 +56,9 @@ impl FilterConfig {
     }
 }
 
-/// Jury's criterion for the denominator z² − a1 z − a2: positive at z = 1 and, for the second order, at z = −1, and the product of the poles, −a2, inside the circle.
-/// 1 − a1 − a2 > 0 and 1 + a1 − a2 > 0 make |a1| < 1 − a2. In integers, exact.
+/// Jury's criterion for the denominator z² − a1 z − a2: positive at z = 1 and, for the second order, at z = −1, and the
+/// product of the poles, −a2, inside the circle. 1 − a1 − a2 > 0 and 1 + a1 − a2 > 0 make |a1| < 1 − a2. In integers,
+/// exact.
 fn decays(a1: i32, a2: i32) -> bool {
     let one = 1_i64 << COEFFICIENT_FRACTION_BITS;
     let [a1, a2] = [a1, a2].map(i64::from);

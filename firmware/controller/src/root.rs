@@ -1,7 +1,7 @@
 //! Integer square root, for every braking curve `v = √(2 a s)` of the drive.
 //!
-//! Digit by digit (Crenshaw, "Math Toolkit for Real-Time Programming", 2000, ch. 4): `u64::isqrt` of the core library divides, and a 64-bit division is a
-//! call of hundreds of cycles on a Cortex-M4.
+//! Digit by digit (Crenshaw, "Math Toolkit for Real-Time Programming", 2000, ch. 4): `u64::isqrt` of the core library
+//! divides, and a 64-bit division is a call of hundreds of cycles on a Cortex-M4.
 
 /// The whole part of the root; begins at its first digit.
 pub(crate) fn root(square: u64) -> u32 {

@@ -1,4 +1,5 @@
-//! The reference stage at 1 kHz on an axis of 0.5 m/s and 5 m/s²: what passes, what is bridged, what is refused, and that the limits hold.
+//! The reference stage at 1 kHz on an axis of 0.5 m/s and 5 m/s²: what passes, what is bridged, what is refused, and
+//! that the limits hold.
 
 use controller::reference::{Mode, Ramp, Reference, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::units::{Position, Velocity};
@@ -92,7 +93,8 @@ fn the_acceleration_is_that_of_the_middle_of_the_torques_cycle() {
 fn a_step_of_acceleration_is_fed_forward_one_cycle_later_and_not_extrapolated() {
     let references = run(&config(), 60, |cycle| Some(fine(start_of_motion(cycle, 5.0, 0.0))));
     let accelerations: Vec<f64> = references.iter().map(|r| r.acceleration.0.to_num()).collect();
-    // x(21) = 2.5 µm is the first that moves: the second differences centred on 20 and on 21 are 250 and 500 counts, each confirmed a cycle later.
+    // x(21) = 2.5 µm is the first that moves: the second differences centred on 20 and on 21 are 250 and 500 counts,
+    // each confirmed a cycle later.
     assert_eq!(
         accelerations[18..24].iter().map(|a| a.round()).collect::<Vec<_>>(),
         [0.0, 0.0, 0.0, 250.0, 500.0, 500.0]
@@ -185,7 +187,8 @@ fn steps_of_acceleration_and_velocity_that_the_axis_can_do_are_believed() {
     }
 }
 
-/// Largest deviation of the commanded path and largest jump of its velocity beyond that of the path itself, with some setpoints lost.
+/// Largest deviation of the commanded path and largest jump of its velocity beyond that of the path itself, with some
+/// setpoints lost.
 fn with_holes(base: impl Fn(u32) -> f64, lost: std::ops::Range<u32>) -> (f64, f64) {
     let references = run(&config(), 120, |cycle| (!lost.contains(&cycle)).then(|| fine(base(cycle))));
     let mut worst = (0.0_f64, 0.0_f64);
@@ -204,7 +207,8 @@ fn with_holes(base: impl Fn(u32) -> f64, lost: std::ops::Range<u32>) -> (f64, f6
 fn lost_setpoints_are_carried_on_with_the_acceleration() {
     let smooth = |cycle| start_of_motion(cycle, 5.0, 50.0);
     let steady = |cycle| start_of_motion(cycle, 5.0, 0.0);
-    // A jerk of 50 m/s³ is 50 nm per cycle³: 1, 4, 10 of it after 1, 2, 3 cycles; velocity in counts of 10 nm per cycle.
+    // A jerk of 50 m/s³ is 50 nm per cycle³: 1, 4, 10 of it after 1, 2, 3 cycles; velocity in counts of 10 nm per
+    // cycle.
     for (lost, wanted_nm) in [(1, 50.0), (2, 200.0), (3, 500.0)] {
         let (deviation_nm, velocity) = with_holes(smooth, 50..50 + lost);
         assert!((deviation_nm - wanted_nm).abs() < 3.0, "{lost} lost: {deviation_nm} nm");
@@ -295,8 +299,9 @@ fn ramp(mode: Mode, velocity: f64) -> (u32, f64, f64, f64) {
 
 #[test]
 fn a_ramp_takes_the_way_of_the_closed_form() {
-    // v² / 2 a + v a / 2 j, as 0.4 m/s at 5 m/s² and 1000 m/s³: 16 + 1 mm; at 2.5 m/s² and 100 m/s³: 32 + 5 mm. v / a + a / j: 85 and 185 ms.
-    // The change begins with the very next cycle, in whole steps of the jerk: one cycle's way less.
+    // v² / 2 a + v a / 2 j, as 0.4 m/s at 5 m/s² and 1000 m/s³: 16 + 1 mm; at 2.5 m/s² and 100 m/s³: 32 + 5 mm. v / a +
+    // a / j: 85 and 185 ms. The change begins with the very next cycle, in whole steps of the jerk: one cycle's way
+    // less.
     for (mode, velocity, way_mm, cycles, deceleration, jerk) in [
         (Mode::QuickStop, 40_000.0, 17.0, 85, 500.0, 100.0),
         (Mode::QuickStop, -40_000.0, -17.0, 85, 500.0, 100.0),
@@ -389,7 +394,8 @@ fn with_the_filter_on_a_wrong_setpoint_of_ten_micrometres_is_refused_too() {
     }
 }
 
-/// A smooth path sampled every n cycles; deviation from the path 2 n − 1 cycles ago, and the largest change of acceleration from cycle to cycle.
+/// A smooth path sampled every n cycles; deviation from the path 2 n − 1 cycles ago, and the largest change of
+/// acceleration from cycle to cycle.
 fn interpolated(cycles: u8) -> (f64, f64) {
     let config = ReferenceConfig { setpoint_cycles: cycles, ..config() };
     let path = |cycle: f64| 0.01 * (std::f64::consts::TAU * 2.0 * cycle * PERIOD_S).cos();
@@ -417,7 +423,8 @@ fn interpolated(cycles: u8) -> (f64, f64) {
 
 #[test]
 fn coarse_setpoints_in_time_are_interpolated_smoothly() {
-    // The path itself: 0.13 m/s, 1.6 m/s², 20 m/s³ (0.02 m/s² per cycle). Catmull and Rom leave up to (ω n T)⁴ / 100 or so of the amplitude.
+    // The path itself: 0.13 m/s, 1.6 m/s², 20 m/s³ (0.02 m/s² per cycle). Catmull and Rom leave up to (ω n T)⁴ / 100 or
+    // so of the amplitude.
     for (cycles, deviation_um, jump) in [(2, 0.01, 0.06), (4, 0.1, 0.1), (8, 1.0, 0.2), (20, 30.0, 0.5)] {
         let (deviation, change) = interpolated(cycles);
         assert!(deviation < deviation_um, "n {cycles}: {deviation} µm");
@@ -466,7 +473,8 @@ fn the_track_brakes_before_the_end_of_its_travel_and_comes_back_with_the_setpoin
 
 #[test]
 fn an_extrapolated_stop_does_not_turn_the_direction() {
-    // Up to 0.1 m/s from cycle 20 on, down to rest from cycle 60 to 80, both at 5 m/s²; one setpoint about the stop is lost.
+    // Up to 0.1 m/s from cycle 20 on, down to rest from cycle 60 to 80, both at 5 m/s²; one setpoint about the stop is
+    // lost.
     let ramp = |cycle: u32, from: f64| 2.5 * ((f64::from(cycle) - from).max(0.0) * PERIOD_S).powi(2);
     let at = |cycle| fine(ramp(cycle, 20.0) - ramp(cycle, 40.0) - ramp(cycle, 60.0) + ramp(cycle, 80.0));
     for lost in 76..86 {

@@ -68,7 +68,8 @@ fn first_torque_of_a_stop(law: State) -> i32 {
 #[test]
 fn out_of_motion_the_first_torque_is_that_of_the_ramp_alone() {
     let here = Position::from_counts(123_456);
-    // The ramp begins with −100 counts per cycle², a step for the feedforward (above 50): Ja · 100, of which the filter passes a quarter at once.
+    // The ramp begins with −100 counts per cycle², a step for the feedforward (above 50): Ja · 100, of which the filter
+    // passes a quarter at once.
     let torque = first_torque_of_a_stop(State::default().moving(here, per_cycle(40_000)));
     assert!((torque + 14_827 * 100 / 4).abs() <= 2, "{torque} µN·m");
     // Without the measured velocity the loop believes that the axis stands, and kicks with the limit.

@@ -1,8 +1,9 @@
 //! A floating-point twin beside the fixed-point law, and golden vectors for later runs on ARM.
 //!
-//! The twin is written from the equations of the module docs in `f64`. On the reference gains and any plausible motion the two differ by less than
-//! [`BOUND_MICRO_NM`] after 3000 cycles: rounding of position to 39 pm and of velocity to 2.4 pm per cycle is all there is. The twin has the gains as the
-//! fixed-point numbers hold them; how well they hold the SI ones is tested where they are made.
+//! The twin is written from the equations of the module docs in `f64`. On the reference gains and any plausible motion
+//! the two differ by less than [`BOUND_MICRO_NM`] after 3000 cycles: rounding of position to 39 pm and of velocity to
+//! 2.4 pm per cycle is all there is. The twin has the gains as the fixed-point numbers hold them; how well they hold
+//! the SI ones is tested where they are made.
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
@@ -198,7 +199,8 @@ proptest! {
     }
 }
 
-/// Rows of bits: setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m). Whatever runs this law has to give the same integers.
+/// Rows of bits: setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m). Whatever runs this law has to
+/// give the same integers.
 #[test]
 fn the_golden_vectors_repeat_to_the_bit() {
     let mut text =

@@ -1,7 +1,7 @@
 //! One station at one port: what delivers its frames and tells it the time.
 //!
 //! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline, the station does what is due next. After three
-//!   deadlines in a row the partner is gone, and time follows the clock until a frame comes again.
+//!   deadlines without a frame of the workbench it is gone, and time follows the clock until the workbench says something again.
 //! - *Clock pace*: time is the clock, and the station wakes when it is due.
 
 use std::convert::Infallible;
@@ -10,13 +10,16 @@ use std::io;
 use bus::FaultyPort;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
+use embedded_can::{Frame, Id, StandardId};
 use protocol::message::{self, Decoded};
+use protocol::table::{FRAMES, Sender};
 use protocol::{AxisIds, CanFrame, Message, Station, SyncCounter};
 
 use crate::lockstep_time::LockstepTime;
 use crate::port::Port;
 
-/// Deadlines in a row after which the partner counts as gone. One is a lost frame, two are a lost frame and the one that it would have caused.
+/// Deadlines without a frame of the workbench after which it counts as gone. One is a lost frame, two are a lost SYNC and a lost frame; the workbench
+/// waits for one and a half.
 const DEADLINES_UNTIL_ALONE: u8 = 3;
 
 /// What a station does at one time before its port is looked at again: heartbeat, deadline, own timer and timeouts, with room for as many again.
@@ -26,6 +29,7 @@ const DUE_AT_ONCE: u8 = 8;
 pub(crate) struct Leaf {
     station: Box<dyn Station>,
     ids: AxisIds,
+    of_workbench: Vec<StandardId>,
     port: Port,
     faults: Option<FaultyPort>,
     received: Vec<CanFrame>,
@@ -56,7 +60,9 @@ impl ClockTime {
 impl Leaf {
     pub(crate) fn new(station: Box<dyn Station>, port: Port, faults: Option<FaultyPort>) -> Self {
         let ids = station.ids();
-        Self { station, ids, port, faults, received: Vec::new(), time: LockstepTime::default() }
+        let of_workbench = FRAMES.iter().filter(|spec| spec.sender == Sender::Workbench);
+        let of_workbench = of_workbench.map(|spec| ids.identifier(spec.kind)).collect();
+        Self { station, ids, of_workbench, port, faults, received: Vec::new(), time: LockstepTime::default() }
     }
 
     /// The boot-up message.
@@ -71,7 +77,7 @@ impl Leaf {
             while silent < DEADLINES_UNTIL_ALONE {
                 match self.port.receive(Some(deadline)).await? {
                     Some(frame) => {
-                        silent = 0;
+                        silent = if self.is_of_workbench(&frame) { 0 } else { silent };
                         self.deliver(frame, Self::take_in_step)?;
                     }
                     None => {
@@ -95,13 +101,16 @@ impl Leaf {
         }
     }
 
-    /// Nobody is there: time follows the clock until a frame comes.
+    /// The workbench is gone: time follows the clock until it says something. The peer's frames come meanwhile; it is as alone.
     async fn alone(&mut self) -> io::Result<()> {
         let clock = ClockTime::from(self.time.now_us());
         loop {
             if let Some(frame) = self.frame_or_wake(clock).await? {
                 self.time.reach(clock.now_us());
-                return self.deliver(frame, Self::take_in_step);
+                self.deliver(frame, Self::take_in_step)?;
+                if self.is_of_workbench(&frame) {
+                    return Ok(());
+                }
             }
         }
     }
@@ -165,6 +174,10 @@ impl Leaf {
         };
         act(self.station.as_mut(), self.time.now_us(), &mut send);
         outcome
+    }
+
+    fn is_of_workbench(&self, frame: &CanFrame) -> bool {
+        self.of_workbench.iter().any(|id| frame.id() == Id::Standard(*id))
     }
 
     /// The counter, where a frame is SYNC.

@@ -142,6 +142,12 @@ impl Axis {
         self.encoders.position().map(|at| at.of(settings.config.position_source))
     }
 
+    /// Offset of the backlash unit.
+    #[must_use]
+    pub const fn backlash_offset(&self) -> PositionError {
+        self.law.backlash_offset()
+    }
+
     /// Whether the commanded motion has ended.
     #[must_use]
     pub fn is_standing(&self) -> bool {

@@ -1,13 +1,13 @@
 //! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the deadline, the node's own timer.
 
-use protocol::SyncCounter;
 use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::NmtState;
+use protocol::{CanFrame, Fault, SyncCounter};
 
+use crate::Servo;
 use crate::axis::{Circumstances, Notices};
 use crate::inbox::Contents;
 use crate::stage::StageOutput;
-use crate::{Outbox, Servo};
 
 /// SYNC timeout where the parameter set leaves it open (2131h = 0), in periods: two more than the setpoints and feedbacks that may be missing in a row.
 const SYNC_TIMEOUT_PERIODS: u16 = 5;
@@ -15,10 +15,10 @@ const SYNC_TIMEOUT_PERIODS: u16 = 5;
 impl Servo {
     /// Lets time pass: does what is due, at most one cycle's worth. Call again while [`Self::wake_at_us`] is not later.
     #[must_use = "the frames have to go on the bus"]
-    pub fn on_time(&mut self, now_us: u64) -> Outbox {
-        let mut out = Outbox::new();
-        self.step_time(now_us, &mut out);
-        out
+    pub fn on_time(&mut self, now_us: u64) -> &[CanFrame] {
+        self.outbox.clear();
+        self.step_time(now_us);
+        &self.outbox
     }
 
     /// When something is due next, unless a frame comes before.
@@ -45,39 +45,43 @@ impl Servo {
 
     /// Catches up with what was due strictly before a frame arrives; bounded, because a node that was held up for long has a fault to latch and not a
     /// past to live through.
-    pub(crate) fn catch_up(&mut self, now_us: u64, out: &mut Outbox) {
+    pub(crate) fn catch_up(&mut self, now_us: u64) {
         for _ in 0..CATCH_UP_EVENTS {
             match self.wake_at_us() {
-                Some(due) if due < now_us => self.step_time(due, out),
+                Some(due) if due < now_us => self.step_time(due),
                 _ => return,
             }
         }
     }
 
-    fn step_time(&mut self, now_us: u64, out: &mut Outbox) {
+    fn step_time(&mut self, now_us: u64) {
         self.start_clock(now_us);
         if self.inbox.is_open() {
             if self.timing.deadline_us().is_some_and(|due| due <= now_us) {
-                self.close(true, out);
+                self.close(true);
             }
         } else if self.next_begin_us().is_some_and(|due| due <= now_us) {
-            self.go_on_without_sync(now_us, out);
+            self.go_on_without_sync(now_us);
         } else if self.timing.sync_due_us().is_none() {
-            self.beat(now_us, out);
+            self.beat(now_us);
         }
     }
 
-    fn go_on_without_sync(&mut self, now_us: u64, out: &mut Outbox) {
+    fn go_on_without_sync(&mut self, now_us: u64) {
         if !self.axis.drive.is_energised() {
             self.leave_the_cycle();
             return;
         }
-        if self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
-            self.latch(protocol::Fault::SyncMissing, out);
-        }
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false, out);
+        self.begin_without_sync(now_us);
+    }
+
+    /// The next cycle begins by the own timer, or because a frame shows that it is on although its SYNC did not come.
+    pub(crate) fn begin_without_sync(&mut self, now_us: u64) {
+        let Some(counter) = self.sync.begin_without_sync() else { return };
+        self.timing.begin_without_sync(now_us);
+        self.open(counter, false);
+        if self.axis.drive.is_energised() && self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
+            self.latch(Fault::SyncMissing);
         }
     }
 
@@ -89,30 +93,22 @@ impl Servo {
         self.axis.encoders.forget();
     }
 
-    /// A frame shows that the next cycle is on although its SYNC did not come.
-    pub(crate) fn begin_by_evidence(&mut self, now_us: u64, out: &mut Outbox) {
-        if let Some(counter) = self.sync.begin_without_sync() {
-            self.timing.begin_without_sync(now_us);
-            self.open(counter, false, out);
-        }
-    }
-
-    pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64, out: &mut Outbox) {
+    pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64) {
         let first = self.timing.sync_due_us().is_none();
         self.timing.begin_by_sync(now_us, counter);
         if first {
             self.periodic.beat_now(now_us);
         }
-        self.open(counter, true, out);
+        self.open(counter, true);
     }
 
-    fn open(&mut self, counter: SyncCounter, in_sync: bool, out: &mut Outbox) {
+    fn open(&mut self, counter: SyncCounter, in_sync: bool) {
         if self.inbox.is_open() {
-            self.close(true, out);
+            self.close(true);
         }
         let cycles = self.inbox.counter().map_or(1, |before| counter.cycles_since(before));
         if cycles <= SYNC_OVERFLOW / 2 {
-            (1..cycles).for_each(|_| self.skip(out));
+            (1..cycles).for_each(|_| self.skip());
         }
         self.activate();
         self.inbox.begin(counter);
@@ -127,32 +123,33 @@ impl Servo {
         }
     }
 
-    pub(crate) fn close_if_complete(&mut self, out: &mut Outbox) {
+    pub(crate) fn close_if_complete(&mut self) {
         let wants_setpoint = self.active.as_ref().is_none_or(|settings| self.axis.expects_setpoint(settings));
         if self.inbox.is_complete(wants_setpoint) {
-            self.close(false, out);
+            self.close(false);
         }
     }
 
     /// Closes the cycle: steps the axis and answers.
-    fn close(&mut self, by_deadline: bool, out: &mut Outbox) {
-        let contents = self.inbox.close();
-        let stage = self.step_axis(&contents, out);
+    fn close(&mut self, by_deadline: bool) {
+        self.inbox.close();
+        let stage = self.step_axis(None);
         let late = by_deadline || !self.in_sync;
         let counts = &mut self.axis.watchdog.counts;
         counts.by_deadline = counts.by_deadline.saturating_add(u32::from(late));
-        self.send_torque(stage, out);
-        self.send_periodic(out);
-        self.finish_nmt(out);
+        self.send_torque(stage);
+        self.send_periodic();
+        self.finish_nmt();
     }
 
     /// A cycle passed whose time and SYNC never came: everything in it counts as missing.
-    fn skip(&mut self, out: &mut Outbox) {
+    fn skip(&mut self) {
         self.in_sync = false;
-        let _ = self.step_axis(&Contents::NOTHING, out);
+        let _ = self.step_axis(Some(&Contents::NOTHING));
     }
 
-    fn step_axis(&mut self, contents: &Contents, out: &mut Outbox) -> StageOutput {
+    /// `instead` of what is in the inbox.
+    fn step_axis(&mut self, instead: Option<&Contents>) -> StageOutput {
         let circumstances = Circumstances {
             period_fits: self.period_fits(),
             listens: self.nmt == NmtState::Operational && self.pending_nmt.is_none(),
@@ -160,8 +157,9 @@ impl Servo {
         };
         let mut notices = Notices::new();
         let Some(settings) = self.active.as_ref() else { return StageOutput::default() };
+        let contents = instead.unwrap_or_else(|| self.inbox.contents());
         let stage = self.axis.cycle(settings, contents, circumstances, &mut notices);
-        self.send_notices(&notices, out);
+        self.send_notices(&notices);
         stage
     }
 

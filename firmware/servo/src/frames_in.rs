@@ -5,46 +5,46 @@ use protocol::message::{self, Decoded, EmergencyMessage, Feedback, NmtCommand, N
 use protocol::sdo::Request;
 use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent};
 
+use crate::Servo;
 use crate::axis::Notices;
 use crate::inbox::Taken;
 use crate::sdo_server::Effect;
 use crate::stage::StageInput;
-use crate::{Outbox, Servo};
 
 impl Servo {
     /// The boot-up message.
     #[must_use = "the frames have to go on the bus"]
-    pub fn boot(&self) -> Outbox {
-        let mut out = Outbox::new();
-        self.send(&mut out, BOOT_UP);
-        out
+    pub fn boot(&mut self) -> &[CanFrame] {
+        self.outbox.clear();
+        self.send(BOOT_UP);
+        &self.outbox
     }
 
     /// Takes a frame from the bus. What was due before it happens first.
     #[must_use = "the frames have to go on the bus"]
-    pub fn on_frame(&mut self, frame: &CanFrame, now_us: u64) -> Outbox {
-        let mut out = Outbox::new();
+    pub fn on_frame(&mut self, frame: &CanFrame, now_us: u64) -> &[CanFrame] {
+        self.outbox.clear();
         self.start_clock(now_us);
-        self.catch_up(now_us, &mut out);
+        self.catch_up(now_us);
         match message::decode(self.ids, frame) {
             Ok(Decoded::Foreign) => {}
-            Ok(Decoded::Message(message)) => self.on_message(message, now_us, &mut out),
+            Ok(Decoded::Message(message)) => self.on_message(message, now_us),
             Err(error) => self.on_malformed(error.kind),
         }
-        self.close_if_complete(&mut out);
-        out
+        self.close_if_complete();
+        &self.outbox
     }
 
-    fn on_message(&mut self, message: Message, now_us: u64, out: &mut Outbox) {
+    fn on_message(&mut self, message: Message, now_us: u64) {
         match message {
-            Message::Nmt(command, node) => self.on_nmt(command, node, out),
-            Message::Sync(counter) => self.on_sync(counter, now_us, out),
-            Message::Setpoint(setpoint) => self.on_setpoint(setpoint, now_us, out),
-            Message::Feedback(feedback) => self.on_feedback(feedback, now_us, out),
-            Message::PlantStatus(status) => self.on_plant_status(status, out),
+            Message::Nmt(command, node) => self.on_nmt(command, node),
+            Message::Sync(counter) => self.on_sync(counter, now_us),
+            Message::Setpoint(setpoint) => self.on_setpoint(setpoint, now_us),
+            Message::Feedback(feedback) => self.on_feedback(feedback, now_us),
+            Message::PlantStatus(status) => self.on_plant_status(status),
             Message::PlantHeartbeat(state) => self.on_plant_heartbeat(state, now_us),
-            Message::PlantEmergency(emergency) => self.on_plant_emergency(emergency, out),
-            Message::SdoRequest(request) => self.on_sdo(request, out),
+            Message::PlantEmergency(emergency) => self.on_plant_emergency(emergency),
+            Message::SdoRequest(request) => self.on_sdo(request),
             // Our own frames, or those of a second servo with our id: nothing to do with them.
             Message::Torque(_)
             | Message::Status(_)
@@ -74,15 +74,15 @@ impl Servo {
         }
     }
 
-    fn on_sync(&mut self, counter: SyncCounter, now_us: u64, out: &mut Outbox) {
+    fn on_sync(&mut self, counter: SyncCounter, now_us: u64) {
         if self.nmt != NmtState::Operational {
             return;
         }
         match self.sync.take(counter) {
-            SyncEvent::Begin(counter) => self.begin_by_sync(counter, now_us, out),
+            SyncEvent::Begin(counter) => self.begin_by_sync(counter, now_us),
             SyncEvent::BeginStale(counter) => {
                 self.axis.watchdog.taken(Taken::Stale);
-                self.begin_by_sync(counter, now_us, out);
+                self.begin_by_sync(counter, now_us);
             }
             SyncEvent::Confirmed => self.timing.confirm(now_us, counter),
             SyncEvent::Doubled => self.axis.watchdog.taken(Taken::Doubled),
@@ -90,30 +90,30 @@ impl Servo {
         }
     }
 
-    fn on_setpoint(&mut self, setpoint: Setpoint, now_us: u64, out: &mut Outbox) {
+    fn on_setpoint(&mut self, setpoint: Setpoint, now_us: u64) {
         let mut taken = self.inbox.setpoint(setpoint);
         if taken == Taken::NextCycle {
-            self.begin_by_evidence(now_us, out);
+            self.begin_without_sync(now_us);
             taken = self.inbox.setpoint(setpoint);
         }
         self.axis.watchdog.taken(taken);
     }
 
-    fn on_feedback(&mut self, feedback: Feedback, now_us: u64, out: &mut Outbox) {
+    fn on_feedback(&mut self, feedback: Feedback, now_us: u64) {
         let mut taken = self.inbox.feedback(feedback);
         if taken == Taken::NextCycle {
-            self.begin_by_evidence(now_us, out);
+            self.begin_without_sync(now_us);
             taken = self.inbox.feedback(feedback);
         }
         self.axis.watchdog.taken(taken);
     }
 
-    fn on_plant_status(&mut self, status: PlantStatus, out: &mut Outbox) {
+    fn on_plant_status(&mut self, status: PlantStatus) {
         let mut notices = Notices::new();
         if let Some(settings) = self.active.as_ref() {
             self.axis.hear_stage(StageInput::from(status), settings, &mut notices);
         }
-        self.send_notices(&notices, out);
+        self.send_notices(&notices);
     }
 
     fn on_plant_heartbeat(&mut self, state: NmtState, now_us: u64) {
@@ -124,13 +124,16 @@ impl Servo {
         }
     }
 
-    fn on_plant_emergency(&mut self, emergency: EmergencyMessage, out: &mut Outbox) {
+    fn on_plant_emergency(&mut self, emergency: EmergencyMessage) {
         if !emergency.is_error_reset() && self.axis.drive.is_energised() {
-            self.latch(Fault::PeerFault, out);
+            let [code, ..] = emergency.vendor_specific;
+            // A drop-out is said by EMCY before the status: the fault has the name of what happened.
+            let dropped_out = Fault::from_code(code) == Some(Fault::StageLost);
+            self.latch(if dropped_out { Fault::StageLost } else { Fault::PeerFault });
         }
     }
 
-    fn on_sdo(&mut self, request: Request, out: &mut Outbox) {
+    fn on_sdo(&mut self, request: Request) {
         let readings = self.readings();
         let has_torque = self.axis.drive.is_energised();
         let (response, effect) = self.server.handle(request, &readings, has_torque);
@@ -145,11 +148,11 @@ impl Servo {
             }
         }
         if let Some(response) = response {
-            self.send(out, Message::SdoResponse(response));
+            self.send(Message::SdoResponse(response));
         }
     }
 
-    fn on_nmt(&mut self, command: NmtCommand, node: Option<NodeId>, out: &mut Outbox) {
+    fn on_nmt(&mut self, command: NmtCommand, node: Option<NodeId>) {
         if node.is_some_and(|node| node != self.ids.servo) {
             return;
         }
@@ -160,11 +163,11 @@ impl Servo {
         }
         self.pending_nmt = Some(command);
         self.axis.drive = self.axis.drive.released();
-        self.finish_nmt(out);
+        self.finish_nmt();
     }
 
     /// Leaves NMT operational, once there is no torque any more.
-    pub(crate) fn finish_nmt(&mut self, out: &mut Outbox) {
+    pub(crate) fn finish_nmt(&mut self) {
         if self.axis.drive.is_energised() {
             return;
         }
@@ -173,8 +176,9 @@ impl Servo {
             Some(NmtCommand::StopRemoteNode) => self.leave_operational(NmtState::Stopped),
             Some(NmtCommand::EnterPreOperational) => self.leave_operational(NmtState::PreOperational),
             Some(NmtCommand::ResetNode | NmtCommand::ResetCommunication) => {
-                *self = Self::new(self.ids);
-                self.send(out, BOOT_UP);
+                let said = core::mem::take(&mut self.outbox);
+                *self = Self { outbox: said, ..Self::new(self.ids) };
+                self.send(BOOT_UP);
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::axis::{Notice, Notices};
 use crate::drive::Drive;
 use crate::sdo_server::Readings;
 use crate::stage::StageOutput;
-use crate::{Outbox, Servo, emergency};
+use crate::{Servo, emergency};
 
 /// What is sent, or expected, from time to time.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,34 +58,34 @@ impl Periodic {
 }
 
 impl Servo {
-    pub(crate) fn send(&self, out: &mut Outbox, message: Message) {
+    pub(crate) fn send(&mut self, message: Message) {
         // The outbox holds more frames than one event can cause (see `Outbox`); a full one drops the newest.
-        let _ = out.push(message.encode(self.ids));
+        let _ = self.outbox.push(message.encode(self.ids));
     }
 
-    pub(crate) fn send_torque(&self, stage: StageOutput, out: &mut Outbox) {
+    pub(crate) fn send_torque(&mut self, stage: StageOutput) {
         let Some(counter) = self.inbox.counter() else { return };
         let torque = TorqueMicroNm(stage.torque.to_micro_nm_lossy());
-        self.send(out, Message::Torque(message::Torque { torque, control: stage.control, counter }));
+        self.send(Message::Torque(message::Torque { torque, control: stage.control, counter }));
     }
 
-    pub(crate) fn send_periodic(&mut self, out: &mut Outbox) {
+    pub(crate) fn send_periodic(&mut self) {
         let status = self.status();
         if self.periodic.status_is_due((status.status, status.fault)) {
-            self.send(out, Message::Status(status));
+            self.send(Message::Status(status));
             self.axis.last.warning = false;
         }
         if let Some(now_us) = self.timing.began_us() {
-            self.beat(now_us, out);
-            self.watch_plant(now_us, out);
+            self.beat(now_us);
+            self.watch_plant(now_us);
         }
     }
 
     /// Sends the heartbeat when it is due.
-    pub(crate) fn beat(&mut self, now_us: u64, out: &mut Outbox) {
+    pub(crate) fn beat(&mut self, now_us: u64) {
         if self.periodic.heartbeat_due_us.is_some_and(|due| due <= now_us) {
             self.periodic.heartbeat_due_us = Some(now_us.saturating_add(self.heartbeat_period_us()));
-            self.send(out, Message::ServoHeartbeat(self.nmt));
+            self.send(Message::ServoHeartbeat(self.nmt));
         }
     }
 
@@ -99,22 +99,22 @@ impl Servo {
         self.timing.periods_us(HEARTBEAT_EVERY_CYCLES)
     }
 
-    fn watch_plant(&mut self, now_us: u64, out: &mut Outbox) {
+    fn watch_plant(&mut self, now_us: u64) {
         let allowed_us = self.active.as_ref().map_or(0, |settings| settings.limits.heartbeat_us);
         if self.axis.drive.is_energised() && self.periodic.plant_is_silent(now_us, allowed_us) {
-            self.latch(Fault::HeartbeatLost, out);
+            self.latch(Fault::HeartbeatLost);
         }
     }
 
-    pub(crate) fn latch(&mut self, fault: Fault, out: &mut Outbox) {
+    pub(crate) fn latch(&mut self, fault: Fault) {
         let mut notices = Notices::new();
         if let Some(settings) = self.active.as_ref() {
             self.axis.latch(fault, settings, &mut notices);
         }
-        self.send_notices(&notices, out);
+        self.send_notices(&notices);
     }
 
-    pub(crate) fn send_notices(&mut self, notices: &Notices, out: &mut Outbox) {
+    pub(crate) fn send_notices(&mut self, notices: &Notices) {
         let counter = self.inbox.counter().map_or(0, SyncCounter::get);
         for notice in notices {
             let message = match notice {
@@ -124,7 +124,7 @@ impl Servo {
                 }
                 Notice::Reset => EmergencyMessage::error_reset(),
             };
-            self.send(out, Message::ServoEmergency(message));
+            self.send(Message::ServoEmergency(message));
         }
     }
 

@@ -21,25 +21,6 @@ pub enum Miss {
     Implausible,
 }
 
-/// A frame that is expected in a cycle, and why it is not there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Slot<T> {
-    value: Option<T>,
-    miss: Miss,
-}
-
-impl<T> Slot<T> {
-    const fn empty() -> Self {
-        Self { value: None, miss: Miss::Absent }
-    }
-}
-
-impl<T: Copy> Slot<T> {
-    fn outcome(&self) -> Result<T, Miss> {
-        self.value.ok_or(self.miss)
-    }
-}
-
 /// How a frame was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
@@ -69,22 +50,19 @@ impl Contents {
     pub const NOTHING: Self = Self { feedback: Err(Miss::Absent), preview: Err(Miss::Absent), present: None };
 }
 
-/// The slots of the present cycle.
+/// What has come in for the present cycle.
 #[derive(Clone, Debug)]
 pub struct Inbox {
     counter: Option<SyncCounter>,
     open: bool,
-    feedback: Slot<Feedback>,
-    preview: Slot<Setpoint>,
+    contents: Contents,
     /// The preview was there when its cycle was closed.
     preview_used: bool,
-    present: Option<Setpoint>,
 }
 
 impl Default for Inbox {
     fn default() -> Self {
-        let (feedback, preview) = (Slot::empty(), Slot::empty());
-        Self { counter: None, open: false, feedback, preview, preview_used: false, present: None }
+        Self { counter: None, open: false, contents: Contents::NOTHING, preview_used: false }
     }
 }
 
@@ -104,71 +82,97 @@ impl Inbox {
     /// Whether everything is in; `wants_setpoint` is false in cycles in which none is due.
     #[must_use]
     pub const fn is_complete(&self, wants_setpoint: bool) -> bool {
-        self.open && self.feedback.value.is_some() && (self.preview.value.is_some() || !wants_setpoint)
+        self.open && self.contents.feedback.is_ok() && (self.contents.preview.is_ok() || !wants_setpoint)
+    }
+
+    /// What the present cycle has to go by.
+    #[must_use]
+    pub const fn contents(&self) -> &Contents {
+        &self.contents
     }
 
     /// Begins the cycle of a counter.
     pub fn begin(&mut self, counter: SyncCounter) {
-        // A preview that came after its cycle was closed is the setpoint of the cycle that begins.
-        let late = self.preview.value.filter(|setpoint| !self.preview_used && setpoint.counter == counter);
-        *self = Self { counter: Some(counter), open: true, present: late.or(self.first(counter)), ..Self::default() };
+        self.keep_what_is_due(counter);
+        self.contents.feedback = Err(Miss::Absent);
+        self.contents.preview = Err(Miss::Absent);
+        self.counter = Some(counter);
+        self.open = true;
+        self.preview_used = false;
     }
 
-    /// Before the first SYNC the newest setpoint waits for the cycle that it names.
-    fn first(&self, counter: SyncCounter) -> Option<Setpoint> {
-        self.present.filter(|setpoint| self.counter.is_none() && setpoint.counter == counter)
+    /// A preview that came after its cycle was closed is the setpoint of the cycle that begins; before the first SYNC the newest setpoint waits for
+    /// the cycle that it names.
+    fn keep_what_is_due(&mut self, counter: SyncCounter) {
+        let early = match self.counter {
+            None => self.contents.present,
+            Some(_) if self.preview_used => None,
+            Some(_) => self.contents.preview.ok(),
+        };
+        self.contents.present = early.filter(|setpoint| setpoint.counter == counter);
     }
 
     /// Closes the present cycle.
-    pub fn close(&mut self) -> Contents {
+    pub const fn close(&mut self) {
         self.open = false;
-        self.preview_used = self.preview.value.is_some();
-        Contents { feedback: self.feedback.outcome(), preview: self.preview.outcome(), present: self.present }
+        self.preview_used = self.contents.preview.is_ok();
     }
 
     /// Takes a setpoint.
     pub fn setpoint(&mut self, setpoint: Setpoint) -> Taken {
         let Some(now) = self.counter else {
-            self.present = Some(setpoint);
+            self.contents.present = Some(setpoint);
             return Taken::Used;
         };
         if setpoint.counter == now.next() {
-            let taken = if self.preview.value.is_some() { Taken::Doubled } else { Taken::Used };
-            self.preview.value.get_or_insert(setpoint);
-            return taken;
+            return fill(&mut self.contents.preview, setpoint);
         }
         if setpoint.counter == now.next().next() {
             return Taken::NextCycle;
         }
-        if setpoint.counter == now && self.open && self.present.is_none() {
-            self.present = Some(setpoint);
+        if setpoint.counter == now && self.open && self.contents.present.is_none() {
+            self.contents.present = Some(setpoint);
         }
-        self.preview.miss = Miss::Stale;
+        miss(&mut self.contents.preview, Miss::Stale);
         Taken::Stale
     }
 
     /// Takes a feedback.
     pub fn feedback(&mut self, feedback: Feedback) -> Taken {
         if self.counter == Some(feedback.counter) {
-            let taken = if self.feedback.value.is_some() || !self.open { Taken::Doubled } else { Taken::Used };
-            self.feedback.value.get_or_insert(feedback);
-            return taken;
+            return if self.open { fill(&mut self.contents.feedback, feedback) } else { Taken::Doubled };
         }
         if self.counter.is_some_and(|now| now.next() == feedback.counter) {
             return Taken::NextCycle;
         }
-        self.feedback.miss = Miss::Stale;
+        miss(&mut self.contents.feedback, Miss::Stale);
         Taken::Stale
     }
 
     /// A setpoint came that cannot be decoded.
-    pub fn malformed_setpoint(&mut self) {
-        self.preview.miss = Miss::Malformed;
+    pub const fn malformed_setpoint(&mut self) {
+        miss(&mut self.contents.preview, Miss::Malformed);
     }
 
     /// A feedback came that cannot be decoded.
-    pub fn malformed_feedback(&mut self) {
-        self.feedback.miss = Miss::Malformed;
+    pub const fn malformed_feedback(&mut self) {
+        miss(&mut self.contents.feedback, Miss::Malformed);
+    }
+}
+
+const fn fill<T: Copy>(slot: &mut Result<T, Miss>, value: T) -> Taken {
+    match slot {
+        Ok(_) => Taken::Doubled,
+        Err(_) => {
+            *slot = Ok(value);
+            Taken::Used
+        }
+    }
+}
+
+const fn miss<T: Copy>(slot: &mut Result<T, Miss>, why: Miss) {
+    if slot.is_err() {
+        *slot = Err(why);
     }
 }
 
@@ -203,7 +207,8 @@ mod tests {
         assert!(!inbox.is_complete(true) && inbox.is_complete(false));
         assert_eq!(inbox.setpoint(setpoint(1)), Taken::Used);
         assert!(inbox.is_complete(true));
-        assert_eq!(inbox.close().preview, Ok(setpoint(1)));
+        inbox.close();
+        assert_eq!(inbox.contents().preview, Ok(setpoint(1)));
         assert!(!inbox.is_open());
     }
 
@@ -214,7 +219,7 @@ mod tests {
         assert_eq!(inbox.setpoint(setpoint(9)), Taken::NextCycle);
         assert_eq!(inbox.feedback(feedback(3)), Taken::Stale);
         assert_eq!(inbox.setpoint(setpoint(2)), Taken::Stale);
-        let contents = inbox.close();
+        let contents = inbox.contents();
         assert_eq!((contents.feedback, contents.preview), (Err(Miss::Stale), Err(Miss::Stale)));
     }
 
@@ -224,10 +229,10 @@ mod tests {
         inbox.close();
         assert_eq!(inbox.setpoint(setpoint(8)), Taken::Used);
         inbox.begin(count(8));
-        assert_eq!(inbox.close().present, Some(setpoint(8)));
+        assert_eq!(inbox.contents().present, Some(setpoint(8)));
         let mut inbox = at(7);
         inbox.setpoint(setpoint(7));
-        assert_eq!(inbox.close().present, Some(setpoint(7)));
+        assert_eq!(inbox.contents().present, Some(setpoint(7)));
     }
 
     #[test]
@@ -236,7 +241,7 @@ mod tests {
         inbox.setpoint(setpoint(5));
         inbox.setpoint(setpoint(1));
         inbox.begin(count(1));
-        assert_eq!(inbox.close().present, Some(setpoint(1)));
+        assert_eq!(inbox.contents().present, Some(setpoint(1)));
     }
 
     #[test]

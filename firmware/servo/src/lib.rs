@@ -53,7 +53,7 @@ pub mod timing;
 pub mod watchdog;
 
 use controller::reference::Reference;
-use controller::units::Torque;
+use controller::units::{PositionError, Torque};
 use heapless::Vec;
 use protocol::cob::AxisIds;
 use protocol::message::{EmergencyMessage, NmtCommand, NmtState};
@@ -92,6 +92,8 @@ pub struct Servo {
     server: SdoServer,
     active: Option<Settings>,
     committed: Option<Settings>,
+    /// What the present event has to say.
+    outbox: Outbox,
 }
 
 impl Servo {
@@ -113,6 +115,7 @@ impl Servo {
             server: SdoServer::default(),
             active,
             committed: None,
+            outbox: Outbox::new(),
         }
     }
 
@@ -138,6 +141,12 @@ impl Servo {
     #[must_use]
     pub const fn reference(&self) -> Option<Reference> {
         self.axis.last.reference
+    }
+
+    /// Offset that the backlash unit adds to the reference.
+    #[must_use]
+    pub const fn backlash_offset(&self) -> PositionError {
+        self.axis.backlash_offset()
     }
 
     /// Setpoints and feedbacks in a row that the present torque had to do without.

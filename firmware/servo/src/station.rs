@@ -11,15 +11,15 @@ impl Station for Servo {
     }
 
     fn boot(&mut self, send: &mut dyn FnMut(CanFrame)) {
-        Self::boot(self).into_iter().for_each(send);
+        Self::boot(self).iter().copied().for_each(send);
     }
 
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        self.on_frame(frame, now_us).into_iter().for_each(send);
+        self.on_frame(frame, now_us).iter().copied().for_each(send);
     }
 
     fn time(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        self.on_time(now_us).into_iter().for_each(send);
+        self.on_time(now_us).iter().copied().for_each(send);
     }
 
     fn wake_at_us(&self) -> Option<u64> {

@@ -1,11 +1,14 @@
 //! The controller of the recorded axis, as `dataset.toml` describes it.
 //!
-//! A law counts as known only where it gives the recorded effort from the recorded positions and setpoints (a law on a load that was not recorded is
-//! believed). Two forms:
-//! - force: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`, where `v_f` follows the difference quotient of the position by the share
-//!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the acceleration of the setpoint at the time that its
-//!   controller means: it differs from drive to drive ([`Timing`]), no dataset says it, and the one that leaves least of the record is taken;
-//! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over voltage is found from the record.
+//! A law counts as known only where it gives the recorded effort from the recorded positions and setpoints (a law on a
+//! load that was not recorded is believed). Two forms:
+//! - force: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`, where `v_f` follows the difference
+//!   quotient of the position by the share
+//!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the acceleration of the
+//!   setpoint at the time that its controller means: it differs from drive to drive ([`Timing`]), no dataset says it,
+//!   and the one that leaves least of the record is taken;
+//! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over voltage is found from
+//!   the record.
 
 use crate::record::{ControllerForm, Dataset, Effort, Record};
 
@@ -25,8 +28,8 @@ enum Timing {
     Central,
     /// Second difference of the newest three setpoints: a drive without preview.
     Backward,
-    /// Second difference about the row and 1.5 times its change: a drive that has the next setpoint and looks to the middle of the cycle in which its
-    /// effort acts.
+    /// Second difference about the row and 1.5 times its change: a drive that has the next setpoint and looks to the
+    /// middle of the cycle in which its effort acts.
     Ahead,
 }
 
@@ -62,7 +65,8 @@ pub struct Law {
     limit: Option<f64>,
     /// Whether it closes the position loop on the load.
     pub on_load: bool,
-    /// Rms of recorded − computed effort, as a share of the recorded one; zero where the load that it closes on was not recorded.
+    /// Rms of recorded − computed effort, as a share of the recorded one; zero where the load that it closes on was not
+    /// recorded.
     pub misfit: f64,
 }
 
@@ -115,8 +119,8 @@ impl Law {
         Self { form, ..self }
     }
 
-    /// Recorded over computed effort where the law is described in forces and the load it closes on, if any, was recorded; `None` where they have
-    /// nothing to do with each other.
+    /// Recorded over computed effort where the law is described in forces and the load it closes on, if any, was
+    /// recorded; `None` where they have nothing to do with each other.
     #[must_use]
     pub fn effort_over_computed(dataset: &Dataset) -> Option<f64> {
         let form = dataset.controller.as_ref().filter(|_| dataset.effort == Effort::Force)?;

@@ -172,7 +172,8 @@ mod tests {
         }
     }
 
-    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows' second differences.
+    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows'
+    /// second differences.
     fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
         let mut dataset = dataset();
         let form = crate::record::ControllerForm { position_sensor: None, ..controller() };
@@ -192,13 +193,12 @@ mod tests {
 
     #[test]
     fn whenever_the_drive_takes_its_acceleration_the_law_is_known() {
-        let drives: [(&str, &dyn Fn(f64, f64) -> f64); 3] = [
-            ("half a row back", &|now, before| 0.5 * (now + before)),
-            ("a row back", &|_, before| before),
-            ("one and a half ahead", &|now, before| now + 1.5 * (now - before)),
-        ];
-        for (name, acceleration) in drives {
-            let misfit = crate::free_run::controller::Law::of(&recorded_with(acceleration)).map(|law| law.misfit);
+        // Shares of the newest second difference and of the one before it.
+        for (name, now, before) in
+            [("half a row back", 0.5, 0.5), ("a row back", 0.0, 1.0), ("one and a half ahead", 2.5, -1.5)]
+        {
+            let dataset = recorded_with(|newest, older| now * newest + before * older);
+            let misfit = crate::free_run::controller::Law::of(&dataset).map(|law| law.misfit);
             assert!(misfit.is_some_and(|misfit| misfit < 1.0e-9), "{name}: {misfit:?}");
         }
     }

@@ -6,13 +6,14 @@
 //!   SYNC k          SYNC k + 1 due   own timer: cycle k + 1 begins, as of t_k + P
 //! ```
 //!
-//! All times are those that the driver passes in, µs. A cycle that the timer began counts from when its SYNC was due, not from the late moment of
-//! noticing, so that a row of lost SYNCs does not stretch the period. A SYNC that comes after all, within half a period of that, sets the phase anew.
+//! All times are those that the driver passes in, µs. A cycle that the timer began counts from when its SYNC was due,
+//! not from the late moment of noticing, so that a row of lost SYNCs does not stretch the period. A SYNC that comes
+//! after all, within half a period of that, sets the phase anew.
 
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
-/// How long after SYNC was due the own timer begins the cycle, % of the period. Longer than a bus at 80 % load delays a frame, and early enough
-/// that feedback still comes well before the deadline of the servo at 60 %.
+/// How long after SYNC was due the own timer begins the cycle, % of the period. Longer than a bus at 80 % load delays a
+/// frame, and early enough that feedback still comes well before the deadline of the servo at 60 %.
 const TIMER_PERCENT: u64 = 30;
 /// Periods without SYNC after which it counts as gone, where nothing else is asked for.
 const SYNC_TIMEOUT_PERIODS: u64 = 5;

@@ -7,8 +7,9 @@
 //! Fault ──fault reset (rising edge)──▶ SwitchOnDisabled          Fault ──shutdown──▶ ReadyToSwitchOn
 //! ```
 //!
-//! Transitions after CiA 402-2 §4.2 (numbers 2 to 10, 12, 15, 16). Ours, stated: a torque drive has no ramp, so a quick stop is the end of torque; and a
-//! `shutdown` leaves `Fault` too, because a servo that left its own fault state starts over with it.
+//! Transitions after CiA 402-2 §4.2 (numbers 2 to 10, 12, 15, 16). Ours, stated: a torque drive has no ramp, so a quick
+//! stop is the end of torque; and a `shutdown` leaves `Fault` too, because a servo that left its own fault state starts
+//! over with it.
 
 use protocol::Fault;
 use protocol::states::{Command, ControlWord, DriveState, StatusWord};

@@ -1,10 +1,14 @@
-//! Following within limits: the commanded track passes setpoints bit for bit while the axis can follow them, and chases them where it cannot.
+//! Following within limits: the commanded track passes setpoints bit for bit while the axis can follow them, and chases
+//! them where it cannot.
 //!
-//! - Velocity and acceleration: the change of velocity is limited last, so acceleration holds also where a velocity limit was lowered in motion.
-//! - Position: with the way s left to the limit a velocity v is allowed where `v ≤ a` (the next cycle stands) or `(v − a / 2)² ≤ 2 a s`. Counted in cycles, the
-//!   way of a full braking `(v − a) + (v − 2 a) + …` is at most that; so braking at a keeps it true from cycle to cycle.
-//! - The chase: velocity of the setpoint plus `√(a s)`, the braking curve of half the acceleration, so that the other half is left for a setpoint that
-//!   accelerates. It ends where the track can step onto the setpoint and go on with it in the next cycle.
+//! - Velocity and acceleration: the change of velocity is limited last, so acceleration holds also where a velocity
+//!   limit was lowered in motion.
+//! - Position: with the way s left to the limit a velocity v is allowed where `v ≤ a` (the next cycle stands) or `(v −
+//!   a / 2)² ≤ 2 a s`. Counted in cycles, the way of a full braking `(v − a) + (v − 2 a) + …` is at most that; so
+//!   braking at a keeps it true from cycle to cycle.
+//! - The chase: velocity of the setpoint plus `√(a s)`, the braking curve of half the acceleration, so that the other
+//!   half is left for a setpoint that accelerates. It ends where the track can step onto the setpoint and go on with it
+//!   in the next cycle.
 
 use core::cmp::Ordering;
 
@@ -22,8 +26,9 @@ pub(super) struct Limits {
     pub(super) position_max: I56F8,
 }
 
-/// Rounding of positions to 39 pm lets the velocity of a setpoint pass a limit by one bit, its acceleration by two, and by ten more where one setpoint was extrapolated
-/// from three others (4 bits off, of which a second difference has twice as much). 12 bits are 0.5 mm/s² at 1 kHz.
+/// Rounding of positions to 39 pm lets the velocity of a setpoint pass a limit by one bit, its acceleration by two, and
+/// by ten more where one setpoint was extrapolated from three others (4 bits off, of which a second difference has
+/// twice as much). 12 bits are 0.5 mm/s² at 1 kHz.
 const VELOCITY_ROUNDING: Way = Way::DELTA;
 const ACCELERATION_ROUNDING: Way = Way::from_bits(12);
 
@@ -50,7 +55,8 @@ impl Limits {
         if speed <= self.acceleration || left < I56F8::ZERO {
             return left >= I56F8::ZERO;
         }
-        // Whole counts, rounded down and at most 10 m: 2 a s stays within 62 bits with 8 of them fractional, the square within 62 with 16.
+        // Whole counts, rounded down and at most 10 m: 2 a s stays within 62 bits with 8 of them fractional, the square
+        // within 62 with 16.
         let counts = i32::try_from(left.to_bits().wrapping_shr(8)).unwrap_or(LONGEST_COUNTS).min(LONGEST_COUNTS);
         let acceleration = self.acceleration.to_bits();
         let allowed = i64::from(acceleration).wrapping_mul(i64::from(counts)).wrapping_mul(2);

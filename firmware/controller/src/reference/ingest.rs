@@ -1,8 +1,9 @@
 //! Ingest: which setpoints are believed.
 //!
-//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies off it by no more than `step` is believed at once. What lies
-//! farther off is a step of acceleration or an outlier, and the next setpoint tells which. With the deviations d1 and d2 of the two setpoints from the track
-//! extrapolated over both (one cycle between them):
+//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies off it by no more
+//! than `step` is believed at once. What lies farther off is a step of acceleration or an outlier, and the next
+//! setpoint tells which. With the deviations d1 and d2 of the two setpoints from the track extrapolated over both (one
+//! cycle between them):
 //!
 //! | what happened | d1 | d2 | believed: d2 − 3 d1 | wrong: d2 |
 //! |---|---|---|---|---|
@@ -11,13 +12,15 @@
 //! | the first setpoint is wrong by e | e | 0 | −3 e | 0 |
 //! | the position shifted by J | J | J | −2 J | J |
 //!
-//! The last two columns are the jumps of acceleration that would be left; the smaller wins among what the axis can do. A setpoint that is not believed is replaced by
-//! its extrapolation, and the next one is judged in the same way: a shifted position is refused again and again, and that is the caller's fault to latch.
-//! Until the decision the track goes on along its extrapolation; both fall before the setpoint is due.
+//! The last two columns are the jumps of acceleration that would be left; the smaller wins among what the axis can do.
+//! A setpoint that is not believed is replaced by its extrapolation, and the next one is judged in the same way: a
+//! shifted position is refused again and again, and that is the caller's fault to latch. Until the decision the track
+//! goes on along its extrapolation; both fall before the setpoint is due.
 //!
-//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1. A deviation d1 within `step` is shared out as a constant step would:
-//! velocity 2 d1 / (m + 1), acceleration 2 d1 / (m (m + 1)). A larger one waits for d2, which tells the velocity d2 − d1 itself. Where the setpoint that would decide
-//! is lost, what the axis can do is believed: a step is more likely than a second thing that went wrong.
+//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1. A deviation d1 within `step` is
+//! shared out as a constant step would: velocity 2 d1 / (m + 1), acceleration 2 d1 / (m (m + 1)). A larger one waits for
+//! d2, which tells the velocity d2 − d1 itself. Where the setpoint that would decide is lost, what the axis can do is
+//! believed: a step is more likely than a second thing that went wrong.
 
 use fixed::types::I56F8;
 
@@ -167,7 +170,8 @@ impl Ingest {
         believed && !(otherwise && left.saturating_abs().saturating_add(bounds.step) >= second.saturating_abs())
     }
 
-    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m (m + 1) / 2.
+    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m
+    /// (m + 1) / 2.
     fn is_possible(&self, bounds: Bounds, cycles: u8, deviation: Way) -> bool {
         let cycles = i32::from(cycles);
         let times = cycles.saturating_mul(cycles.saturating_add(1)).wrapping_shr(1);

@@ -1,13 +1,16 @@
-//! Interpolation of setpoints that come every n cycles: the cubic of Catmull and Rom ("A class of local interpolating splines", 1974).
+//! Interpolation of setpoints that come every n cycles: the cubic of Catmull and Rom ("A class of local interpolating
+//! splines", 1974).
 //!
-//! Between the setpoints p1 and p2 the position is the cubic with the tangents (p2 − p0) / 2 and (p3 − p1) / 2 at its ends:
+//! Between the setpoints p1 and p2 the position is the cubic with the tangents (p2 − p0) / 2 and (p3 − p1) / 2 at its
+//! ends:
 //!
 //! ```text
 //! p(u) = p1 + m1 u + (3 h − 2 m1 − m2) u² + (m1 + m2 − 2 h) u³      h = p2 − p1      u = i / n
 //! ```
 //!
-//! It passes through every setpoint, position and velocity are continuous, and constant acceleration is reproduced exactly (so the radius of a circle is wrong by
-//! (ω n T)⁴ only). It needs p3 before it may leave p1: the delay is 2 n − 1 cycles.
+//! It passes through every setpoint, position and velocity are continuous, and constant acceleration is reproduced
+//! exactly (so the radius of a circle is wrong by (ω n T)⁴ only). It needs p3 before it may leave p1: the delay is 2 n
+//! − 1 cycles.
 
 use fixed::types::I56F8;
 

@@ -5,20 +5,53 @@
 //!                (believed?)  (every n cycles)  (coarse)    ramp to standstill ─┘
 //! ```
 //!
-//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint k + 1 is known when torque k is computed. So there are three
-//! times in one [`Reference`]:
+//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint k + 1 is known when
+//! torque k is computed. So there are three times in one [`Reference`]:
 //! - position x(k) and velocity x(k) − x(k−1) are in time with the encoders and their difference: they make the errors;
 //! - the next velocity x(k+1) − x(k) tells a reversal one cycle ahead;
-//! - the acceleration is that of the middle of the torque's cycle, k + 1.5. The newest one that is known is the second difference centred on k, so
-//!   `a = a(k) + 1.5 (a(k) − a(k−1))`. A change above `step` is a step and no jerk: then it stays a(k), and until the next setpoint has confirmed it a(k−1).
+//! - the acceleration is that of the middle of the torque's cycle, k + 1.5. The newest one that is known is the second
+//!   difference centred on k, so
+//!   `a = a(k) + 1.5 (a(k) − a(k−1))`. A change above `step` is a step and no jerk: then it stays a(k), and until the
+//!   next setpoint has confirmed it a(k−1).
 //!
-//! **Fine setpoints pass** bit for bit and without delay. What is lost is carried on with the acceleration (a jerk of 50 m/s³ makes that wrong by 50 nm a
-//! cycle); what lies off the path is decided one cycle later, before it is due (`ingest`).
+//! **Fine setpoints pass** bit for bit and without delay. What is lost is carried on with the acceleration (a jerk of
+//! 50 m/s³ makes that wrong by 50 nm a cycle); what lies off the path is decided one cycle later, before it is due
+//! (`ingest`).
 //!
-//! **Limits.** Whatever comes in, the commanded track keeps velocity, acceleration and position limits (`follow`). Where two of them conflict, acceleration holds:
-//! after a velocity or position limit was lowered in motion the overrun is at most v² / 2 a, and `overrun` says so.
+//! **Limits.** Whatever comes in, the commanded track keeps velocity, acceleration and position limits (`follow`).
+//! Where two of them conflict, acceleration holds: after a velocity or position limit was lowered in motion the overrun
+//! is at most v² / 2 a, and `overrun` says so.
 //!
 //! **Ramps** start from the commanded position, velocity and acceleration (`ramp`).
+//!
+//! ```
+//! use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
+//! use controller::units::{Position, Velocity};
+//! use fixed::types::I20F12;
+//!
+//! // 0.5 m/s, 5 m/s² and ±1 m at 1 kHz, in 10 nm per cycle and per cycle².
+//! let per_cycle = |counts: i32| Velocity(I20F12::from_num(counts));
+//! let ramp = Ramp { deceleration: per_cycle(500), jerk: per_cycle(100) };
+//! let config = ReferenceConfig {
+//!     velocity_limit: per_cycle(50_000),
+//!     acceleration_limit: per_cycle(500),
+//!     step: per_cycle(50),
+//!     position_min: Position::from_counts(-100_000_000),
+//!     position_max: Position::from_counts(100_000_000),
+//!     quick_stop: ramp,
+//!     slow_down: ramp,
+//!     filter_log2: 0,
+//!     setpoint_cycles: 1,
+//! };
+//! // 100 counts per cycle; the setpoint of cycle 8 is lost.
+//! let mut stage = ReferenceState::at(Position::from_counts(0), per_cycle(100));
+//! for cycle in 0..12 {
+//!     let preview = (cycle + 1 != 8).then(|| Position::from_counts(100 * (cycle + 1)));
+//!     let reference = stage.step(&config, &ReferenceInput { present: None, preview, mode: Mode::Follow });
+//!     assert_eq!(reference.position, Position::from_counts(100 * cycle));
+//!     assert_eq!(reference.bridged, cycle + 1 == 8);
+//! }
+//! ```
 
 mod follow;
 mod ingest;
@@ -256,7 +289,8 @@ impl ReferenceState {
         limits.nearest(self.commanded, velocity)
     }
 
-    /// The setpoint of this cycle was believed only now: the commanded track takes the last step again. Its position is not out yet.
+    /// The setpoint of this cycle was believed only now: the commanded track takes the last step again. Its position is
+    /// not out yet.
     fn correct_commanded(&mut self, limits: &Limits, revised: Track) {
         let target = Target { position: revised.position, velocity: revised.velocity };
         (self.commanded, self.caught_up) = follow(limits, self.commanded.before(), target, true);
@@ -322,8 +356,8 @@ impl ReferenceState {
         }
     }
 
-    /// Of the believed track where setpoints pass, else of the commanded one. Filtered positions are as late as the filter anyway, and their jerk is mostly
-    /// rounding.
+    /// Of the believed track where setpoints pass, else of the commanded one. Filtered positions are as late as the
+    /// filter anyway, and their jerk is mostly rounding.
     fn acceleration_and_jerk(&self, config: &ReferenceConfig, now: &Track, next: &Track, taken: &Taken) -> [Way; 2] {
         let (acceleration, jerk, is_known) = if is_plain(config) && self.caught_up {
             (self.ingest.track.acceleration, taken.jerk, !taken.extrapolated)
@@ -356,8 +390,9 @@ fn limits_of(config: &ReferenceConfig) -> Limits {
 
 /// What is a jump, and what is impossible, from setpoint to setpoint: both grow with the square of their distance.
 ///
-/// With the filter on, setpoints may be rounded to whole µm: that makes a second difference wrong by (1 + 2 + 1) / 2 = 2 µm, its change by (1 + 3 + 3 + 1) / 2 = 4 µm.
-/// The acceleration may pass its limit by a sixteenth, and by rounding to 39 pm: what the limits then cut is no reason to disbelieve a setpoint.
+/// With the filter on, setpoints may be rounded to whole µm: that makes a second difference wrong by (1 + 2 + 1) / 2 =
+/// 2 µm, its change by (1 + 3 + 3 + 1) / 2 = 4 µm. The acceleration may pass its limit by a sixteenth, and by rounding
+/// to 39 pm: what the limits then cut is no reason to disbelieve a setpoint.
 fn bounds_of(config: &ReferenceConfig) -> Bounds {
     let cycles = i32::from(cycles_of(config));
     let square = cycles.saturating_mul(cycles);
@@ -377,7 +412,8 @@ fn turns_round(now: Way, next: Way) -> bool {
     next > Way::ZERO && now <= Way::ZERO || next < Way::ZERO && now >= Way::ZERO
 }
 
-/// Position and velocities of a cycle. The acceleration is brought from the cycle to the middle of the one in which the torque acts, one and a half later.
+/// Position and velocities of a cycle. The acceleration is brought from the cycle to the middle of the one in which the
+/// torque acts, one and a half later.
 #[expect(
     clippy::inline_always,
     reason = "a call passes 32 bytes through memory twice: 50 instructions of the plain case"

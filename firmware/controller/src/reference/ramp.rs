@@ -1,19 +1,23 @@
-//! The ramp to standstill: a deceleration that is led up, held, and led down so that velocity and deceleration end together.
+//! The ramp to standstill: a deceleration that is led up, held, and led down so that velocity and deceleration end
+//! together.
 //!
-//! With speed u and jerk J per cycle, leading a deceleration d down to zero takes off `d + (d − J) + (d − 2 J) + … = d² / 2 J + d / 2` of speed (exact where d is a
-//! multiple of J). So the deceleration of a cycle is the largest that still leaves that much:
+//! With speed u and jerk J per cycle, leading a deceleration d down to zero takes off `d + (d − J) + (d − 2 J) + … = d²
+//! / 2 J + d / 2` of speed (exact where d is a multiple of J). So the deceleration of a cycle is the largest that still
+//! leaves that much:
 //!
 //! ```text
 //! d = min(d_before + J, D, √(2 J u + J² / 4) − J / 2)
 //! ```
 //!
-//! From u at constant velocity the way is u² / 2 D + u D / 2 J. In the last two cycles the change may be up to an eighth above J, where the speed is no
-//! multiple of the grid. Where the axis stands, or would turn, it is done: a ramp never turns round.
+//! From u at constant velocity the way is u² / 2 D + u D / 2 J. In the last two cycles the change may be up to an
+//! eighth above J, where the speed is no multiple of the grid. Where the axis stands, or would turn, it is done: a ramp
+//! never turns round.
 
 use super::track::{Track, Way};
 use crate::root::root;
 
-/// Velocity of the next cycle; `deceleration` within the axis' limit, `jerk` zero for none, `velocity_limit` holds before the jerk does.
+/// Velocity of the next cycle; `deceleration` within the axis' limit, `jerk` zero for none, `velocity_limit` holds
+/// before the jerk does.
 pub(super) fn next_velocity(track: Track, deceleration: Way, jerk: Way, velocity_limit: Way) -> Way {
     let forwards = track.velocity >= Way::ZERO;
     let (speed, against) = if forwards {

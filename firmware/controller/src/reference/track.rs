@@ -1,7 +1,7 @@
 //! A track: position, velocity and acceleration of one cycle, in differences.
 //!
-//! Velocity is the way from the cycle before, acceleration the change of that: no cycle time appears. Everything is in the resolution of a position (10 nm / 256
-//! = 39 pm), so that positions are the exact sum of velocities.
+//! Velocity is the way from the cycle before, acceleration the change of that: no cycle time appears. Everything is in
+//! the resolution of a position (10 nm / 256 = 39 pm), so that positions are the exact sum of velocities.
 
 use fixed::types::{I20F12, I24F8, I56F8};
 
@@ -64,7 +64,8 @@ pub(super) fn way(from: I56F8, to: I56F8) -> Way {
     Way::saturating_from_num(to.saturating_sub(from))
 }
 
-/// The same where it is no farther than a way reaches. `from` is on the axis, within ±2⁵⁵ bits, so the difference cannot wrap round to a short way.
+/// The same where it is no farther than a way reaches. `from` is on the axis, within ±2⁵⁵ bits, so the difference
+/// cannot wrap round to a short way.
 pub(super) fn exact_way(from: I56F8, to: I56F8) -> Option<Way> {
     i32::try_from(to.to_bits().wrapping_sub(from.to_bits())).ok().map(Way::from_bits)
 }

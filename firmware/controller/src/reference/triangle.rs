@@ -4,8 +4,10 @@
 //! s += x − x[N]      t += s − s[N]      y = t / N²
 //! ```
 //!
-//! Its delay is N − 1 cycles for every frequency, its gain on a circle 1 − (ω N T)² / 12. It leaves of the rounding of whole µm what the second difference of the
-//! triangle leaves, 1 / N² of its −2 and 1: 7 cycles' delay, 33 N rms on the reference axis at R 100 F 500.
+//! Its delay is N − 1 cycles for every frequency, its gain on a circle 1 − (ω N T)² / 12. Of the rounding of whole µm
+//! its second difference leaves that of three values N cycles apart, over N². With 7 cycles the reference axis had 19 N
+//! rms at R 100 F 500, 11 N at F 2000 and 44 N at F 100 (2026-11-21, the torque's difference from that of fine
+//! setpoints).
 
 use fixed::types::I56F8;
 

@@ -1,0 +1,178 @@
+//! The servo node as ARM code on an emulated Cortex-M4 (QEMU's mps2-an386), for two questions: does it answer like the host's, and in how many instructions?
+//!
+//! The recording of a run on the host lies in memory ([`recording`]). Its events go into a servo one by one, and every answer is compared with the recorded
+//! one, byte for byte. An event that is to be measured goes first into [`REPEATS`] copies of the servo between two readings of SysTick:
+//!
+//! ```text
+//! instructions = (ticks of REPEATS events − ticks of REPEATS empty events) · instructions per tick / REPEATS
+//! ```
+//!
+//! With `-icount shift=0` one instruction takes one nanosecond, and SysTick at 25 MHz counts 40 of them a tick, so that the copies bring the resolution below
+//! one instruction. The copies meet the same state and the same frame, so every one of them runs the same instructions. Instructions are not cycles: memory
+//! and pipeline cost nothing here.
+//!
+//! Report, a line each: `delay I T` (`I` instructions took `T` ticks), `empty N T` (`N` empty events), `C T` for each measured event (class as in the
+//! recording), `wrong E` for an event whose answer differs, `end E F` (events and answers compared). The exit code says whether the image came to its end.
+#![no_std]
+#![no_main]
+
+mod recording;
+
+use core::fmt::{self, Write as _};
+use core::hint::black_box;
+use core::panic::PanicInfo;
+
+use cortex_m::Peripherals;
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
+use cortex_m_semihosting::hio;
+use protocol::CanFrame;
+use protocol::cob::AxisIds;
+use servo::Servo;
+
+use recording::{Class, Event, Events, FRAME};
+
+/// Copies of the servo that take an event that is measured: 40 instructions a tick / 64 copies is 0.6.
+const REPEATS: usize = 64;
+/// Rounds of the delay that tells how long a tick is: `subs` and `bne`, two instructions (cortex-m 0.7.10, `asm::delay`).
+const DELAY: u32 = 100_000;
+/// SysTick counts 24 bits.
+const SYSTICK: u32 = 0x00FF_FFFF;
+
+#[entry]
+fn main() -> ! {
+    start(Peripherals::take().expect("main runs once").SYST);
+    let ids = AxisIds::of_axis(0).expect("an axis 0");
+    let mut servo = Servo::new(ids);
+    report_clock(&servo);
+    let (mut events, mut answers) = (0_u32, 0_usize);
+    for event in Events(recorded()) {
+        if event.is_measured {
+            report(format_args!("{} {}", event.class as u8, measured(&servo, &event)));
+        }
+        let out = happens(&mut servo, &event);
+        if !is_as_recorded(&out, event.answers) {
+            report(format_args!("wrong {events}"));
+        }
+        events += 1;
+        answers += out.len();
+    }
+    report(format_args!("end {events} {answers}"));
+    exit(EXIT_SUCCESS)
+}
+
+fn start(mut systick: SYST) {
+    systick.set_clock_source(SystClkSource::Core);
+    systick.set_reload(SYSTICK);
+    systick.clear_current();
+    systick.enable_counter();
+}
+
+/// The recording that QEMU's loader has put into memory.
+#[expect(unsafe_code, reason = "the loader's memory is known by its address alone")]
+fn recorded() -> &'static [u8] {
+    let place = core::ptr::with_exposed_provenance::<u8>(recording::ADDRESS);
+    // SAFETY: the PSRAM of the machine lies there, initialised, outside of every section of the image, and nobody writes to it.
+    let space: &[u8] = unsafe { core::slice::from_raw_parts(place, recording::SPACE) };
+    let (length, rest) = space.split_first_chunk().expect("16 MiB hold a length");
+    rest.get(..u32::from_le_bytes(*length) as usize).expect("the recording fits into the PSRAM")
+}
+
+fn report_clock(servo: &Servo) {
+    let begin = SYST::get_current();
+    cortex_m::asm::delay(DELAY);
+    let delay = ticks_since(begin);
+    report(format_args!("delay {} {delay}", 2 * DELAY));
+    let frame = recording::from_bytes([0; FRAME]).expect("zeros are a frame");
+    report(format_args!("empty {REPEATS} {}", ticks(servo, |servo| nothing(servo, &frame, 0))));
+}
+
+fn ticks_since(begin: u32) -> u32 {
+    begin.wrapping_sub(SYST::get_current()) & SYSTICK
+}
+
+fn measured(servo: &Servo, event: &Event<'_>) -> u32 {
+    let now_us = event.now_us;
+    let frame = frame_of(event);
+    match event.class {
+        Class::Time => ticks(servo, |servo| time(servo, now_us)),
+        _ => ticks(servo, |servo| takes(servo, &frame, now_us)),
+    }
+}
+
+/// Ticks in which an event happens to [`REPEATS`] copies of a servo.
+fn ticks(servo: &Servo, event: impl Fn(&mut Servo) -> &[CanFrame]) -> u32 {
+    let mut copies: [Servo; REPEATS] = core::array::from_fn(|_| servo.clone());
+    let begin = SYST::get_current();
+    for copy in &mut copies {
+        let out = event(black_box(copy));
+        black_box(&out);
+    }
+    ticks_since(begin)
+}
+
+/// The event that costs nothing: what is left is the harness.
+#[inline(never)]
+fn nothing<'a>(_: &'a mut Servo, _: &CanFrame, _: u64) -> &'a [CanFrame] {
+    &[]
+}
+
+#[inline(never)]
+fn takes<'a>(servo: &'a mut Servo, frame: &CanFrame, now_us: u64) -> &'a [CanFrame] {
+    servo.on_frame(frame, now_us)
+}
+
+#[inline(never)]
+fn time(servo: &mut Servo, now_us: u64) -> &[CanFrame] {
+    servo.on_time(now_us)
+}
+
+fn happens<'a>(servo: &'a mut Servo, event: &Event<'_>) -> &'a [CanFrame] {
+    match event.class {
+        Class::Boot => servo.boot(),
+        Class::Time => time(servo, event.now_us),
+        Class::Sync | Class::Setpoint | Class::Feedback | Class::Other => takes(servo, &frame_of(event), event.now_us),
+    }
+}
+
+fn frame_of(event: &Event<'_>) -> CanFrame {
+    recording::from_bytes(event.frame).expect("the recording holds frames")
+}
+
+fn is_as_recorded(out: &[CanFrame], answers: &[[u8; FRAME]]) -> bool {
+    out.len() == answers.len()
+        && out.iter().zip(answers).all(|(frame, answer)| recording::to_bytes(frame) == Some(*answer))
+}
+
+/// A line to the host: one semihosting call, whatever it is made of.
+fn report(line: fmt::Arguments<'_>) {
+    let mut text = heapless::String::<64>::new();
+    writeln!(text, "{line}").expect("a line has 64 bytes at most");
+    let sent = hio::hstdout().and_then(|mut host| host.write_all(text.as_bytes()));
+    sent.expect("the host takes every line");
+}
+
+fn exit(status: debug::ExitStatus) -> ! {
+    loop {
+        debug::exit(status);
+    }
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    if let Ok(mut host) = hio::hstdout() {
+        let _ = writeln!(host, "{info}");
+    }
+    exit(EXIT_FAILURE)
+}
+
+#[allow(
+    unsafe_code,
+    reason = "cortex-m-rt wants this signature; its macro copies the attribute to where `expect` finds nothing"
+)]
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    panic!("hard fault at {:#010x}", frame.pc())
+}

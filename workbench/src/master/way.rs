@@ -1,0 +1,197 @@
+//! The way up to `operation enabled` and down again, CiA 402-2 §4.2, each step confirmed by the status of every drive.
+//!
+//! ```text
+//! up:    disable voltage (fault reset) ─▶ shutdown ─▶ switch on ─▶ enable operation
+//!          SwitchOnDisabled            ReadyToSwitchOn  SwitchedOn   OperationEnabled
+//! down:  switch on (ramp, brake) ─▶ shutdown ─▶ disable voltage
+//!          SwitchedOn            ReadyToSwitchOn  SwitchOnDisabled
+//! ```
+//!
+//! A status comes on change of state, and every tenth cycle at the latest. What a drive said before a step began confirms nothing: its state counts
+//! as unknown then. Patience is counted in cycles and derived from seconds, because brakes and ramps take time, not cycles.
+
+use protocol::message::NmtCommand;
+use protocol::states::{ControlWord, DriveState};
+use protocol::table::STATUS_EVERY_CYCLES;
+
+use super::Master;
+use super::axis_link::AxisLink;
+use crate::error::{Failure, Outcome};
+use crate::link::Link;
+
+/// A step without motion is confirmed by the next status; a status may be lost, nine in a row are not.
+const STEP_CYCLES: u32 = 10 * STATUS_EVERY_CYCLES as u32;
+/// Enabling waits for the power stage and for a brake: the slowest of our machine files opens in 30 ms, catalogues go up to some 100 ms.
+const ENABLE_S: f64 = 1.0;
+/// Disabling ramps down (0.5 m/s at 5 m/s² take 0.1 s; the longest ramp that a drive accepts is below a second) and holds until the brake bites.
+const DISABLE_S: f64 = 1.5;
+
+/// Which setpoints go out while the drives change their state.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// Where each axis stands at present, by the encoder that closes its loop.
+    Actual,
+    /// Those that were sent last.
+    Last,
+}
+
+/// A step of the way up: control word, setpoints, state that confirms it, patience in cycles.
+struct Step(ControlWord, Hold, DriveState, u32);
+
+impl<L: Link> Master<L> {
+    /// NMT start, and the drives up to `operation enabled` where they stand. Where one does not come up, all go down again.
+    ///
+    /// # Errors
+    /// Axis, state and the fault or EMCY with which a drive refused; an interruption.
+    pub fn enable(&mut self) -> Outcome<()> {
+        self.broadcast(NmtCommand::StartRemoteNode)?;
+        self.send_setpoints(self.counter)?;
+        let climbed = self.climb();
+        if climbed.is_err() {
+            // The refusal is the news; whatever goes wrong on the way down follows from it.
+            let _ = self.disable();
+        }
+        climbed
+    }
+
+    fn climb(&mut self) -> Outcome<()> {
+        self.reset_fault()?;
+        for Step(control, hold, wanted, patience) in [
+            Step(ControlWord::SHUTDOWN, Hold::Actual, DriveState::ReadyToSwitchOn, STEP_CYCLES),
+            Step(ControlWord::SWITCH_ON, Hold::Actual, DriveState::SwitchedOn, STEP_CYCLES),
+            Step(ControlWord::ENABLE_OPERATION, Hold::Last, DriveState::OperationEnabled, self.cycles_in(ENABLE_S)),
+        ] {
+            let is_up = |axis: &AxisLink| axis.state == Some(wanted);
+            self.confirm(control, hold, patience, |master| {
+                master.axes.iter().all(is_up) || master.axes.iter().any(has_refused) || master.is_interrupted()
+            })?;
+            if self.is_interrupted() {
+                return Err(self.interrupt.failure("the drives were not enabled"));
+            }
+            if let Some(axis) = self.axes.iter().find(|axis| has_refused(axis) || !is_up(axis)) {
+                return Err(refusal(axis, wanted));
+            }
+        }
+        Ok(())
+    }
+
+    /// Disables the drives: disable operation (they ramp down and hold until their brakes bite), shutdown, disable voltage.
+    ///
+    /// # Errors
+    /// Where an interface is gone, or a drive does not confirm that its torque is off.
+    pub fn disable(&mut self) -> Outcome<()> {
+        if !self.all(is_down) {
+            self.descend(ControlWord::SWITCH_ON, self.cycles_in(DISABLE_S), is_without_torque)?;
+            self.descend(ControlWord::SHUTDOWN, STEP_CYCLES, |state| {
+                is_without_torque(state) && state != DriveState::SwitchedOn
+            })?;
+        }
+        self.descend(ControlWord::DISABLE_VOLTAGE, STEP_CYCLES, is_down)?;
+        let torque_is_off = |axis: &AxisLink| axis.is_silent() || axis.state.is_some_and(is_without_torque);
+        match self.axes.iter().find(|axis| !torque_is_off(axis)) {
+            None => Ok(()),
+            Some(axis) => Err(Failure::new(format!(
+                "axis {}: the drive did not confirm that its torque is off ({})",
+                axis.name,
+                axis.account()
+            ))),
+        }
+    }
+
+    /// Resets faults; the drives are disabled afterwards, those that were in operation in a controlled way.
+    ///
+    /// # Errors
+    /// Where an interface is gone, or a drive does not confirm that its torque is off.
+    pub fn reset_fault(&mut self) -> Outcome<()> {
+        let is_energised = |axis: &AxisLink| axis.state.is_some_and(|state| !is_without_torque(state));
+        if self.axes.iter().any(is_energised) {
+            self.disable()?;
+        }
+        let rests = |axis: &AxisLink| axis.state.is_some_and(is_down);
+        self.confirm(ControlWord::DISABLE_VOLTAGE, Hold::Actual, self.cycles_in(DISABLE_S), |master| {
+            master.axes.iter().all(|axis| rests(axis) || axis.is_silent())
+        })?;
+        if self.axes.iter().any(|axis| axis.state == Some(DriveState::Fault)) {
+            let is_reset = |axis: &AxisLink| axis.state == Some(DriveState::SwitchOnDisabled) || axis.is_silent();
+            self.confirm(ControlWord::FAULT_RESET, Hold::Actual, STEP_CYCLES, |master| {
+                master.axes.iter().all(is_reset)
+            })?;
+        }
+        self.control = ControlWord::DISABLE_VOLTAGE;
+        self.axes.iter_mut().filter(|axis| axis.state != Some(DriveState::Fault)).for_each(AxisLink::forget_faults);
+        Ok(())
+    }
+
+    /// A step of the way down, with the setpoints frozen. Nobody waits for a servo that is silent.
+    fn descend(&mut self, control: ControlWord, patience: u32, reached: fn(DriveState) -> bool) -> Outcome<()> {
+        self.confirm(control, Hold::Last, patience, |master| master.all(reached)).map(|_| ())
+    }
+
+    /// Whether all drives that are not silent told a state of this kind.
+    pub(super) fn all(&self, is_reached: fn(DriveState) -> bool) -> bool {
+        self.axes.iter().all(|axis| axis.is_silent() || axis.state.is_some_and(is_reached))
+    }
+
+    /// Sends a control word until the drives have confirmed it, or for that many cycles; tells whether they have.
+    pub(super) fn confirm(
+        &mut self,
+        control: ControlWord,
+        hold: Hold,
+        patience: u32,
+        is_done: impl Fn(&Self) -> bool,
+    ) -> Outcome<bool> {
+        self.control = control;
+        self.axes.iter_mut().for_each(AxisLink::forget_state);
+        for _ in 0..patience {
+            let setpoints = self.held(hold);
+            self.cycle(&setpoints)?;
+            if is_done(self) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn held(&self, hold: Hold) -> Vec<f64> {
+        let of = |axis: &AxisLink| match hold {
+            Hold::Actual => axis.position_m(),
+            Hold::Last => axis.last_setpoint_m(),
+        };
+        self.axes.iter().map(of).collect()
+    }
+
+    pub(super) fn cycles_in(&self, duration_s: f64) -> u32 {
+        (duration_s / self.period.as_secs_f64()).ceil() as u32
+    }
+}
+
+/// A fault that is latched, or the state after power-up: nothing is left to switch off.
+const fn is_down(state: DriveState) -> bool {
+    matches!(state, DriveState::SwitchOnDisabled | DriveState::Fault)
+}
+
+/// The states in which CiA 402 allows no torque.
+pub(super) const fn is_without_torque(state: DriveState) -> bool {
+    match state {
+        DriveState::SwitchOnDisabled | DriveState::ReadyToSwitchOn | DriveState::SwitchedOn | DriveState::Fault => true,
+        DriveState::OperationEnabled | DriveState::QuickStopActive | DriveState::FaultReactionActive => false,
+    }
+}
+
+/// An EMCY is an answer, and so is silence.
+fn has_refused(axis: &AxisLink) -> bool {
+    axis.has_reported() || axis.is_silent()
+}
+
+fn refusal(axis: &AxisLink, wanted: DriveState) -> Failure {
+    if axis.is_silent()
+        && let Some(silence) = axis.trouble()
+    {
+        return silence;
+    }
+    Failure::new(format!(
+        "axis {}: the drive is not enabled; it did not reach {wanted:?} ({})",
+        axis.name,
+        axis.account()
+    ))
+}
