@@ -81,11 +81,18 @@ fn differences(text: &str, rows: &[Row], is_meant: &dyn Fn(&str) -> bool) -> Str
 
 /// The rows of the file in their order with the new figures, then the new ones; those that are meant and did not run are gone.
 fn blessed(text: &str, rows: &[Row], is_meant: &dyn Fn(&str) -> bool) -> String {
-    let head = text.lines().take_while(|line| !line.starts_with("|---")).chain(text.lines().find(|line| line.starts_with("|---")));
+    let head = text
+        .lines()
+        .take_while(|line| !line.starts_with("|---"))
+        .chain(text.lines().find(|line| line.starts_with("|---")));
     let kept = body(text).filter(|line| {
         parts(line).is_some_and(|(name, _)| !is_meant(name) && !rows.iter().any(|row| row.name == name))
     });
-    head.map(str::to_owned).chain(rows.iter().map(Row::line)).chain(kept.map(str::to_owned)).map(|line| line + "\n").collect()
+    head.map(str::to_owned)
+        .chain(rows.iter().map(Row::line))
+        .chain(kept.map(str::to_owned))
+        .map(|line| line + "\n")
+        .collect()
 }
 
 #[cfg(test)]
@@ -106,8 +113,8 @@ mod tests {
             assert_eq!(!differences(TABLE, &rows, &|_| true).is_empty(), is_off, "{path}");
         }
         assert_eq!(differences(TABLE, &[row("one", Some(9.0), 7.0, false), two.clone()], &|_| true), "");
-        assert_eq!(differences(TABLE, &[two.clone()], &|_| true), "row not measured: one\n");
-        assert_eq!(differences(TABLE, &[two.clone()], &|name| name != "one"), "");
+        assert_eq!(differences(TABLE, std::slice::from_ref(&two), &|_| true), "row not measured: one\n");
+        assert_eq!(differences(TABLE, std::slice::from_ref(&two), &|name| name != "one"), "");
         assert!(differences(TABLE, &[two, row("three", None, 0.0, true)], &|_| false).starts_with("new row"));
     }
 

@@ -59,7 +59,8 @@ fn long_step(time_s: f64) -> f64 {
 fn step_of(duration_s: f64) -> Profile {
     let rise = 0.001_f64.sqrt();
     let to_50 = [Phase::Jerk(0.05, 0.0), Phase::Jerk(rise, 50.0), Phase::Jerk(rise, -50.0)];
-    let steps = [Phase::Jerk(0.25 - 2.0 * rise, 0.0), Phase::Jump(5.0), Phase::Jerk(duration_s, 0.0), Phase::Jump(-5.0)];
+    let steps =
+        [Phase::Jerk(0.25 - 2.0 * rise, 0.0), Phase::Jump(5.0), Phase::Jerk(duration_s, 0.0), Phase::Jump(-5.0)];
     Profile::new(&[to_50.as_slice(), steps.as_slice()].concat())
 }
 
@@ -130,12 +131,54 @@ const SMOOTH: [Hit; 5] = [
 /// A path that takes all that the axis may leaves nothing to catch up with before the acceleration ends: a lost setpoint costs up to three quarters of a cycle's
 /// speed (3.75 mm/s) for so long. A tenth of reserve keeps it within the bound.
 const STEPS: [Hit; 6] = [
-    Hit { name: "step of 5 m/s² for 10 ms, limit 5.5 m/s²", path: short_step, cycles: 298..306, path_um: 25.0, torque: 100.0, limit: 5.5 },
-    Hit { name: "step of 5 m/s² for 60 ms, limit 5.5 m/s²", path: long_step, cycles: 298..306, path_um: 25.0, torque: 100.0, limit: 5.5 },
-    Hit { name: "end of that step, limit 5.5 m/s²", path: long_step, cycles: 357..366, path_um: 25.0, torque: 100.0, limit: 5.5 },
-    Hit { name: "step of 5 m/s² for 10 ms, limit 5 m/s²", path: short_step, cycles: 298..306, path_um: 45.0, torque: 100.0, limit: 5.0 },
-    Hit { name: "step of 5 m/s² for 60 ms, limit 5 m/s²", path: long_step, cycles: 298..306, path_um: 170.0, torque: 100.0, limit: 5.0 },
-    Hit { name: "end of that step, limit 5 m/s²", path: long_step, cycles: 357..366, path_um: 25.0, torque: 100.0, limit: 5.0 },
+    Hit {
+        name: "step of 5 m/s² for 10 ms, limit 5.5 m/s²",
+        path: short_step,
+        cycles: 298..306,
+        path_um: 25.0,
+        torque: 100.0,
+        limit: 5.5,
+    },
+    Hit {
+        name: "step of 5 m/s² for 60 ms, limit 5.5 m/s²",
+        path: long_step,
+        cycles: 298..306,
+        path_um: 25.0,
+        torque: 100.0,
+        limit: 5.5,
+    },
+    Hit {
+        name: "end of that step, limit 5.5 m/s²",
+        path: long_step,
+        cycles: 357..366,
+        path_um: 25.0,
+        torque: 100.0,
+        limit: 5.5,
+    },
+    Hit {
+        name: "step of 5 m/s² for 10 ms, limit 5 m/s²",
+        path: short_step,
+        cycles: 298..306,
+        path_um: 45.0,
+        torque: 100.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "step of 5 m/s² for 60 ms, limit 5 m/s²",
+        path: long_step,
+        cycles: 298..306,
+        path_um: 170.0,
+        torque: 100.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "end of that step, limit 5 m/s²",
+        path: long_step,
+        cycles: 357..366,
+        path_um: 25.0,
+        torque: 100.0,
+        limit: 5.0,
+    },
 ];
 
 fn machine_of(hit: &Hit) -> Machine {
@@ -205,7 +248,9 @@ fn seeds() -> Vec<u64> {
 fn one_percent() -> Vec<Row> {
     let bases = on_all_cores(&PATHS, |(_, path)| run(&noisy_axis(), path, MANY, Plans::default()));
     let cases: Vec<_> = (0..PATHS.len())
-        .flat_map(|path| (0..DAMAGES.len()).flat_map(move |damage| seeds().into_iter().map(move |seed| (path, damage, seed))))
+        .flat_map(|path| {
+            (0..DAMAGES.len()).flat_map(move |damage| seeds().into_iter().map(move |seed| (path, damage, seed)))
+        })
         .collect();
     let rows = on_all_cores(&cases, |(path, damage, seed)| {
         let (plan, (name, at)) = (plan(*damage, 10, *seed), PATHS[*path]);
@@ -242,7 +287,8 @@ fn survive(axis: &mut Axis, path: Path) -> u32 {
 }
 
 fn five_percent() -> Vec<Row> {
-    let cases: Vec<_> = (0..DAMAGES.len()).flat_map(|damage| seeds().into_iter().map(move |seed| (damage, seed))).collect();
+    let cases: Vec<_> =
+        (0..DAMAGES.len()).flat_map(|damage| seeds().into_iter().map(move |seed| (damage, seed))).collect();
     let rows = on_all_cores(&cases, |(damage, seed)| {
         let mut axis = Axis::enabled(&noisy_axis());
         let seen = Watched::replace(&mut axis);
@@ -261,7 +307,10 @@ fn five_percent() -> Vec<Row> {
 fn keeps_limits(name: &str, seen: Extremes) {
     println!("{name}: {seen:?}");
     assert!(seen.cycles > MANY / 2, "{name}: {seen:?}");
-    assert!(seen.velocity <= 50_000.01 && seen.acceleration <= 500.1 && seen.position <= 25_000_000.0, "{name}: {seen:?}");
+    assert!(
+        seen.velocity <= 50_000.01 && seen.acceleration <= 500.1 && seen.position <= 25_000_000.0,
+        "{name}: {seen:?}"
+    );
     assert!(seen.torque <= FORCE_LIMIT_N * 0.010 / std::f64::consts::TAU * 1.0e6 + 1.0, "{name}: {seen:?}");
     // It is the drive at work, not one that stands still.
     assert!(seen.velocity > 10_000.0 && seen.torque > 1.0e5, "{name}: {seen:?}");
@@ -290,7 +339,8 @@ impl Nodes {
             command.args(arguments).args(["--can", "vcan0", "--deadline-ms", &DEADLINE.as_millis().to_string()]);
             command.args(faults.into_iter().flat_map(|plan| ["--faults", plan])).spawn().unwrap()
         };
-        let nodes = Self(vec![node(&["plant", "--node", "0x11"]), node(&["servo", "--node", "1", "--plant-node", "0x11"])]);
+        let nodes =
+            Self(vec![node(&["plant", "--node", "0x11"]), node(&["servo", "--node", "1", "--plant-node", "0x11"])]);
         // They say nothing before they are asked; give them time to open their sockets.
         std::thread::sleep(Duration::from_secs(1));
         nodes
@@ -366,12 +416,21 @@ fn rows_over_vcan() {
     for (name, plan) in Scope::now().rows("rows over vcan", &OVER_VCAN, 1, 1) {
         let hit = over_cable(Some(plan));
         let path_um = 0.01 * largest_difference(&base.load, &hit.load);
-        let torque = largest_difference(&base.torque, &hit.torque) / 1.0e4 * std::f64::consts::TAU / 0.010 / FORCE_LIMIT_N;
+        let torque =
+            largest_difference(&base.torque, &hit.torque) / 1.0e4 * std::f64::consts::TAU / 0.010 / FORCE_LIMIT_N;
         let missing = |of: &[f64]| of.iter().filter(|value| value.is_nan()).count();
         let faults = u32::from(hit.fault.is_some());
         // For the parent: a line of the table.
-        println!("ROW|{name} over vcan: {}|{path_um}|{torque}|{faults}|{}|{}|{}", PATHS[0].0, hit.counts[1], hit.counts[2], hit.counts[3]);
-        println!("without a feedback {}, without a torque {}, {:?}", missing(&hit.load), missing(&hit.torque), hit.fault);
+        println!(
+            "ROW|{name} over vcan: {}|{path_um}|{torque}|{faults}|{}|{}|{}",
+            PATHS[0].0, hit.counts[1], hit.counts[2], hit.counts[3]
+        );
+        println!(
+            "without a feedback {}, without a torque {}, {:?}",
+            missing(&hit.load),
+            missing(&hit.torque),
+            hit.fault
+        );
         assert!(path_um <= 5.0 && hit.fault.is_none(), "{name}: {path_um} µm, {:?}", hit.fault);
         assert_eq!(hit.counts[..3].iter().sum::<f64>(), hit.load.len() as f64, "{name}: cycles counted");
     }
