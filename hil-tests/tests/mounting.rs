@@ -28,9 +28,7 @@ fn furthest_m(master: &mut Master<InProcess>, cycles: u32, from_m: f64) -> f64 {
 
 #[test]
 fn a_vertical_axis_comes_up_is_held_and_goes_back_into_its_brake() {
-    // A brake without delay lets go before the current loop has its torque.
-    let bounds_um = [-7.0..-4.5, -0.5..0.5, -0.5..0.5];
-    for ((name, machine), bound_um) in vertical_axes().into_iter().zip(bounds_um) {
+    for (name, machine) in vertical_axes() {
         let mut master = enabled(&machine).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(master.state(0), Some(DriveState::OperationEnabled), "{name}");
         let held_um = 1.0e6 * furthest_m(&mut master, 1000, 0.0);
@@ -38,7 +36,7 @@ fn a_vertical_axis_comes_up_is_held_and_goes_back_into_its_brake() {
         master.disable().unwrap();
         let braked_um = 1.0e6 * furthest_m(&mut master, 500, 0.0);
         println!("{name}: {held_um:.2} µm while held, {braked_um:.2} µm in the brake");
-        assert!(bound_um.contains(&held_um), "{name}: {held_um} µm while held");
+        assert!(held_um.abs() < 0.5, "{name}: {held_um} µm while held");
         assert_eq!(truth.brake, BrakeState::Open, "{name}");
         assert!(
             (2400.0..2600.0).contains(&truth.force_n),

@@ -151,7 +151,9 @@ impl Witness {
 
     fn pass_on(&mut self, frames: &[CanFrame], send: &mut dyn FnMut(CanFrame)) {
         self.look(frames);
-        frames.iter().for_each(|frame| send(*frame));
+        for frame in frames {
+            send(*frame);
+        }
     }
 
     fn look(&mut self, frames: &[CanFrame]) {

@@ -148,7 +148,9 @@ fn controlled_stops() -> Vec<Measured> {
         }),
     ];
     rows.push(controlled("SYNC gone", &[], Some(Fault::SyncMissing), |master| {
-        [PLANT, SERVO].into_iter().for_each(|place| cut(master, FrameKind::Sync, place));
+        for place in [PLANT, SERVO] {
+            cut(master, FrameKind::Sync, place);
+        }
     }));
     rows.push(master_silent());
     rows.push(following_error());
@@ -202,7 +204,7 @@ fn stops_without_torque() -> Vec<Measured> {
         ("shutdown with the default", None, |master| master.command(ControlWord::SHUTDOWN)),
         ("servo dead", None, |master| master.link_mut().bus_mut(0).kill(SERVO)),
         ("servo off the bus", Some(Fault::FeedbackMissing), |master| {
-            master.link_mut().bus_mut(0).connect(SERVO, false)
+            master.link_mut().bus_mut(0).connect(SERVO, false);
         }),
         ("plant off the bus", Some(Fault::FeedbackMissing), |master| {
             master.link_mut().bus_mut(0).connect(PLANT, false);

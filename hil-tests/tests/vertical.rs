@@ -9,12 +9,13 @@ use hil_tests::golden::{self, Measured, row};
 use hil_tests::rig::{PLANT, SERVO, set, vertical_axes};
 use plant_sim::axis::Axis;
 use plant_sim::{Machine, PlantNode};
-use protocol::Fault;
 use protocol::cob::FrameKind;
+use protocol::message::NmtCommand;
 use protocol::states::{BrakeState, ControlWord, DriveState};
+use protocol::{Fault, Message};
 use servo::objects::Parameter;
 use workbench::compensation::AxisCompensation;
-use workbench::link::InProcess;
+use workbench::link::{InProcess, Link};
 use workbench::master::Master;
 
 /// Largest way of the table where torque holds it, µm: issue 7.
@@ -68,11 +69,18 @@ fn way_um(master: &mut Master<InProcess>) -> f64 {
 
 fn enable(name: &str, machine: &Machine, preset: f64) -> Measured {
     let mut master = hanging(machine, preset);
-    let plant = master.link_mut().plant(0);
-    let from_m = table_m(&plant.borrow());
-    master.enable().unwrap();
-    let up = 1.0e6 * (table_m(&plant.borrow()) - from_m).abs();
-    let way = up.max(way_um(&mut master));
+    let (servo, plant) = (master.link_mut().servo(0), master.link_mut().plant(0));
+    let start = Message::Nmt(NmtCommand::StartRemoteNode, None);
+    master.link_mut().send(0, start.encode(servo.borrow().ids())).unwrap();
+    for control in [ControlWord::SHUTDOWN, ControlWord::SWITCH_ON] {
+        master.command(control);
+        (0..3).for_each(|_| master.cycle(&[0.0]).unwrap());
+    }
+    // The brake opens while it is watched.
+    master.command(ControlWord::ENABLE_OPERATION);
+    assert_ne!(plant.borrow().truth().brake, BrakeState::Open, "{name}");
+    let way = way_um(&mut master);
+    assert_eq!(servo.borrow().drive().state(), DriveState::OperationEnabled, "{name}");
     assert!(way <= HELD_UM, "{name}: {way} µm");
     row(name, way, "um")
 }
@@ -124,9 +132,6 @@ fn cut(master: &mut Master<InProcess>, kind: FrameKind, place: usize) {
     let plan = FaultPlan { cut: Some((kind, 0)), ..FaultPlan::default() };
     master.link_mut().bus_mut(0).inject(place, 1, plan);
 }
-
-/// What happens to a machine that is held.
-type Event = fn(&mut Master<InProcess>);
 
 #[test]
 fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_plant_does_where_not() {

@@ -118,7 +118,7 @@ impl Axis {
     pub fn latch(&mut self, fault: Fault, settings: &Settings, notices: &mut Notices) {
         let before = self.drive.fault();
         self.drive = self.drive.faulted(fault, &settings.options);
-        if before.is_none() {
+        if before.is_none() && self.drive.fault().is_some() {
             // There are never more notices than the list holds.
             let _ = notices.push(Notice::Latched(fault));
         }

@@ -204,11 +204,11 @@ impl Drive {
             Self::SwitchOnDisabled | Self::Faulted(_) => ControlWord::DISABLE_VOLTAGE,
             Self::ReadyToSwitchOn => ControlWord::SHUTDOWN,
             Self::SwitchedOn => ControlWord::SWITCH_ON,
-            Self::Enabling(Enabling { confirmed: false, .. }) | Self::Holding(..) => ControlWord::ENABLE_OPERATION,
-            Self::Enabling(Enabling { confirmed: true, .. })
-            | Self::OperationEnabled
-            | Self::Stopping(_)
-            | Self::QuickStopped => ControlWord::ENABLE_OPERATION.with(ControlWord::RELEASE_BRAKE),
+            Self::Holding(..) => ControlWord::ENABLE_OPERATION,
+            Self::Enabling(enabling) if !enabling.torque_acts() => ControlWord::ENABLE_OPERATION,
+            Self::Enabling(_) | Self::OperationEnabled | Self::Stopping(_) | Self::QuickStopped => {
+                ControlWord::ENABLE_OPERATION.with(ControlWord::RELEASE_BRAKE)
+            }
         }
     }
 
@@ -305,6 +305,8 @@ impl Drive {
         };
         match (self, how) {
             (Self::Faulted(_), _) => self,
+            // A stop that is on its way needs no connection: a master may fall silent once it has commanded one.
+            (Self::Stopping(_) | Self::Holding(..), _) if matches!(reaction(fault), Reaction::AbortConnection) => self,
             (Self::SwitchOnDisabled | Self::ReadyToSwitchOn | Self::SwitchedOn, _) => Self::Faulted(first),
             (_, StopOption::DisableAtOnce) => Self::Faulted(first),
             // A ramp that runs goes on, and so does a brake that closes.
@@ -366,13 +368,25 @@ impl Drive {
 /// frame of the change is lost, and twice that is still far below what a person notices.
 const BRAKE_MARGIN: Cycles = 20;
 
+/// Cycles from the confirmation until the preset acts at the motor: torque k acts from SYNC k + 1 on, and a current loop of half a millisecond needs the cycle after
+/// that. A brake of 0 ms that was told at once let 2500 N drop by 5.7 µm with an exact preset.
+const TORQUE_ACTS_AFTER: Cycles = 2;
+
 impl Enabling {
+    /// The brake may be told to open.
+    const fn torque_acts(self) -> bool {
+        self.confirmed && self.waited >= TORQUE_ACTS_AFTER
+    }
+
     const fn advanced(self, stage: StageInput, patience: Patience) -> Result<Drive, Fault> {
         let waited = self.waited.saturating_add(1);
         match (self.confirmed, stage.is_enabled(), stage.brake()) {
             (_, true, BrakeState::NotFitted) => Ok(Drive::OperationEnabled),
             (true, true, BrakeState::Open) => Ok(Drive::OperationEnabled),
-            (true, true, _) if self.waited > patience.brake_opens.saturating_add(BRAKE_MARGIN) => {
+            (true, true, _)
+                if self.waited
+                    > patience.brake_opens.saturating_add(BRAKE_MARGIN).saturating_add(TORQUE_ACTS_AFTER) =>
+            {
                 Err(Fault::BrakeFailed)
             }
             (true, true, _) => Ok(Drive::Enabling(Self { confirmed: true, waited })),
@@ -418,6 +432,8 @@ mod tests {
         assert!(!drive.stage_control().has(ControlWord::RELEASE_BRAKE));
         drive = advance(drive, stage(false, BrakeState::Closed), true, 3);
         assert_eq!(drive.advanced(stage(false, BrakeState::Closed), true, PATIENCE), Err(Fault::StageRefused));
+        drive = advance(drive, stage(true, BrakeState::Closed), true, 2);
+        assert!(!drive.stage_control().has(ControlWord::RELEASE_BRAKE), "the preset does not act yet");
         drive = advance(drive, stage(true, BrakeState::Closed), true, 1);
         assert!(drive.stage_control().has(ControlWord::RELEASE_BRAKE));
         drive = advance(drive, stage(true, BrakeState::Moving), true, 30);
@@ -433,7 +449,7 @@ mod tests {
 
     #[test]
     fn a_brake_that_does_not_open_is_a_fault() {
-        let confirmed = Drive::Enabling(Enabling { confirmed: true, waited: 51 });
+        let confirmed = Drive::Enabling(Enabling { confirmed: true, waited: 53 });
         assert_eq!(confirmed.advanced(stage(true, BrakeState::Moving), true, PATIENCE), Err(Fault::BrakeFailed));
     }
 
@@ -487,6 +503,13 @@ mod tests {
         let first = Drive::OperationEnabled.faulted(Fault::SetpointMissing, &options());
         assert!(first.is_energised());
         assert_eq!(first.faulted(Fault::FeedbackMissing, &options()), Drive::Faulted(Fault::SetpointMissing));
+    }
+
+    #[test]
+    fn a_master_that_falls_silent_after_it_commanded_a_stop_makes_no_fault() {
+        let stopping = command(Drive::OperationEnabled, Command::QuickStop);
+        assert_eq!(stopping.faulted(Fault::SetpointMissing, &options()), stopping);
+        assert_eq!(stopping.faulted(Fault::LimitOverrun, &options()).fault(), Some(Fault::LimitOverrun));
     }
 
     #[test]

@@ -657,3 +657,40 @@ fn a_silent_heartbeat_of_the_plant_ramps_down_after_four_and_a_half() {
     bench.cycles(100);
     assert_eq!(bench.emergencies(), [Some(Fault::HeartbeatLost)]);
 }
+
+#[test]
+fn a_sync_that_is_gone_is_a_fault_also_where_setpoints_and_feedback_still_show_the_cycles() {
+    let mut bench = Bench::moving();
+    bench.comes.sync = false;
+    bench.take_sent();
+    bench.cycles(5);
+    assert_eq!((bench.state(), bench.speed()), (DriveState::OperationEnabled, 10_000.0));
+    bench.cycles(2);
+    assert_eq!(bench.emergencies(), [Some(Fault::SyncMissing)]);
+    bench.cycles(25);
+    assert_eq!((bench.state(), bench.servo.torque().to_micro_nm_lossy()), (DriveState::Fault, 0));
+}
+
+#[test]
+fn an_emergency_of_the_plant_stops_the_axis_and_a_drop_out_keeps_its_name() {
+    for (of_the_plant, fault) in [(Fault::TorqueMissing, Fault::PeerFault), (Fault::StageLost, Fault::StageLost)] {
+        let mut bench = Bench::enabled(&[]);
+        let detail = [of_the_plant.code(), 1, 0, 0, 0];
+        let register = protocol::message::ErrorRegister(protocol::message::ErrorRegister::GENERIC);
+        let emergency = EmergencyMessage::new(of_the_plant.emergency_code(), register, detail);
+        bench.give(Message::PlantEmergency(emergency));
+        assert_eq!(bench.servo.drive(), &servo::drive::Drive::Faulted(fault));
+    }
+}
+
+#[test]
+fn the_brake_is_told_to_open_when_the_preset_acts_two_cycles_after_the_stage_confirmed() {
+    let mut bench = Bench::with_brake(&[(Parameter::BrakeOpening, 30_000)], 30);
+    bench.way_up();
+    bench.cycles(5);
+    let torques = bench.torques();
+    let place = |control: u16| torques.iter().position(|(_, torque)| torque.control.has(control)).unwrap();
+    let (enabled, released) = (place(ControlWord::ENABLE_OPERATION.0), place(ControlWord::RELEASE_BRAKE));
+    // One cycle until the status is there, two until the torque acts.
+    assert_eq!(released - enabled, 3);
+}
