@@ -14,7 +14,7 @@ const LATE: Duration = Duration::from_millis(80);
 
 #[test]
 fn alarms_ring_by_the_clock_on_a_quiet_bus_and_under_a_flood_of_frames() {
-    let running = Running::start(vec![50_000, 100_000, 400_000, 500_000], Pace::Clock);
+    let running = Running::start(vec![50_000, 100_000, 400_000, 500_000], None, Pace::Clock);
     for due_ms in [50, 100] {
         on_time(due_ms, running.rang(Duration::from_secs(2)));
     }

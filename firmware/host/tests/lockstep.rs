@@ -20,7 +20,7 @@ fn a_frame() -> CanFrame {
 fn what_is_due_happens_after_a_deadline_without_frames_three_times_and_then_by_the_clock() {
     // An hour apart in bus time: by the clock none of them would ring within this test.
     let alarms = (1..=6).map(|alarm| alarm * HOUR_US).collect();
-    let running = Running::start(alarms, Pace::Lockstep { deadline: DEADLINE });
+    let running = Running::start(alarms, None, Pace::Lockstep { deadline: DEADLINE });
 
     // Frames, however late each, keep the deadline away.
     while running.elapsed() < 5 * DEADLINE {

@@ -76,6 +76,10 @@ pub(super) struct Revision {
 /// Position, velocity and acceleration make three.
 const ADOPTED: u8 = 3;
 
+/// The longest hole that refusals alone make. Nothing longer is needed to come back after a wrong setpoint that fell on a step of acceleration, and a shift of 60 µm stays
+/// out of reach of an axis of 5 m/s² at 1 kHz.
+const REFUSED_HOLE: u8 = 3;
+
 impl Ingest {
     pub(super) const fn at(track: Track) -> Self {
         Self { track, doubt: None, hole: 0, to_adopt: ADOPTED, refusals: 0 }
@@ -143,7 +147,8 @@ impl Ingest {
             Some(second) => self.is_believable(bounds, first, second),
         };
         if judged && !is_believed {
-            self.hole = self.hole.saturating_add(1);
+            // However many are refused: what the axis can reach does not grow with them for ever.
+            self.hole = self.hole.max(self.hole.saturating_add(1).min(REFUSED_HOLE));
             self.refusals = self.refusals.saturating_add(1);
             return None;
         }

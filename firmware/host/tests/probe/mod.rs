@@ -17,6 +17,7 @@ pub(crate) fn ids() -> AxisIds {
 /// Rings at its alarms, and answers nothing. An alarm that is past when a frame comes rings before it is taken.
 struct Probe {
     alarms_us: Vec<u64>,
+    sync_due_us: Option<u64>,
 }
 
 impl Probe {
@@ -48,7 +49,7 @@ impl Station for Probe {
     }
 
     fn sync_due_us(&self) -> Option<u64> {
-        None
+        self.sync_due_us
     }
 }
 
@@ -61,12 +62,19 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    pub(crate) fn start(alarms_us: Vec<u64>, pace: Pace) -> Self {
+    /// With its alarms, and the time at which it says that SYNC is due.
+    pub(crate) fn start(alarms_us: Vec<u64>, sync_due_us: Option<u64>, pace: Pace) -> Self {
         let (node_end, port) = InProcessPort::pair().unwrap();
         let (stop, stopped) = UnixStream::pair().unwrap();
         let begun = Instant::now();
         let node = std::thread::spawn(move || {
-            quadrant_host::run(Box::new(Probe { alarms_us }), Port::InProcess(node_end), None, pace, &stopped)
+            quadrant_host::run(
+                Box::new(Probe { alarms_us, sync_due_us }),
+                Port::InProcess(node_end),
+                None,
+                pace,
+                &stopped,
+            )
         });
         Self { port, begun, stop, node }
     }
