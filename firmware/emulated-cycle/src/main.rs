@@ -53,7 +53,7 @@ fn main() -> ! {
             report(format_args!("{} {}", event.class as u8, measured(&servo, &event)));
         }
         let out = happens(&mut servo, &event);
-        if !is_as_recorded(&out, event.answers) {
+        if !is_as_recorded(out, event.answers) {
             report(format_args!("wrong {events}"));
         }
         events += 1;

@@ -1,6 +1,6 @@
 //! A node as a host program: the same sans-I/O station as on the board, on embassy-executor, over SocketCAN or an in-process bus.
 //!
-//! One task drives the station ([`leaf`]): frames as they come, and the time. Servo and plant run through the same code.
+//! One task drives the station (`leaf`): frames as they come, and the time. Servo and plant run through the same code.
 //!
 //! ```text
 //! CAN port ─▶ (faults, in tests) ─▶ station ─▶ CAN port

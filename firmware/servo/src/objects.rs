@@ -246,7 +246,7 @@ pub const MOTOR_POSITION: Address = Address::new(0x2201, 1);
 pub const LOAD_POSITION: Address = Address::new(0x2201, 2);
 /// What else there is to know about the last fault: the four bytes of its EMCY after code, counter.
 pub const FAULT_DETAIL: Address = Address::new(0x2202, 0);
-/// Counts since reset: [`crate::sdo_server::Diagnostics`], subindex 1 to 9.
+/// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
 
 /// Objects beside the parameters that can be read, with what they say.

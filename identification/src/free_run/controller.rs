@@ -5,7 +5,7 @@
 //! - force: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`, where `v_f` follows the difference
 //!   quotient of the position by the share
 //!   `velocity_filter` a row; `v_ref` is the backward difference of the setpoint, `a_ref` the acceleration of the
-//!   setpoint at the time that its controller means: it differs from drive to drive ([`Timing`]), no dataset says it,
+//!   setpoint at the time that its controller means: it differs from drive to drive (`Timing`), no dataset says it,
 //!   and the one that leaves least of the record is taken;
 //! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over voltage is found from
 //!   the record.
