@@ -1,14 +1,17 @@
 //! A bus in one thread and virtual time: a discrete-event driver of its stations.
 //!
-//! Frames go round in the order they were sent, to every station but the sender, and take no time. The master (the workbench) is no
-//! station: it reads its own queue. Time stands still while a frame is on its way. When none is and the master waits, time jumps to the
-//! earliest [`Station::wake_at_us`], that station acts, and what it sent goes round before the next one; where no station is due, time jumps to
-//! the end of the waiting. Ties go by place. So a cycle whose frames all come closes before any deadline, and the same run says the same
-//! bytes every time.
+//! Frames go round in the order they were sent, to every station but the sender, and take no time.
+//! The master (the workbench) is no station: it reads its own queue. Time stands still while a
+//! frame is on its way. When none is and the master waits, time jumps to the earliest
+//! [`Station::wake_at_us`], that station acts, and what it sent goes round before the next one;
+//! where no station is due, time jumps to the end of the waiting. Ties go by place. So a cycle
+//! whose frames all come closes before any deadline, and the same run says the same bytes every
+//! time.
 //!
 //! ```text
 //! pass ─▶ SYNC, setpoints ─▶ feedback, torque        (all at t_k: nothing waits)
-//! pass ─▶ SYNC, setpoints ─▶ feedback (lost)  ─ time jumps to t_k + D ─▶ the servo closes the cycle ─▶ torque
+//! pass ─▶ SYNC, setpoints ─▶ feedback (lost)
+//!                              time jumps to t_k + D ─▶ the servo closes the cycle ─▶ torque
 //! ```
 
 use std::collections::VecDeque;
@@ -42,8 +45,8 @@ struct Place {
     plug: Plug,
 }
 
-/// Wakes at one time after which a station counts as broken. A node has a handful of reasons to wake; one that was dead for ten minutes and is
-/// connected again catches up on 600 000 cycles.
+/// Wakes at one time after which a station counts as broken. A node has a handful of reasons to
+/// wake; one that was dead for ten minutes and is connected again catches up on 600 000 cycles.
 const WAKES_AT_ONE_TIME: u32 = 5_000_000;
 
 /// A bus with its stations.
@@ -69,12 +72,17 @@ impl InProcessBus {
     /// Puts a station on the bus; gives its place. It boots at once.
     pub fn add(&mut self, station: Box<dyn Station>) -> usize {
         let place = self.places.len();
-        self.places.push(Place { station, port: None, plug: Plug::In });
+        self.places.push(Place {
+            station,
+            port: None,
+            plug: Plug::In,
+        });
         self.boot(place);
         place
     }
 
-    /// Gives a station's receiving port faults; `receiver` tells its decisions from those of other ports (its node id).
+    /// Gives a station's receiving port faults; `receiver` tells its decisions from those of other
+    /// ports (its node id).
     pub fn inject(&mut self, place: usize, receiver: u8, plan: FaultPlan) {
         let place = &mut self.places[place];
         place.port = Some(FaultyPort::new(plan, place.station.ids(), receiver));
@@ -98,7 +106,9 @@ impl InProcessBus {
     }
 
     fn boot(&mut self, at: usize) {
-        self.places[at].station.boot(&mut |frame| self.queue.push_back((Sender::Station(at), frame)));
+        self.places[at]
+            .station
+            .boot(&mut |frame| self.queue.push_back((Sender::Station(at), frame)));
     }
 
     /// Logs every frame from now on.
@@ -114,7 +124,11 @@ impl InProcessBus {
     /// Faults injected so far, over all ports.
     #[must_use]
     pub fn injected(&self) -> u32 {
-        self.places.iter().filter_map(|place| place.port.as_ref()).map(|port| port.injected).sum()
+        self.places
+            .iter()
+            .filter_map(|place| place.port.as_ref())
+            .map(|port| port.injected)
+            .sum()
     }
 
     /// Virtual time, µs.
@@ -129,12 +143,16 @@ impl InProcessBus {
         self.cycle_start_us
     }
 
-    /// The master's next cycle begins: one period after the present one, whenever the master asks; at once if that time is over already, and
-    /// for the first cycle. What is due before it happens first.
+    /// The master's next cycle begins: one period after the present one, whenever the master asks;
+    /// at once if that time is over already, and for the first cycle. What is due before it happens
+    /// first.
     pub fn pass(&mut self, period_us: u64) {
-        let start = self.cycle_start_us.map_or(self.now_us, |start| start.saturating_add(period_us).max(self.now_us));
+        let start = self.cycle_start_us.map_or(self.now_us, |start| {
+            start.saturating_add(period_us).max(self.now_us)
+        });
         self.settle();
-        // What is due at the start itself is done by the station when SYNC comes, before it takes it.
+        // What is due at the start itself is done by the station when SYNC comes, before it takes
+        // it.
         while let Some((at, due)) = self.next_wake().filter(|(_, due)| *due < start) {
             self.wake(at, due);
             self.settle();
@@ -204,21 +222,33 @@ impl InProcessBus {
     }
 
     fn hand_over(&mut self, at: usize, frame: CanFrame) {
-        let Self { places, queue, received, now_us, .. } = self;
+        let Self {
+            places,
+            queue,
+            received,
+            now_us,
+            ..
+        } = self;
         let Place { station, port, .. } = &mut places[at];
         let mut send = |frame| queue.push_back((Sender::Station(at), frame));
         match port {
             None => station.take(&frame, *now_us, &mut send),
             Some(port) => {
                 port.receive(frame, received);
-                received.drain(..).for_each(|frame| station.take(&frame, *now_us, &mut send));
+                received
+                    .drain(..)
+                    .for_each(|frame| station.take(&frame, *now_us, &mut send));
             }
         }
     }
 
     /// Which living station is due first, and when.
     fn next_wake(&self) -> Option<(usize, u64)> {
-        let living = self.places.iter().enumerate().filter(|(_, place)| place.plug != Plug::Dead);
+        let living = self
+            .places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| place.plug != Plug::Dead);
         let due = living.filter_map(|(at, place)| place.station.wake_at_us().map(|due| (at, due)));
         due.min_by_key(|(at, due)| (*due, *at))
     }
@@ -228,10 +258,25 @@ impl InProcessBus {
     /// # Panics
     /// Where stations are due again and again without end: virtual time could not go on.
     fn wake(&mut self, at: usize, due_us: u64) {
-        self.wakes_at_now = if due_us > self.now_us { 0 } else { self.wakes_at_now + 1 };
-        assert!(self.wakes_at_now < WAKES_AT_ONE_TIME, "place {at} is due again and again at {} µs", self.now_us);
-        let Self { places, queue, now_us, .. } = self;
+        self.wakes_at_now = if due_us > self.now_us {
+            0
+        } else {
+            self.wakes_at_now + 1
+        };
+        assert!(
+            self.wakes_at_now < WAKES_AT_ONE_TIME,
+            "place {at} is due again and again at {} µs",
+            self.now_us
+        );
+        let Self {
+            places,
+            queue,
+            now_us,
+            ..
+        } = self;
         *now_us = due_us.max(*now_us);
-        places[at].station.time(*now_us, &mut |frame| queue.push_back((Sender::Station(at), frame)));
+        places[at].station.time(*now_us, &mut |frame| {
+            queue.push_back((Sender::Station(at), frame))
+        });
     }
 }

@@ -4,7 +4,8 @@
 //!
 //! - [`in_process`]: a bus in one thread and virtual time; the default of the workbench.
 //! - [`socketcan`](mod@socket): a port on a CAN interface of the kernel.
-//! - [`faults`]: a wrapper around any receiving port that loses, doubles, delays and corrupts frames.
+//! - [`faults`]: a wrapper around any receiving port that loses, doubles, delays and corrupts
+//!   frames.
 //! - [`shared`]: a station that others can look at while it is on the bus.
 //! - [`log`]: candump logs.
 

@@ -17,7 +17,10 @@ impl BusLog {
     /// An empty log of an interface.
     #[must_use]
     pub fn new(interface: &str) -> Self {
-        Self { interface: interface.into(), frames: Vec::new() }
+        Self {
+            interface: interface.into(),
+            frames: Vec::new(),
+        }
     }
 
     /// Adds a frame.
@@ -71,9 +74,15 @@ mod tests {
     #[test]
     fn a_line_is_what_candump_writes() {
         let mut log = BusLog::new("can0");
-        log.push(1_000_250, &Message::Sync(SyncCounter::FIRST).encode(AxisIds::of_axis(0).unwrap()));
+        log.push(
+            1_000_250,
+            &Message::Sync(SyncCounter::FIRST).encode(AxisIds::of_axis(0).unwrap()),
+        );
         let mut out = Vec::new();
         log.write(&mut out).unwrap();
-        assert_eq!(String::from_utf8(out).unwrap(), "(0000000001.000250) can0 080#01\n");
+        assert_eq!(
+            String::from_utf8(out).unwrap(),
+            "(0000000001.000250) can0 080#01\n"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! A station that others can look at while it is on the bus: a ballbar at the machine, a test at the drive.
+//! A station that others can look at while it is on the bus: a ballbar at the machine, a test at
+//! the drive.
 
 use std::cell::{Ref, RefCell, RefMut};
 use std::rc::Rc;

@@ -1,7 +1,8 @@
 //! A port on a CAN interface of the kernel (SocketCAN).
 //!
-//! The kernel filters by identifier, so that a process wakes only for frames that concern it. Filters match 11-bit identifiers with or without RTR:
-//! a remote frame has to reach the decoder, which refuses it by name.
+//! The kernel filters by identifier, so that a process wakes only for frames that concern it.
+//! Filters match 11-bit identifiers with or without RTR: a remote frame has to reach the decoder,
+//! which refuses it by name.
 
 use std::io::{self, ErrorKind};
 use std::os::fd::{AsRawFd, RawFd};
@@ -85,7 +86,8 @@ impl CanPort {
     /// Sends a frame; waits where the interface's queue is full.
     ///
     /// # Errors
-    /// The kernel's, or `TimedOut` where the queue stays full for a second: nobody acknowledges on this bus.
+    /// The kernel's, or `TimedOut` where the queue stays full for a second: nobody acknowledges on
+    /// this bus.
     pub fn send(&self, frame: &CanFrame) -> io::Result<()> {
         let frame = to_socket(frame)?;
         for _ in 0..QUEUE_FULL_TRIES {
@@ -118,10 +120,15 @@ fn explained(interface: &str, error: &io::Error) -> io::Error {
         Some(libc::ENODEV) => {
             "there is no such interface; `ip link add dev vcan0 type vcan && ip link set up vcan0` makes a virtual one"
         }
-        Some(libc::EAFNOSUPPORT) => "this kernel has no CAN; `sudo modprobe vcan`, or run under scripts/with-vcan",
+        Some(libc::EAFNOSUPPORT) => {
+            "this kernel has no CAN; `sudo modprobe vcan`, or run under scripts/with-vcan"
+        }
         _ => "check the interface with `ip -details link show`",
     };
-    io::Error::new(error.kind(), format!("cannot open CAN interface {interface}: {error}; {what_to_do}"))
+    io::Error::new(
+        error.kind(),
+        format!("cannot open CAN interface {interface}: {error}; {what_to_do}"),
+    )
 }
 
 fn from_socket(frame: &socketcan::CanFrame) -> Option<CanFrame> {
@@ -157,10 +164,15 @@ pub enum Waited {
 /// Asks [`wait`] for a descriptor that is readable.
 #[must_use]
 pub const fn readable(fd: RawFd) -> libc::pollfd {
-    libc::pollfd { fd, events: libc::POLLIN, revents: 0 }
+    libc::pollfd {
+        fd,
+        events: libc::POLLIN,
+        revents: 0,
+    }
 }
 
-/// Waits until a descriptor is ready (its `revents` tell which), or the timeout is over; without a timeout for as long as it takes.
+/// Waits until a descriptor is ready (its `revents` tell which), or the timeout is over; without a
+/// timeout for as long as it takes.
 ///
 /// # Errors
 /// The kernel's.
@@ -168,7 +180,8 @@ pub fn wait(entries: &mut [libc::pollfd], timeout: Option<Duration>) -> io::Resu
     poll(entries, timeout.map(timespec).as_mut())
 }
 
-/// The same with a timeout from which the time of the waiting is taken, so that several waits share it without a look at the clock.
+/// The same with a timeout from which the time of the waiting is taken, so that several waits share
+/// it without a look at the clock.
 ///
 /// # Errors
 /// The kernel's.
@@ -187,19 +200,33 @@ fn timespec(timeout: Duration) -> libc::timespec {
     }
 }
 
-/// `ppoll`, not `poll`, which counts in milliseconds; and the system call itself, which writes the time that is left into the limit (ppoll(2), "C
-/// library/kernel differences").
+/// `ppoll`, not `poll`, which counts in milliseconds; and the system call itself, which writes the
+/// time that is left into the limit (ppoll(2), "C library/kernel differences").
 fn poll(entries: &mut [libc::pollfd], limit: Option<&mut libc::timespec>) -> io::Result<Waited> {
     let limit = limit.map_or(std::ptr::null_mut(), std::ptr::from_mut);
     let no_mask = std::ptr::null::<libc::sigset_t>();
     #[expect(unsafe_code, reason = "the raw ppoll has no safe wrapper")]
-    // SAFETY: `entries` holds that number of valid pollfd for the time of the call, `limit` is null or points to a timespec that lives as long and is
-    // ours to be written; without a mask its size is not looked at.
-    let ready = unsafe { libc::syscall(libc::SYS_ppoll, entries.as_mut_ptr(), entries.len(), limit, no_mask, 0_usize) };
+    // SAFETY: `entries` holds that number of valid pollfd for the time of the call, `limit` is null
+    // or points to a timespec that lives as long and is ours to be written; without a mask its size
+    // is not looked at.
+    let ready = unsafe {
+        libc::syscall(
+            libc::SYS_ppoll,
+            entries.as_mut_ptr(),
+            entries.len(),
+            limit,
+            no_mask,
+            0_usize,
+        )
+    };
     match ready {
         -1 => {
             let error = io::Error::last_os_error();
-            if error.kind() == ErrorKind::Interrupted { Ok(Waited::Interrupted) } else { Err(error) }
+            if error.kind() == ErrorKind::Interrupted {
+                Ok(Waited::Interrupted)
+            } else {
+                Err(error)
+            }
         }
         0 => Ok(Waited::TimedOut),
         _ => Ok(Waited::Ready),
@@ -224,7 +251,10 @@ mod tests {
         assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::Ready);
         assert!(left <= Duration::from_millis(41), "{left:?}");
         ours.recv(&mut [0]).unwrap();
-        assert_eq!(wait_within(&mut entries, &mut left).unwrap(), Waited::TimedOut);
+        assert_eq!(
+            wait_within(&mut entries, &mut left).unwrap(),
+            Waited::TimedOut
+        );
         assert_eq!(left, Duration::ZERO);
         drop(sender.join());
     }

@@ -1,4 +1,5 @@
-//! The in-process bus is a discrete-event driver: frames first, then the earliest wake, and nothing else moves time.
+//! The in-process bus is a discrete-event driver: frames first, then the earliest wake, and nothing
+//! else moves time.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -25,7 +26,12 @@ fn sync(count: u8) -> CanFrame {
 
 fn torque(count: u8) -> CanFrame {
     let counter = SyncCounter::new(count).unwrap();
-    Message::Torque(Torque { torque: TorqueMicroNm(0), control: ControlWord::default(), counter }).encode(ids())
+    Message::Torque(Torque {
+        torque: TorqueMicroNm(0),
+        control: ControlWord::default(),
+        counter,
+    })
+    .encode(ids())
 }
 
 fn heartbeat() -> CanFrame {
@@ -53,7 +59,11 @@ struct Probe {
 impl Probe {
     fn on(bus: &mut InProcessBus, alarms: &[u64], answer: Option<(CanFrame, CanFrame)>) -> Seen {
         let seen = Seen::default();
-        bus.add(Box::new(Self { alarms: alarms.to_vec(), answer, seen: Rc::clone(&seen) }));
+        bus.add(Box::new(Self {
+            alarms: alarms.to_vec(),
+            answer,
+            seen: Rc::clone(&seen),
+        }));
         seen
     }
 }
@@ -67,7 +77,10 @@ impl Station for Probe {
 
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
         self.seen.borrow_mut().push(Event::Frame(now_us, *frame));
-        self.answer.into_iter().filter(|(question, _)| question == frame).for_each(|(_, answer)| send(answer));
+        self.answer
+            .into_iter()
+            .filter(|(question, _)| question == frame)
+            .for_each(|(_, answer)| send(answer));
     }
 
     fn time(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
@@ -107,8 +120,15 @@ fn waiting_jumps_from_wake_to_wake_and_what_is_sent_goes_round_before_the_next()
     assert_eq!(times, [200, 200, 500, 700]);
     assert_eq!(bus.now_us(), 1100, "the end of the waiting");
     let heard = |at| Event::Frame(at, heartbeat());
-    assert_eq!(*first.borrow(), [Event::Due(200), heard(200), heard(500), Event::Due(700)]);
-    assert_eq!(*second.borrow(), [heard(200), Event::Due(200), Event::Due(500), heard(700)], "ties go by place");
+    assert_eq!(
+        *first.borrow(),
+        [Event::Due(200), heard(200), heard(500), Event::Due(700)]
+    );
+    assert_eq!(
+        *second.borrow(),
+        [heard(200), Event::Due(200), Event::Due(500), heard(700)],
+        "ties go by place"
+    );
 }
 
 #[test]
@@ -121,7 +141,11 @@ fn the_cycles_of_the_master_lie_on_a_grid_however_long_it_waited_within_them() {
         starts.push(bus.now_us());
         assert_eq!(bus.receive(waiting), None);
     }
-    assert_eq!(starts, [0, 1000, 2000, 3000, 4000, 6500], "a waiting past the end of the cycle moves the grid");
+    assert_eq!(
+        starts,
+        [0, 1000, 2000, 3000, 4000, 6500],
+        "a waiting past the end of the cycle moves the grid"
+    );
 }
 
 #[test]
@@ -130,9 +154,16 @@ fn what_is_due_before_the_next_cycle_happens_before_it() {
     let seen = Probe::on(&mut bus, &[400, 900, 1000], None);
     bus.pass(PERIOD_US);
     bus.pass(PERIOD_US);
-    assert_eq!(*seen.borrow(), [Event::Due(400), Event::Due(900)], "what is due at its start waits for SYNC");
+    assert_eq!(
+        *seen.borrow(),
+        [Event::Due(400), Event::Due(900)],
+        "what is due at its start waits for SYNC"
+    );
     assert_eq!(bus.now_us(), 1000);
-    assert_eq!([bus.receive(0), bus.receive(0), bus.receive(0)], [Some(heartbeat()); 3]);
+    assert_eq!(
+        [bus.receive(0), bus.receive(0), bus.receive(0)],
+        [Some(heartbeat()); 3]
+    );
 }
 
 #[test]
@@ -143,12 +174,19 @@ fn a_node_with_a_cut_cable_lives_on_and_a_dead_one_does_not() {
     bus.connect(0, false);
     bus.kill(1);
     bus.send(sync(1));
-    assert_eq!(bus.receive(500), None, "nobody hears the heartbeat of the first");
-    assert_eq!((&*cut.borrow(), &*dead.borrow()), (&vec![Event::Due(100)], &vec![]));
+    assert_eq!(
+        bus.receive(500),
+        None,
+        "nobody hears the heartbeat of the first"
+    );
+    assert_eq!(
+        (&*cut.borrow(), &*dead.borrow()),
+        (&vec![Event::Due(100)], &vec![])
+    );
 }
 
-/// The cycle contract at its smallest: a servo that answers SYNC with a torque, by the frame, by its own timer or at the deadline of a
-/// feedback that does not come.
+/// The cycle contract at its smallest: a servo that answers SYNC with a torque, by the frame, by
+/// its own timer or at the deadline of a feedback that does not come.
 #[derive(Default)]
 struct Cycle {
     began: Option<(u64, SyncCounter)>,
@@ -179,14 +217,18 @@ impl Station for Cycle {
 
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
         match protocol::message::decode(ids(), frame) {
-            Ok(protocol::message::Decoded::Message(Message::Sync(counter))) => self.begin(now_us, counter),
+            Ok(protocol::message::Decoded::Message(Message::Sync(counter))) => {
+                self.begin(now_us, counter)
+            }
             Ok(protocol::message::Decoded::Message(Message::PlantHeartbeat(_))) => self.close(send),
             _ => {}
         }
     }
 
     fn time(&mut self, _now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        let Some((began_us, counter)) = self.began else { return };
+        let Some((began_us, counter)) = self.began else {
+            return;
+        };
         self.by_deadline += 1;
         if self.open {
             self.close(send);
@@ -196,7 +238,11 @@ impl Station for Cycle {
     }
 
     fn wake_at_us(&self) -> Option<u64> {
-        let wait = if self.open { DEADLINE_US } else { PERIOD_US + OWN_TIMER_US };
+        let wait = if self.open {
+            DEADLINE_US
+        } else {
+            PERIOD_US + OWN_TIMER_US
+        };
         self.began.map(|(began_us, _)| began_us + wait)
     }
 
@@ -205,7 +251,8 @@ impl Station for Cycle {
     }
 }
 
-/// Runs cycles with a plant that answers SYNC; when in each cycle the torque came, and the cycles that were begun or closed by time.
+/// Runs cycles with a plant that answers SYNC; when in each cycle the torque came, and the cycles
+/// that were begun or closed by time.
 fn torques(plan: FaultPlan, cycles: u8) -> (Vec<Option<u64>>, u32) {
     let mut bus = InProcessBus::new();
     let servo = bus::Shared::new(Cycle::default());
@@ -216,7 +263,8 @@ fn torques(plan: FaultPlan, cycles: u8) -> (Vec<Option<u64>>, u32) {
         let start_us = bus.now_us();
         bus.send(sync(count));
         bus.send(heartbeat());
-        let came = std::iter::from_fn(|| bus.receive_until(start_us + PERIOD_US)).any(|frame| frame == torque(count));
+        let came = std::iter::from_fn(|| bus.receive_until(start_us + PERIOD_US))
+            .any(|frame| frame == torque(count));
         came.then(|| bus.now_us() - start_us)
     });
     let times = times.collect();
@@ -232,7 +280,13 @@ fn a_run_without_losses_reaches_no_deadline() {
 #[test]
 fn a_cycle_whose_frame_is_lost_closes_at_its_deadline_and_the_next_begins_on_the_grid() {
     let once = Some((FrameKind::PlantHeartbeat, 3, Damage::Lost));
-    let (times, by_deadline) = torques(FaultPlan { once, ..FaultPlan::default() }, 5);
+    let (times, by_deadline) = torques(
+        FaultPlan {
+            once,
+            ..FaultPlan::default()
+        },
+        5,
+    );
     assert_eq!(times, [Some(0), Some(0), Some(600), Some(0), Some(0)]);
     assert_eq!(by_deadline, 1);
 }
@@ -240,7 +294,13 @@ fn a_cycle_whose_frame_is_lost_closes_at_its_deadline_and_the_next_begins_on_the
 #[test]
 fn a_node_that_misses_sync_begins_and_closes_the_cycle_by_its_own_timer() {
     let once = Some((FrameKind::Sync, 3, Damage::Lost));
-    let (times, by_deadline) = torques(FaultPlan { once, ..FaultPlan::default() }, 5);
+    let (times, by_deadline) = torques(
+        FaultPlan {
+            once,
+            ..FaultPlan::default()
+        },
+        5,
+    );
     // The heartbeat came before the cycle was begun, so this small node closes it by time, too.
     assert_eq!(times, [Some(0), Some(0), Some(600), Some(0), Some(0)]);
     assert_eq!(by_deadline, 2);

@@ -1,5 +1,6 @@
-//! Simulated seconds per wall second of one axis on one core: the plant alone, and the closed loop (plant, servo, workbench, every frame encoded and
-//! decoded) on the in-process bus. `cargo bench -p hil-tests --bench axis`.
+//! Simulated seconds per wall second of one axis on one core: the plant alone, and the closed loop
+//! (plant, servo, workbench, every frame encoded and decoded) on the in-process bus. `cargo bench
+//! -p hil-tests --bench axis`.
 
 use std::time::Instant;
 
@@ -15,14 +16,19 @@ fn main() {
     let seconds = 200.0;
     let begun = Instant::now();
     for cycle in 0..200_000 {
-        axis.advance(3000.0 * path(1.0e-3 * f64::from(cycle)) / 0.02, machine.period_s);
+        axis.advance(
+            3000.0 * path(1.0e-3 * f64::from(cycle)) / 0.02,
+            machine.period_s,
+        );
     }
     let plant = seconds / begun.elapsed().as_secs_f64();
 
     let mut master = enabled(&machine).expect("the reference machine comes up");
     let begun = Instant::now();
     for cycle in 0..200_000 {
-        master.cycle(&[path(1.0e-3 * f64::from(cycle))]).expect("the in-process bus takes every frame");
+        master
+            .cycle(&[path(1.0e-3 * f64::from(cycle))])
+            .expect("the in-process bus takes every frame");
     }
     let closed = seconds / begun.elapsed().as_secs_f64();
 

@@ -1,7 +1,9 @@
 //! How the identification scales: `cargo bench -p hil-tests --bench identification`.
 //!
-//! One axis with a Stribeck fall, ripple and presliding, recorded for longer and longer; every candidate is scored, every shape of reversal fitted. Screening is
-//! everything on the inverse model; the whole adds the free-run fits. One thread. Memory is the peak of the process, so records come in rising length.
+//! One axis with a Stribeck fall, ripple and presliding, recorded for longer and longer; every
+//! candidate is scored, every shape of reversal fitted. Screening is everything on the inverse
+//! model; the whole adds the free-run fits. One thread. Memory is the peak of the process, so
+//! records come in rising length.
 
 use std::time::Instant;
 
@@ -25,8 +27,17 @@ fn main() {
     );
     for rows in ROWS {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
-        let hidden = vec![Stribeck(1.5, 4.0e-3), TorqueRipple(15.0, 6.0), Presliding(8.0e-6)];
-        let plan = Plan { hidden, rows, seed: 7, ..Plan::default() };
+        let hidden = vec![
+            Stribeck(1.5, 4.0e-3),
+            TorqueRipple(15.0, 6.0),
+            Presliding(8.0e-6),
+        ];
+        let plan = Plan {
+            hidden,
+            rows,
+            seed: 7,
+            ..Plan::default()
+        };
         records::write(folder.path(), &plan).expect("the folder can be written");
         let dataset = Dataset::read(folder.path(), None, None).expect("the record is good");
         let start = Instant::now();
@@ -41,6 +52,9 @@ fn main() {
         let whole_s = start.elapsed().as_secs_f64();
         let each_s = whole_s * 25_000.0 / rows as f64;
         let found = report.found.join(", ");
-        println!("| {rows} | {screening_s:.2} | {whole_s:.2} | {each_s:.2} | {:.0} | {found} |", peak_mb());
+        println!(
+            "| {rows} | {screening_s:.2} | {whole_s:.2} | {each_s:.2} | {:.0} | {found} |",
+            peak_mb()
+        );
     }
 }

@@ -1,14 +1,18 @@
-//! Instructions of the servo node on a Cortex-M4, and whether it answers there as it does here. `cargo bench -p hil-tests --bench instructions`
+//! Instructions of the servo node on a Cortex-M4, and whether it answers there as it does here.
+//! `cargo bench -p hil-tests --bench instructions`
 //!
-//! One axis of the reference machine follows a circle on the in-process bus, plain and with every compensation on, and a tap at the servo's place takes down
-//! what the servo hears and answers. `firmware/emulated-cycle`, an image for QEMU's mps2-an386, hears the same, compares its own answers byte for byte, and
-//! measures every event of the circle. The table splits a cycle into SYNC, setpoint and feedback. The worst cycle is one that happened, with its own split;
-//! the worst of each event may stand in another cycle. The benchmark fails on an answer that differs, and on cycles outside `hil-tests/budgets.toml` on
-//! either side.
+//! One axis of the reference machine follows a circle on the in-process bus, plain and with every
+//! compensation on, and a tap at the servo's place takes down what the servo hears and answers.
+//! `firmware/emulated-cycle`, an image for QEMU's mps2-an386, hears the same, compares its own
+//! answers byte for byte, and measures every event of the circle. The table splits a cycle into
+//! SYNC, setpoint and feedback. The worst cycle is one that happened, with its own split; the worst
+//! of each event may stand in another cycle. The benchmark fails on an answer that differs, and on
+//! cycles outside `hil-tests/budgets.toml` on either side.
 //!
 //! Blind to: time (instructions are not cycles), interrupts, the CAN controller.
 //!
-//! QEMU is installed where it is missing (Debian: `qemu-system-arm`). `-- --profile NAME` builds the image with another cargo profile.
+//! QEMU is installed where it is missing (Debian: `qemu-system-arm`). `-- --profile NAME` builds
+//! the image with another cargo profile.
 
 use std::cell::{Cell, RefCell};
 use std::fs;
@@ -56,28 +60,48 @@ fn main() -> ExitCode {
     let profile = option("--profile").unwrap_or_else(|| PROFILE.into());
     let image = build(&profile);
     let budgets = budgets();
-    println!("instructions of the servo node, {TARGET}, profile {profile}; circle R 10 F 1000, {CYCLES} cycles");
+    println!(
+        "instructions of the servo node, {TARGET}, profile {profile}; circle R 10 F 1000, {CYCLES} cycles"
+    );
     let plain = one(&folder, &image, "plain", Drive::Plain, &budgets.plain);
-    let everything = one(&folder, &image, "everything", Drive::Everything, &budgets.everything);
+    let everything = one(
+        &folder,
+        &image,
+        "everything",
+        Drive::Everything,
+        &budgets.everything,
+    );
     let notices = a_wrong_bit_is_noticed(&folder, &image);
-    println!("\none bit of one recorded answer turned: {}", if notices { "noticed" } else { "NOT NOTICED" });
-    if plain && everything && notices { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    println!(
+        "\none bit of one recorded answer turned: {}",
+        if notices { "noticed" } else { "NOT NOTICED" }
+    );
+    if plain && everything && notices {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 fn option(name: &str) -> Option<String> {
-    std::env::args().skip_while(|argument| argument != name).nth(1)
+    std::env::args()
+        .skip_while(|argument| argument != name)
+        .nth(1)
 }
 
 /// Records, emulates and prints one configuration; whether all is well.
 fn one(folder: &Path, image: &Path, name: &str, drive: Drive, budget: &Budget) -> bool {
     let recording = folder.join(name).with_extension("bin");
-    fs::write(&recording, record(drive).expect("the circle runs")).expect("the target folder is writable");
+    fs::write(&recording, record(drive).expect("the circle runs"))
+        .expect("the target folder is writable");
     let report = emulate(image, &recording);
-    fs::write(folder.join(name).with_extension("txt"), &report).expect("the target folder is writable");
+    fs::write(folder.join(name).with_extension("txt"), &report)
+        .expect("the target folder is writable");
     Run::of(&report).print(name, budget)
 }
 
-// ---- the recording ------------------------------------------------------------------------------------------------------------------------------
+// ---- the recording
+// --------------------------------------------------------------------------------
 
 /// What the drive does about friction, gap and resonance.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -99,11 +123,20 @@ impl Tap {
     fn note(&self, class: Class, now_us: u64, frame: [u8; FRAME], answers: &[CanFrame]) {
         let answers: Vec<[u8; FRAME]> = answers.iter().map(bytes).collect();
         let is_measured = self.is_measured.get();
-        Event { class, is_measured, now_us, frame, answers: &answers }.write(&mut *self.bytes.borrow_mut());
+        Event {
+            class,
+            is_measured,
+            now_us,
+            frame,
+            answers: &answers,
+        }
+        .write(&mut *self.bytes.borrow_mut());
     }
 
     fn class(&self, frame: &CanFrame) -> Class {
-        let Id::Standard(id) = frame.id() else { return Class::Other };
+        let Id::Standard(id) = frame.id() else {
+            return Class::Other;
+        };
         match self.servo.ids().classify(id) {
             Some(FrameKind::Sync) => Class::Sync,
             Some(FrameKind::Setpoint) => Class::Setpoint,
@@ -157,13 +190,22 @@ fn record(drive: Drive) -> Outcome<Vec<u8>> {
     let (taken, is_measured) = (Rc::new(RefCell::new(Vec::new())), Rc::new(Cell::new(false)));
     let mut link = InProcess::new(&machine, 0)?;
     let servo = Servo::new(link.servo(0).borrow().ids());
-    let tap = Tap { servo, bytes: Rc::clone(&taken), is_measured: Rc::clone(&is_measured) };
+    let tap = Tap {
+        servo,
+        bytes: Rc::clone(&taken),
+        is_measured: Rc::clone(&is_measured),
+    };
     link.bus_mut(0).replace(SERVO, Box::new(tap));
     let mut master = Master::start(link, &machine)?;
     configure(&mut master, &machine, drive)?;
     master.enable()?;
     is_measured.set(true);
-    let circle = Circle { radius_m: 0.010, feed_m_per_s: 1.0 / 60.0, turns: 1, counter_clockwise: true };
+    let circle = Circle {
+        radius_m: 0.010,
+        feed_m_per_s: 1.0 / 60.0,
+        turns: 1,
+        counter_clockwise: true,
+    };
     for cycle in 1..=CYCLES {
         master.cycle(&circle.at(f64::from(cycle) * machine.period_s)[..1])?;
     }
@@ -171,16 +213,28 @@ fn record(drive: Drive) -> Outcome<Vec<u8>> {
     Ok(with_length(&taken.borrow()))
 }
 
-/// The counter-proof: a comparison that cannot fail proves nothing. The plain recording, unmeasured, with the lowest bit of its last torque turned.
+/// The counter-proof: a comparison that cannot fail proves nothing. The plain recording,
+/// unmeasured, with the lowest bit of its last torque turned.
 fn a_wrong_bit_is_noticed(folder: &Path, image: &Path) -> bool {
     let whole = fs::read(folder.join("plain.bin")).expect("the plain recording was written before");
     let events: Vec<Event<'_>> = Events(&whole[4..]).collect();
-    let last = events.iter().rposition(|event| event.class == Class::Feedback).expect("a circle has feedbacks");
+    let last = events
+        .iter()
+        .rposition(|event| event.class == Class::Feedback)
+        .expect("a circle has feedbacks");
     let mut turned = Vec::new();
     for (at, event) in events.iter().enumerate() {
         let mut answers = event.answers.to_vec();
-        answers.iter_mut().take(usize::from(at == last)).for_each(|torque| torque[FIRST_DATA_BYTE] ^= 1);
-        Event { is_measured: false, answers: &answers, ..*event }.write(&mut turned);
+        answers
+            .iter_mut()
+            .take(usize::from(at == last))
+            .for_each(|torque| torque[FIRST_DATA_BYTE] ^= 1);
+        Event {
+            is_measured: false,
+            answers: &answers,
+            ..*event
+        }
+        .write(&mut turned);
     }
     let path = folder.join("turned.bin");
     fs::write(&path, with_length(&turned)).expect("the target folder is writable");
@@ -191,16 +245,25 @@ fn a_wrong_bit_is_noticed(folder: &Path, image: &Path) -> bool {
 const FIRST_DATA_BYTE: usize = 3;
 
 fn with_length(events: &[u8]) -> Vec<u8> {
-    assert!(events.len() + 4 <= recording::SPACE, "the recording does not fit into the PSRAM of the emulated machine");
+    assert!(
+        events.len() + 4 <= recording::SPACE,
+        "the recording does not fit into the PSRAM of the emulated machine"
+    );
     let length = u32::try_from(events.len()).expect("16 MiB at most");
     [&length.to_le_bytes(), events].concat()
 }
 
-/// Above the velocity loop's 30 Hz, so that the loop stays calm; the instructions do not depend on it.
+/// Above the velocity loop's 30 Hz, so that the loop stays calm; the instructions do not depend on
+/// it.
 const LOW_PASS_HZ: f64 = 250.0;
-/// Near what `tune` finds for the reference machine. A gap that the machine does not have shifts its path and harms nothing else.
+/// Near what `tune` finds for the reference machine. A gap that the machine does not have shifts
+/// its path and harms nothing else.
 const EVERYTHING: AxisCompensation = AxisCompensation {
-    reversal: Compensation::Pulse(Pulse { height_m_per_s: 1.0e-3, time_constant_s: 0.02, start_delay_s: 0.002 }),
+    reversal: Compensation::Pulse(Pulse {
+        height_m_per_s: 1.0e-3,
+        time_constant_s: 0.02,
+        start_delay_s: 0.002,
+    }),
     backlash_m: 20.0e-6,
 };
 
@@ -217,21 +280,38 @@ fn configure(master: &mut Master<InProcess>, machine: &Machine, drive: Drive) ->
 /// A compensation file holds a pulse or a Coulomb feedforward; the drive can do both at once.
 fn add_coulomb(master: &mut Master<InProcess>, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
     let reversal = Compensation::Coulomb { force_n: 200.0 };
-    let set = drive::parameters(axis, period_s, &AxisCompensation { reversal, backlash_m: 0.0 })?;
-    for (entry, value) in set.into_iter().filter(|(entry, _)| entry.parameter == Parameter::CoulombTorque) {
+    let set = drive::parameters(
+        axis,
+        period_s,
+        &AxisCompensation {
+            reversal,
+            backlash_m: 0.0,
+        },
+    )?;
+    for (entry, value) in set
+        .into_iter()
+        .filter(|(entry, _)| entry.parameter == Parameter::CoulombTorque)
+    {
         master.download(0, entry.address, Expedited::i32(value))?;
     }
     master.download(0, objects::COMMIT, Expedited::u32(objects::COMMIT_KEY))
 }
 
-// ---- the emulated machine ---------------------------------------------------------------------------------------------------------------------
+// ---- the emulated machine
+// --------------------------------------------------------------------------------
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 fn have_qemu() {
-    let is_there = |program: &str| Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok();
+    let is_there = |program: &str| {
+        Command::new(program)
+            .arg("--version")
+            .stdout(Stdio::null())
+            .status()
+            .is_ok()
+    };
     if is_there("qemu-system-arm") {
         return;
     }
@@ -245,37 +325,83 @@ fn have_qemu() {
     );
 }
 
-/// Builds the image in a target folder of its own, so that features and locks of the host's build do not meet it.
+/// Builds the image in a target folder of its own, so that features and locks of the host's build
+/// do not meet it.
 fn build(profile: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().expect("a target folder").join("cortex-m");
-    let added =
-        Command::new("rustup").args(["target", "add", TARGET]).output().expect("rustup is part of the toolchain");
-    assert!(added.status.success(), "rustup target add {TARGET}: {}", String::from_utf8_lossy(&added.stderr));
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .expect("a target folder")
+        .join("cortex-m");
+    let added = Command::new("rustup")
+        .args(["target", "add", TARGET])
+        .output()
+        .expect("rustup is part of the toolchain");
+    assert!(
+        added.status.success(),
+        "rustup target add {TARGET}: {}",
+        String::from_utf8_lossy(&added.stderr)
+    );
     let built = Command::new(env!("CARGO"))
-        .args(["build", "--locked", "--package", "emulated-cycle", "--target", TARGET, "--profile", profile])
+        .args([
+            "build",
+            "--locked",
+            "--package",
+            "emulated-cycle",
+            "--target",
+            TARGET,
+            "--profile",
+            profile,
+        ])
         .arg("--target-dir")
         .arg(&folder)
         .current_dir(root())
         .env_remove("RUSTFLAGS")
         .output()
         .expect("cargo runs");
-    assert!(built.status.success(), "emulated-cycle: {}", String::from_utf8_lossy(&built.stderr));
+    assert!(
+        built.status.success(),
+        "emulated-cycle: {}",
+        String::from_utf8_lossy(&built.stderr)
+    );
     folder.join(TARGET).join(profile).join("emulated-cycle")
 }
 
 /// Runs the image on a recording; gives what it reports.
 fn emulate(image: &Path, recording: &Path) -> String {
-    let loader = format!("loader,file={},addr={:#x},force-raw=on", recording.display(), recording::ADDRESS);
+    let loader = format!(
+        "loader,file={},addr={:#x},force-raw=on",
+        recording.display(),
+        recording::ADDRESS
+    );
     let mut qemu = Command::new("qemu-system-arm")
-        .args(["-machine", "mps2-an386", "-icount", "shift=0", "-display", "none", "-monitor", "none"])
-        .args(["-serial", "none", "-semihosting-config", "enable=on,target=native", "-device", &loader, "-kernel"])
+        .args([
+            "-machine",
+            "mps2-an386",
+            "-icount",
+            "shift=0",
+            "-display",
+            "none",
+            "-monitor",
+            "none",
+        ])
+        .args([
+            "-serial",
+            "none",
+            "-semihosting-config",
+            "enable=on,target=native",
+            "-device",
+            &loader,
+            "-kernel",
+        ])
         .arg(image)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .spawn()
         .expect("qemu-system-arm starts");
     let mut output = qemu.stdout.take().expect("a pipe");
-    let reader = std::thread::spawn(move || std::io::read_to_string(&mut output).expect("the report is text"));
+    let reader = std::thread::spawn(move || {
+        std::io::read_to_string(&mut output).expect("the report is text")
+    });
     let begun = Instant::now();
     let status = loop {
         if let Some(status) = qemu.try_wait().expect("a child can be asked") {
@@ -287,7 +413,11 @@ fn emulate(image: &Path, recording: &Path) -> String {
         std::thread::sleep(Duration::from_millis(20));
     };
     let report = reader.join().expect("the reader ends with the pipe");
-    assert!(status.success(), "the image did not come to its end: {status}\n{}", last_lines(&report));
+    assert!(
+        status.success(),
+        "the image did not come to its end: {status}\n{}",
+        last_lines(&report)
+    );
     report
 }
 
@@ -296,7 +426,8 @@ fn last_lines(report: &str) -> String {
     lines[lines.len().saturating_sub(5)..].join("\n")
 }
 
-// ---- the figures --------------------------------------------------------------------------------------------------------------------------------
+// ---- the figures
+// --------------------------------------------------------------------------------
 
 /// Instructions of SYNC, setpoint and feedback together.
 #[derive(Deserialize)]
@@ -315,7 +446,10 @@ impl Bounds {
     fn hold(&self, what: &str, instructions: f64) -> bool {
         let Self { min, max } = self;
         let is_within = (*min..=*max).contains(&instructions);
-        println!("  {what} cycle {instructions:.0}, budget {min} to {max}{}", if is_within { "" } else { ": OUTSIDE" });
+        println!(
+            "  {what} cycle {instructions:.0}, budget {min} to {max}{}",
+            if is_within { "" } else { ": OUTSIDE" }
+        );
         is_within
     }
 }
@@ -331,8 +465,8 @@ fn budgets() -> Budgets {
     struct File {
         instructions_of_a_cycle: Budgets,
     }
-    let text =
-        fs::read_to_string(root().join("hil-tests/budgets.toml")).expect("the budgets stand beside the benchmark");
+    let text = fs::read_to_string(root().join("hil-tests/budgets.toml"))
+        .expect("the budgets stand beside the benchmark");
     let file: File = toml::from_str(&text).expect("the budgets have a section for instructions");
     file.instructions_of_a_cycle
 }
@@ -360,24 +494,43 @@ impl Run {
                     (run.replayed, run.compared) = (number(events) as u32, number(frames) as u32);
                 }
                 [class, ticks] => {
-                    let class = class.parse().ok().and_then(Class::from_byte).expect("a class of the recording");
-                    run.events.push((class, (number(ticks) - empty) * INSTRUCTIONS_PER_TICK / repeats));
+                    let class = class
+                        .parse()
+                        .ok()
+                        .and_then(Class::from_byte)
+                        .expect("a class of the recording");
+                    run.events.push((
+                        class,
+                        (number(ticks) - empty) * INSTRUCTIONS_PER_TICK / repeats,
+                    ));
                 }
                 _ => panic!("the image reports \"{line}\""),
             }
         }
-        assert!(run.replayed > 3 * CYCLES && run.compared > CYCLES, "the image compared {} answers", run.compared);
+        assert!(
+            run.replayed > 3 * CYCLES && run.compared > CYCLES,
+            "the image compared {} answers",
+            run.compared
+        );
         run
     }
 
     fn of_class(&self, class: Class) -> Vec<f64> {
-        self.events.iter().filter(|(of, _)| *of == class).map(|(_, instructions)| *instructions).collect()
+        self.events
+            .iter()
+            .filter(|(of, _)| *of == class)
+            .map(|(_, instructions)| *instructions)
+            .collect()
     }
 
     /// SYNC, setpoint and feedback of each cycle.
     fn cycles(&self) -> Vec<[f64; 3]> {
-        let parts = [Class::Sync, Class::Setpoint, Class::Feedback].map(|class| self.of_class(class));
-        assert!(parts.iter().all(|part| part.len() == CYCLES as usize), "a cycle has one frame of each kind");
+        let parts =
+            [Class::Sync, Class::Setpoint, Class::Feedback].map(|class| self.of_class(class));
+        assert!(
+            parts.iter().all(|part| part.len() == CYCLES as usize),
+            "a cycle has one frame of each kind"
+        );
         let [sync, setpoint, feedback] = parts;
         sync.into_iter()
             .zip(setpoint)
@@ -389,17 +542,29 @@ impl Run {
     fn print(&self, name: &str, budget: &Budget) -> bool {
         let cycles = self.cycles();
         let sum = |cycle: &[f64; 3]| cycle.iter().sum::<f64>();
-        let worst = cycles.iter().copied().max_by(|a, b| sum(a).total_cmp(&sum(b))).expect("a circle has cycles");
-        println!("\n{name:<34}{:>8}{:>8}{:>22}", "mean", "worst", "in the worst cycle");
+        let worst = cycles
+            .iter()
+            .copied()
+            .max_by(|a, b| sum(a).total_cmp(&sum(b)))
+            .expect("a circle has cycles");
+        println!(
+            "\n{name:<34}{:>8}{:>8}{:>22}",
+            "mean", "worst", "in the worst cycle"
+        );
         for (part, name) in ["SYNC", "setpoint", "feedback"].into_iter().enumerate() {
             let (mean, largest) = mean_and_largest(cycles.iter().map(|cycle| cycle[part]));
             println!("  {name:<32}{mean:>8.0}{largest:>8.0}{:>22.0}", worst[part]);
         }
         let (mean, largest) = mean_and_largest(cycles.iter().map(sum));
-        println!("  {:<32}{mean:>8.0}{largest:>8.0}{:>22.0}", "cycle", sum(&worst));
-        for (class, name) in
-            [(Class::Time, "time passes, not in the cycle"), (Class::Other, "other frames, not in the cycle")]
-        {
+        println!(
+            "  {:<32}{mean:>8.0}{largest:>8.0}{:>22.0}",
+            "cycle",
+            sum(&worst)
+        );
+        for (class, name) in [
+            (Class::Time, "time passes, not in the cycle"),
+            (Class::Other, "other frames, not in the cycle"),
+        ] {
             let (mean, largest) = mean_and_largest(self.of_class(class).into_iter());
             println!("  {name:<32}{mean:>8.0}{largest:>8.0}");
         }
@@ -407,8 +572,16 @@ impl Run {
     }
 
     fn print_answers(&self) -> bool {
-        let Self { wrong, replayed, compared, .. } = self;
-        println!("  {compared} answers to {replayed} events compared with the host's: {} differ", wrong.len());
+        let Self {
+            wrong,
+            replayed,
+            compared,
+            ..
+        } = self;
+        println!(
+            "  {compared} answers to {replayed} events compared with the host's: {} differ",
+            wrong.len()
+        );
         if let Some(first) = wrong.first() {
             println!("  the first one at event {first}");
         }
@@ -420,10 +593,22 @@ impl Run {
 fn check_clock(instructions: f64, ticks: f64) {
     let per_tick = instructions / ticks;
     let is_right = (per_tick / INSTRUCTIONS_PER_TICK - 1.0).abs() < 1.0e-3;
-    assert!(is_right, "SysTick counts {per_tick:.2} instructions a tick, not {INSTRUCTIONS_PER_TICK}");
+    assert!(
+        is_right,
+        "SysTick counts {per_tick:.2} instructions a tick, not {INSTRUCTIONS_PER_TICK}"
+    );
 }
 
 fn mean_and_largest(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (count, sum, largest) = values.fold((0, 0.0, 0.0_f64), |(n, sum, max), v| (n + 1, sum + v, max.max(v)));
-    (if count == 0 { 0.0 } else { sum / f64::from(count) }, largest)
+    let (count, sum, largest) = values.fold((0, 0.0, 0.0_f64), |(n, sum, max), v| {
+        (n + 1, sum + v, max.max(v))
+    });
+    (
+        if count == 0 {
+            0.0
+        } else {
+            sum / f64::from(count)
+        },
+        largest,
+    )
 }

@@ -1,4 +1,5 @@
-//! Writes the records on which the identification is judged, with `truth.json` beside each: `cargo run --release -p hil-tests --example records -- DIR`.
+//! Writes the records on which the identification is judged, with `truth.json` beside each: `cargo
+//! run --release -p hil-tests --example records -- DIR`.
 
 use std::path::PathBuf;
 
@@ -11,8 +12,15 @@ fn main() -> std::io::Result<()> {
         let folder = folder.join(plan.seed.to_string());
         std::fs::create_dir_all(&folder)?;
         hil_tests::records::write(&folder, &plan)?;
-        let names: Vec<String> = plan.hidden.iter().map(|hidden| format!("\"{}\"", hidden.name())).collect();
-        std::fs::write(folder.join("truth.json"), format!("{{ \"effects\": [{}] }}\n", names.join(", ")))?;
+        let names: Vec<String> = plan
+            .hidden
+            .iter()
+            .map(|hidden| format!("\"{}\"", hidden.name()))
+            .collect();
+        std::fs::write(
+            folder.join("truth.json"),
+            format!("{{ \"effects\": [{}] }}\n", names.join(", ")),
+        )?;
     }
     Ok(())
 }

@@ -1,10 +1,12 @@
 //! Rigs that close the loop for tests, and golden tables that people review.
 //!
-//! Three gears: the in-process rig drives the nodes directly in virtual time (blind to the kernel and to scheduling), the vcan scenarios
-//! run every node as a process of its own (blind to bandwidth), the board image is linked and looked at (blind to booting).
+//! Three gears: the in-process rig drives the nodes directly in virtual time (blind to the kernel
+//! and to scheduling), the vcan scenarios run every node as a process of its own (blind to
+//! bandwidth), the board image is linked and looked at (blind to booting).
 //!
-//! Each of them runs in three scopes: `cargo quick`, `cargo test` and `cargo certify` take one row, some or all of the same tables ([`Scope`]).
-//! `golden::check_some` holds the part of a golden table that a scope runs; long tables run on all cores ([`on_all_cores`]).
+//! Each of them runs in three scopes: `cargo quick`, `cargo test` and `cargo certify` take one row,
+//! some or all of the same tables ([`Scope`]). `golden::check_some` holds the part of a golden
+//! table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
 pub mod golden;
 pub mod losses;

@@ -1,6 +1,7 @@
 //! Runs of one axis with frames that go wrong, and what they differ by from the same run without.
 //!
-//! The axis is X of the reference machine *with* its force noise, whose seed is the machine's: two runs differ by the losses alone.
+//! The axis is X of the reference machine *with* its force noise, whose seed is the machine's: two
+//! runs differ by the losses alone.
 
 use bus::{FaultPlan, Shared};
 use plant_sim::Machine;
@@ -46,13 +47,35 @@ pub struct Counted {
 
 impl Counted {
     fn servo(counts: Counts) -> Self {
-        let Counts { computed, bridged, refused, by_deadline, .. } = counts;
-        Self { computed, bridged, refused, by_deadline }
+        let Counts {
+            computed,
+            bridged,
+            refused,
+            by_deadline,
+            ..
+        } = counts;
+        Self {
+            computed,
+            bridged,
+            refused,
+            by_deadline,
+        }
     }
 
     fn plant(counters: Counters) -> Self {
-        let Counters { computed, bridged, refused, by_deadline, .. } = counters;
-        Self { computed, bridged, refused, by_deadline }
+        let Counters {
+            computed,
+            bridged,
+            refused,
+            by_deadline,
+            ..
+        } = counters;
+        Self {
+            computed,
+            bridged,
+            refused,
+            by_deadline,
+        }
     }
 
     fn since(self, before: Self) -> Self {
@@ -112,7 +135,12 @@ impl Axis {
         let mut master = enabled(machine).expect("a healthy machine can be enabled");
         let (servo, plant) = (master.link_mut().servo(0), master.link_mut().plant(0));
         let origin_m = master.axis(0).reference_m;
-        Self { master, servo, plant, origin_m }
+        Self {
+            master,
+            servo,
+            plant,
+            origin_m,
+        }
     }
 
     /// From now on this happens to the frames; cycle 1 of the plans is the next one.
@@ -127,22 +155,35 @@ impl Axis {
     /// # Panics
     /// Where the bus is gone.
     pub fn cycle(&mut self, to_m: f64) {
-        self.master.cycle(&[self.origin_m + to_m]).expect("an in-process bus is never gone");
+        self.master
+            .cycle(&[self.origin_m + to_m])
+            .expect("an in-process bus is never gone");
     }
 
     /// Resets a fault and enables the axis where it is; tells whether that worked.
     pub fn enable_again(&mut self) -> bool {
-        let up = self.master.reset_fault().and_then(|()| self.master.enable());
+        let up = self
+            .master
+            .reset_fault()
+            .and_then(|()| self.master.enable());
         self.origin_m = self.master.axis(0).reference_m;
         up.is_ok()
     }
 
     fn counted(&self) -> [Counted; 2] {
-        [Counted::servo(self.servo.borrow().counts()), Counted::plant(self.plant.borrow().counters())]
+        [
+            Counted::servo(self.servo.borrow().counts()),
+            Counted::plant(self.plant.borrow().counters()),
+        ]
     }
 
     fn faults(&self) -> impl Iterator<Item = Fault> {
-        [self.servo.borrow().drive().fault(), self.plant.borrow().fault()].into_iter().flatten()
+        [
+            self.servo.borrow().drive().fault(),
+            self.plant.borrow().fault(),
+        ]
+        .into_iter()
+        .flatten()
     }
 }
 
@@ -162,7 +203,10 @@ pub fn run(machine: &Machine, path: &dyn Fn(f64) -> f64, cycles: u32, plans: Pla
         let truth = axis.plant.borrow().truth();
         run.table_m.push(truth.table_m);
         run.force_n.push(truth.commanded_n);
-        let new: Vec<Fault> = axis.faults().filter(|fault| !run.faults.contains(fault)).collect();
+        let new: Vec<Fault> = axis
+            .faults()
+            .filter(|fault| !run.faults.contains(fault))
+            .collect();
         run.faults.extend(new);
     }
     let after = axis.counted();
@@ -173,10 +217,14 @@ pub fn run(machine: &Machine, path: &dyn Fn(f64) -> f64, cycles: u32, plans: Pla
 /// Largest difference of two records.
 #[must_use]
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
 }
 
-/// What a drive's limits are judged by, in its own units: way in 10 nm, velocity and acceleration in 10 nm per cycle.
+/// What a drive's limits are judged by, in its own units: way in 10 nm, velocity and acceleration
+/// in 10 nm per cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// Largest velocity of the commanded reference.
@@ -204,17 +252,33 @@ impl Watched {
     #[must_use]
     pub fn replace(axis: &mut Axis) -> Shared<Extremes> {
         let seen = Shared::new(Extremes::default());
-        let last = (Counted::servo(axis.servo.borrow().counts()).cycles(), None, None);
-        let watched = Self { servo: axis.servo.clone(), seen: seen.clone(), last };
-        axis.master.link_mut().bus_mut(0).replace(SERVO, Box::new(watched));
+        let last = (
+            Counted::servo(axis.servo.borrow().counts()).cycles(),
+            None,
+            None,
+        );
+        let watched = Self {
+            servo: axis.servo.clone(),
+            seen: seen.clone(),
+            last,
+        };
+        axis.master
+            .link_mut()
+            .bus_mut(0)
+            .replace(SERVO, Box::new(watched));
         seen
     }
 
     fn look(&mut self) {
         let servo = self.servo.borrow();
-        let (cycles, fault) = (Counted::servo(servo.counts()).cycles(), servo.drive().fault());
+        let (cycles, fault) = (
+            Counted::servo(servo.counts()).cycles(),
+            servo.drive().fault(),
+        );
         let mut seen = self.seen.borrow_mut();
-        seen.torque = seen.torque.max(f64::from(servo.torque().to_micro_nm_lossy()).abs());
+        seen.torque = seen
+            .torque
+            .max(f64::from(servo.torque().to_micro_nm_lossy()).abs());
         let steps = cycles - self.last.0;
         if steps == 0 {
             return;
@@ -223,15 +287,20 @@ impl Watched {
         let velocity = reference.map(|reference| reference.velocity.0.to_num::<f64>());
         if let (Some(reference), Some(velocity)) = (reference, velocity) {
             seen.cycles += steps;
-            seen.position = seen.position.max(reference.position.0.to_num::<f64>().abs());
+            seen.position = seen
+                .position
+                .max(reference.position.0.to_num::<f64>().abs());
             seen.velocity = seen.velocity.max(velocity.abs());
             // A following error makes the reference start anew, where the axis is.
             let restarts = fault == Some(Fault::FollowingError) && self.last.2.is_none();
             if let (Some(before), false) = (self.last.1, restarts) {
-                seen.acceleration = seen.acceleration.max((velocity - before).abs() / f64::from(steps));
+                seen.acceleration = seen
+                    .acceleration
+                    .max((velocity - before).abs() / f64::from(steps));
             }
         }
-        // The reference of the cycle in which a following error was latched is still the one before the restart.
+        // The reference of the cycle in which a following error was latched is still the one before
+        // the restart.
         let was_restarted = fault == Some(Fault::FollowingError) && self.last.2.is_none();
         self.last = (cycles, velocity.filter(|_| !was_restarted), fault);
     }

@@ -1,8 +1,10 @@
 //! Paths of one axis for scenarios: from rest, with a stated jerk, as functions of the cycle.
 //!
-//! A [`Profile`] is a list of phases of constant jerk, integrated exactly: within a phase x, v and a are polynomials of the time.
+//! A [`Profile`] is a list of phases of constant jerk, integrated exactly: within a phase x, v and
+//! a are polynomials of the time.
 
-/// A phase of constant jerk: duration in s, jerk in m/s³. A jump of acceleration is a phase of no duration whose jerk is the jump in m/s².
+/// A phase of constant jerk: duration in s, jerk in m/s³. A jump of acceleration is a phase of no
+/// duration whose jerk is the jump in m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
     /// So long, with this jerk.
@@ -39,13 +41,23 @@ impl Profile {
     /// Position at a time, m.
     #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
-        let phase = self.phases.iter().rev().find(|(begin, ..)| *begin <= time_s);
-        phase.map_or(0.0, |(begin, at, jerk)| integrated(*at, *jerk, time_s - begin)[0])
+        let phase = self
+            .phases
+            .iter()
+            .rev()
+            .find(|(begin, ..)| *begin <= time_s);
+        phase.map_or(0.0, |(begin, at, jerk)| {
+            integrated(*at, *jerk, time_s - begin)[0]
+        })
     }
 }
 
 fn integrated([x, v, a]: [f64; 3], jerk: f64, t: f64) -> [f64; 3] {
-    [x + t * (v + t * (a / 2.0 + t * jerk / 6.0)), v + t * (a + t * jerk / 2.0), a + t * jerk]
+    [
+        x + t * (v + t * (a / 2.0 + t * jerk / 6.0)),
+        v + t * (a + t * jerk / 2.0),
+        a + t * jerk,
+    ]
 }
 
 /// A sine from rest: its phase gets up to speed within `ramp_s` as a smoothstep does.
@@ -54,7 +66,8 @@ pub fn sine(amplitude_m: f64, period_s: f64, ramp_s: f64, time_s: f64) -> f64 {
     amplitude_m * (std::f64::consts::TAU / period_s * smooth_time(time_s, ramp_s)).sin()
 }
 
-/// A cosine minus where it begins, `lead_s` before its reversal: the reversal at full speed without the quarter turn before it.
+/// A cosine minus where it begins, `lead_s` before its reversal: the reversal at full speed without
+/// the quarter turn before it.
 #[must_use]
 pub fn reversal(amplitude_m: f64, period_s: f64, lead_s: f64, ramp_s: f64, time_s: f64) -> f64 {
     let omega = std::f64::consts::TAU / period_s;
@@ -74,20 +87,35 @@ mod tests {
 
     #[test]
     fn a_profile_is_the_integral_of_its_phases() {
-        let path =
-            Profile::new(&[Phase::Jerk(0.1, 50.0), Phase::Jerk(0.1, -50.0), Phase::Jump(-5.0), Phase::Jerk(0.1, 0.0)]);
+        let path = Profile::new(&[
+            Phase::Jerk(0.1, 50.0),
+            Phase::Jerk(0.1, -50.0),
+            Phase::Jump(-5.0),
+            Phase::Jerk(0.1, 0.0),
+        ]);
         // 0.5 m/s after 0.2 s on 50 mm, then braked at 5 m/s² for 0.1 s, then 0 m/s.
         for (time_s, at) in [(0.2, 0.05), (0.3, 0.075), (0.5, 0.075)] {
-            assert!((path.at(time_s) - at).abs() < 1.0e-12, "{time_s}: {}", path.at(time_s));
+            assert!(
+                (path.at(time_s) - at).abs() < 1.0e-12,
+                "{time_s}: {}",
+                path.at(time_s)
+            );
         }
     }
 
     #[test]
     fn a_sine_and_a_reversal_begin_at_rest_and_reach_their_speed() {
-        let speed = |path: &dyn Fn(f64) -> f64, t: f64| (path(t + 1.0e-4) - path(t - 1.0e-4)) / 2.0e-4;
+        let speed =
+            |path: &dyn Fn(f64) -> f64, t: f64| (path(t + 1.0e-4) - path(t - 1.0e-4)) / 2.0e-4;
         let sine = |t| sine(0.02, 1.2, 0.4, t);
-        assert!(speed(&sine, 1.0e-3) < 1.0e-5 && (speed(&sine, 0.2 + 1.2) - 0.02 * 5.236).abs() < 1.0e-4);
+        assert!(
+            speed(&sine, 1.0e-3) < 1.0e-5
+                && (speed(&sine, 0.2 + 1.2) - 0.02 * 5.236).abs() < 1.0e-4
+        );
         let reversal = |t| reversal(0.1, 18.85, 1.0, 0.5, t);
-        assert!(speed(&reversal, 1.25).abs() < 1.0e-6, "reversal at the lead and half the ramp");
+        assert!(
+            speed(&reversal, 1.25).abs() < 1.0e-6,
+            "reversal at the lead and half the ramp"
+        );
     }
 }

@@ -1,8 +1,10 @@
-//! The records on which the identification is judged: nothing, each effect alone, pairs, and disturbances outside the list.
+//! The records on which the identification is judged: nothing, each effect alone, pairs, and
+//! disturbances outside the list.
 
 use crate::records::Hidden::{
-    Backlash, Compliance, CubicDrag, Delay, FrictionDrift, Hum, PitchError, PositionDependentFriction, Presliding,
-    QuadraticDrag, Spring, Stribeck, TorqueRipple, TorqueSaturation, ViscousAsymmetry,
+    Backlash, Compliance, CubicDrag, Delay, FrictionDrift, Hum, PitchError,
+    PositionDependentFriction, Presliding, QuadraticDrag, Spring, Stribeck, TorqueRipple,
+    TorqueSaturation, ViscousAsymmetry,
 };
 use crate::records::Plan;
 
@@ -48,7 +50,10 @@ pub fn plans() -> Vec<Plan> {
     let pairs = [
         (vec![Stribeck(1.5, 4.0e-3), TorqueRipple(15.0, 6.0)], false),
         (vec![ViscousAsymmetry(0.2), FrictionDrift(0.3, 10.0)], false),
-        (vec![PositionDependentFriction(1.5), TorqueRipple(20.0, 3.0)], false),
+        (
+            vec![PositionDependentFriction(1.5), TorqueRipple(20.0, 3.0)],
+            false,
+        ),
         (vec![QuadraticDrag(1000.0), Stribeck(1.4, 5.0e-3)], false),
         (vec![Backlash(20.0e-6), TorqueRipple(15.0, 6.0)], true),
         (vec![Delay(0.6e-3), ViscousAsymmetry(-0.2)], false),

@@ -1,7 +1,8 @@
 //! Seeded records of axes with known hidden effects, for judging the identification.
 //!
-//! The plant simulator under a floating-point position controller, at 1 kHz, recorded as a drive would: encoders rounded down, the recorded effort
-//! with noise of its own. The identification knows nothing of it but the CSV files and `dataset.toml`.
+//! The plant simulator under a floating-point position controller, at 1 kHz, recorded as a drive
+//! would: encoders rounded down, the recorded effort with noise of its own. The identification
+//! knows nothing of it but the CSV files and `dataset.toml`.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -136,14 +137,21 @@ pub fn write(folder: &Path, plan: &Plan) -> io::Result<()> {
     let mass = parameters.mechanics.motor_inertia_kg + parameters.mechanics.table_mass_kg;
     for name in ["train.csv", "validate.csv"] {
         let path = path(plan.rows, &mut source);
-        std::fs::write(folder.join(name), record(plan, &parameters, &path, mass, &mut source))?;
+        std::fs::write(
+            folder.join(name),
+            record(plan, &parameters, &path, mass, &mut source),
+        )?;
     }
     std::fs::write(folder.join("dataset.toml"), dataset(plan, mass))
 }
 
 fn dataset(plan: &Plan, mass: f64) -> String {
     let resolution = LEAD_M / f64::from(COUNTS_PER_REV);
-    let load = if plan.load_scale { "load_encoder_resolution_m = 1e-7\n" } else { "" };
+    let load = if plan.load_scale {
+        "load_encoder_resolution_m = 1e-7\n"
+    } else {
+        ""
+    };
     let gain = mass * TAU * VELOCITY_BANDWIDTH_HZ;
     format!(
         "name = \"seed {}\"\nsample_period_s = {PERIOD_S}\neffort_hold = \"zero-order\"\n[axis]\nkind = \"linear\"\nlead_m_per_rev = {LEAD_M}\nencoder_resolution_m = {resolution:e}\n{load}\
@@ -178,7 +186,10 @@ fn axis(plan: &Plan, source: &mut Source) -> AxisParameters {
         lead_m_per_rev: LEAD_M,
         sliding,
         law: Law::Coulomb,
-        effects: Effects { offset_n: source.between(-30.0, 30.0), ..Effects::default() },
+        effects: Effects {
+            offset_n: source.between(-30.0, 30.0),
+            ..Effects::default()
+        },
         motor_encoder_counts_per_rev: COUNTS_PER_REV,
         load_encoder_resolution_m: 1.0e-7,
         current_loop_time_constant_s: 2.0e-5,
@@ -186,7 +197,9 @@ fn axis(plan: &Plan, source: &mut Source) -> AxisParameters {
         force_noise_n: 0.3 * plan.noise_n,
         mounting: Mounting::default(),
     };
-    plan.hidden.iter().for_each(|hidden| hide(*hidden, &mut parameters));
+    plan.hidden
+        .iter()
+        .for_each(|hidden| hide(*hidden, &mut parameters));
     parameters
 }
 
@@ -199,7 +212,10 @@ fn hide(hidden: Hidden, axis: &mut AxisParameters) {
         }
         Hidden::Presliding(deflection) => {
             let bristle_stiffness_n_per_m = axis.sliding.coulomb_n / deflection;
-            axis.law = Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m: 2.0e4 };
+            axis.law = Law::LuGre {
+                bristle_stiffness_n_per_m,
+                bristle_damping_n_s_per_m: 2.0e4,
+            };
         }
         Hidden::Backlash(gap) => axis.mechanics.backlash_m = gap,
         Hidden::Compliance(stiffness) => {
@@ -207,17 +223,31 @@ fn hide(hidden: Hidden, axis: &mut AxisParameters) {
             axis.mechanics.screw_damping_n_s_per_m = 2.0e4;
         }
         Hidden::TorqueRipple(amplitude_n, order_per_rev) => {
-            axis.effects.torque_ripple = Some(TorqueRipple { amplitude_n, order_per_rev, phase_rad: 0.7 });
+            axis.effects.torque_ripple = Some(TorqueRipple {
+                amplitude_n,
+                order_per_rev,
+                phase_rad: 0.7,
+            });
         }
         Hidden::PitchError(amplitude_m, period_m) => {
-            axis.effects.pitch_error = Some(PitchError { amplitude_m, period_m });
+            axis.effects.pitch_error = Some(PitchError {
+                amplitude_m,
+                period_m,
+            });
         }
-        Hidden::PositionDependentFriction(per_m) => axis.effects.position_dependent_friction_per_m = per_m,
+        Hidden::PositionDependentFriction(per_m) => {
+            axis.effects.position_dependent_friction_per_m = per_m
+        }
         Hidden::FrictionDrift(gain, time_constant_s) => {
-            axis.effects.friction_drift = Some(FrictionDrift { gain, time_constant_s });
+            axis.effects.friction_drift = Some(FrictionDrift {
+                gain,
+                time_constant_s,
+            });
         }
         Hidden::QuadraticDrag(drag) => axis.sliding.quadratic_drag_n_s2_per_m2 = drag,
-        Hidden::TorqueSaturation(share) => axis.effects.torque_saturation_per_n = 1.0e-3 * share / (1.0 - share),
+        Hidden::TorqueSaturation(share) => {
+            axis.effects.torque_saturation_per_n = 1.0e-3 * share / (1.0 - share)
+        }
         Hidden::Delay(delay_s) => axis.effects.delay_s = delay_s,
         Hidden::Spring(_) | Hidden::Hum(..) | Hidden::CubicDrag(_) => {}
     }
@@ -251,7 +281,10 @@ fn path(rows: usize, source: &mut Source) -> Vec<f64> {
         };
         path.extend(piece);
         let rest = (source.between(0.02, 0.3) / PERIOD_S) as usize;
-        path.extend(std::iter::repeat_n(path.last().copied().unwrap_or(0.0), rest));
+        path.extend(std::iter::repeat_n(
+            path.last().copied().unwrap_or(0.0),
+            rest,
+        ));
     }
     path.truncate(rows);
     path
@@ -271,7 +304,8 @@ fn sines(here: f64, source: &mut Source) -> Vec<f64> {
         .map(|row| {
             let t = PERIOD_S * row as f64;
             let window = smooth(2.0 * t) * smooth(2.0 * (duration_s - t));
-            let part = |i: usize, phase: f64| speed[i] / (TAU * hz[i]) * (TAU * hz[i] * t + phase).sin();
+            let part =
+                |i: usize, phase: f64| speed[i] / (TAU * hz[i]) * (TAU * hz[i] * t + phase).sin();
             here + window * (part(0, 0.0) + part(1, phase))
         })
         .collect()
@@ -282,13 +316,22 @@ fn slow(here: f64, source: &mut Source) -> Vec<f64> {
     let velocity = 1.0e-3 * 10.0_f64.powf(source.between(0.2, 1.3));
     let way = (velocity * source.between(0.4, 1.2)).min(0.02);
     let there = if here > 0.0 { -way } else { way };
-    [ramp(here, here + there, velocity, 0.3), ramp(here + there, here, velocity, 0.3)].concat()
+    [
+        ramp(here, here + there, velocity, 0.3),
+        ramp(here + there, here, velocity, 0.3),
+    ]
+    .concat()
 }
 
 /// A fast move elsewhere.
 fn trapezoid(here: f64, source: &mut Source) -> Vec<f64> {
     let target = source.between(-REACH_M, REACH_M);
-    ramp(here, target, source.between(0.05, 0.30), source.between(0.5, 3.0))
+    ramp(
+        here,
+        target,
+        source.between(0.05, 0.30),
+        source.between(0.5, 3.0),
+    )
 }
 
 /// A move with a limited velocity and acceleration, smoothed.
@@ -305,7 +348,10 @@ fn ramp(from: f64, to: f64, velocity: f64, acceleration: f64) -> Vec<f64> {
     (0..rows)
         .map(|row| {
             let t = PERIOD_S * row as f64;
-            x += PERIOD_S * velocity * smooth(t / speeding_s) * smooth((duration_s - t) / speeding_s);
+            x += PERIOD_S
+                * velocity
+                * smooth(t / speeding_s)
+                * smooth((duration_s - t) / speeding_s);
             from + (to - from).signum() * x.min(way)
         })
         .collect()
@@ -317,24 +363,53 @@ fn smooth(u: f64) -> f64 {
 }
 
 /// Runs the axis along a path and writes the record.
-fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], mass: f64, source: &mut Source) -> String {
+fn record(
+    plan: &Plan,
+    parameters: &AxisParameters,
+    path: &[f64],
+    mass: f64,
+    source: &mut Source,
+) -> String {
     let seed = source.between(0.0, 1.0e9) as u64;
     let mut axis = Axis::new(parameters.clone(), seed);
     let resolution = LEAD_M / f64::from(COUNTS_PER_REV);
-    let load = if plan.load_scale { ",load_position_m" } else { "" };
+    let load = if plan.load_scale {
+        ",load_position_m"
+    } else {
+        ""
+    };
     let mut text = format!("time_s,reference_m,position_m{load},force_n\n");
     let mut control = Loop::new(mass);
     for row in 0..path.len() {
-        let Reading { motor_increments, load_10_nm } = axis.read();
+        let Reading {
+            motor_increments,
+            load_10_nm,
+        } = axis.read();
         let position = motor_increments as f64 * resolution;
-        let measured = if plan.load_loop { 1.0e-8 * load_10_nm as f64 } else { position };
+        let measured = if plan.load_loop {
+            1.0e-8 * load_10_nm as f64
+        } else {
+            position
+        };
         let force = control.step(path, row, measured);
         let recorded = force + plan.noise_n * source.normal();
-        let load = if plan.load_scale { format!(",{:.8}", 1.0e-8 * load_10_nm as f64) } else { String::new() };
+        let load = if plan.load_scale {
+            format!(",{:.8}", 1.0e-8 * load_10_nm as f64)
+        } else {
+            String::new()
+        };
         let time_s = PERIOD_S * row as f64;
-        writeln!(text, "{time_s:.3},{:.9},{position:.10}{load},{recorded:.2}", path[row]).expect("a String takes it");
+        writeln!(
+            text,
+            "{time_s:.3},{:.9},{position:.10}{load},{recorded:.2}",
+            path[row]
+        )
+        .expect("a String takes it");
         let motion = *axis.motion();
-        axis.advance(force + foreign_n(&plan.hidden, motion.table_m, motion.table_m_per_s, time_s), PERIOD_S);
+        axis.advance(
+            force + foreign_n(&plan.hidden, motion.table_m, motion.table_m_per_s, time_s),
+            PERIOD_S,
+        );
     }
     text
 }
@@ -345,12 +420,15 @@ const FEED_M_PER_S: f64 = 2.0 / 60.0;
 /// Bursts are looked for within this angle about a reversal, rad.
 const BURST_WINDOW: f64 = 0.26;
 
-/// The burst that the axis of a plan makes on a circle, m: the largest deviation of the table from its setpoint about the reversals of the second turn,
-/// less the deviation in between.
+/// The burst that the axis of a plan makes on a circle, m: the largest deviation of the table from
+/// its setpoint about the reversals of the second turn, less the deviation in between.
 #[must_use]
 pub fn burst_m(plan: &Plan) -> f64 {
     let mut source = Source(ChaCha8Rng::seed_from_u64(plan.seed));
-    let parameters = AxisParameters { force_noise_n: 0.0, ..axis(plan, &mut source) };
+    let parameters = AxisParameters {
+        force_noise_n: 0.0,
+        ..axis(plan, &mut source)
+    };
     let mass = parameters.mechanics.motor_inertia_kg + parameters.mechanics.table_mass_kg;
     let omega = FEED_M_PER_S / CIRCLE_M;
     let rows = (2.0 * TAU / omega / PERIOD_S) as usize;
@@ -360,9 +438,16 @@ pub fn burst_m(plan: &Plan) -> f64 {
     let mut control = Loop::new(mass);
     let (mut largest, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
     for row in 0..rows {
-        let Reading { motor_increments, load_10_nm } = axis.read();
+        let Reading {
+            motor_increments,
+            load_10_nm,
+        } = axis.read();
         let motor = motor_increments as f64 * LEAD_M / f64::from(COUNTS_PER_REV);
-        let measured = if plan.load_loop { 1.0e-8 * load_10_nm as f64 } else { motor };
+        let measured = if plan.load_loop {
+            1.0e-8 * load_10_nm as f64
+        } else {
+            motor
+        };
         let deviation = (axis.motion().table_m - path[row]).abs();
         if angle(row) > TAU {
             if angle(row).cos().abs() < BURST_WINDOW.sin() {
@@ -386,7 +471,12 @@ struct Loop {
 
 impl Loop {
     const fn new(mass: f64) -> Self {
-        Self { mass, before: None, velocity: 0.0, integral: 0.0 }
+        Self {
+            mass,
+            before: None,
+            velocity: 0.0,
+            integral: 0.0,
+        }
     }
 
     fn step(&mut self, path: &[f64], row: usize, position: f64) -> f64 {
@@ -398,6 +488,7 @@ impl Loop {
         let error = POSITION_GAIN_PER_S * (at(row) - position) + slope(row) - self.velocity;
         self.integral += PERIOD_S * INTEGRAL_PER_S * error;
         let gain = self.mass * TAU * VELOCITY_BANDWIDTH_HZ;
-        gain * (error + self.integral) + self.mass * (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * PERIOD_S)
+        gain * (error + self.integral)
+            + self.mass * (slope(row + 1) - slope(row.saturating_sub(1))) / (2.0 * PERIOD_S)
     }
 }

@@ -15,7 +15,10 @@ use workbench::master::Master;
 #[must_use]
 pub fn quiet_reference() -> Machine {
     let mut machine = Machine::reference();
-    machine.axes.iter_mut().for_each(|axis| axis.actual.force_noise_n = 0.0);
+    machine
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.actual.force_noise_n = 0.0);
     machine
 }
 
@@ -23,7 +26,10 @@ pub fn quiet_reference() -> Machine {
 #[must_use]
 pub fn shared_bus() -> Machine {
     let mut machine = Machine::reference();
-    machine.axes.iter_mut().for_each(|axis| axis.interface = Some("vcan0".into()));
+    machine
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.interface = Some("vcan0".into()));
     machine
 }
 
@@ -35,8 +41,8 @@ pub fn one_axis() -> Machine {
     machine
 }
 
-/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on the motor that opens
-/// in 30 ms and bites after 40 ms.
+/// A vertical axis, positive up: 2500 N of gravity that nothing balances, and a brake of 4 kN on
+/// the motor that opens in 30 ms and bites after 40 ms.
 #[must_use]
 pub fn vertical() -> Machine {
     vertical_with_brake(0.030, 0.040)
@@ -48,13 +54,18 @@ pub fn vertical_with_brake(open_s: f64, close_s: f64) -> Machine {
     let mut machine = one_axis();
     for axis in &mut machine.axes {
         axis.actual.mounting.gravity_n = -2500.0;
-        axis.actual.mounting.brake = Some(BrakeParameters { rated_force_n: 4000.0, open_s, close_s, rise_s: 0.0 });
+        axis.actual.mounting.brake = Some(BrakeParameters {
+            rated_force_n: 4000.0,
+            open_s,
+            close_s,
+            rise_s: 0.0,
+        });
     }
     machine
 }
 
-/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once too, that of 10 ms in
-/// 8 ms.
+/// The vertical axis with each brake of the tables: name, machine. A brake of 0 ms opens at once
+/// too, that of 10 ms in 8 ms.
 #[must_use]
 pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     [
@@ -64,8 +75,8 @@ pub fn vertical_axes() -> [(&'static str, Machine); 3] {
     ]
 }
 
-/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor encoder counts from
-/// zero.
+/// One axis with an absolute scale whose table stands at `table_m` at power-up, while its motor
+/// encoder counts from zero.
 #[must_use]
 pub fn absolute_scale(table_m: f64) -> Machine {
     let mut machine = one_axis();
@@ -76,8 +87,8 @@ pub fn absolute_scale(table_m: f64) -> Machine {
     machine
 }
 
-/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20 increments one way,
-/// five times the 2^31 of the frame, within the 21.5 m that a setpoint can say.
+/// One axis with a lead of 1 mm and 10 m of travel to either side: ten thousand revolutions of 2^20
+/// increments one way, five times the 2^31 of the frame, within the 21.5 m that a setpoint can say.
 #[must_use]
 pub fn long_way() -> Machine {
     let mut machine = one_axis();
@@ -99,8 +110,8 @@ pub fn gap_outside(gap_m: f64) -> Machine {
     machine
 }
 
-/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral 11.25 Hz) of the
-/// prototype's figures.
+/// The paper's Fig. 5: a gap inside the position loop, in the 2 kHz loop (60 /s, 45 Hz, integral
+/// 11.25 Hz) of the prototype's figures.
 #[must_use]
 pub fn gap_inside(gap_m: f64) -> Machine {
     let mut machine = quiet_reference();
@@ -131,7 +142,10 @@ pub fn dry_friction() -> Machine {
 /// Where the machine does not come up.
 pub fn enabled(machine: &Machine) -> Outcome<Master<InProcess>> {
     let mut master = Master::start(InProcess::new(machine, 0)?, machine)?;
-    master.configure(machine, &vec![AxisCompensation::default(); machine.axes.len()])?;
+    master.configure(
+        machine,
+        &vec![AxisCompensation::default(); machine.axes.len()],
+    )?;
     master.enable()?;
     Ok(master)
 }
@@ -141,11 +155,16 @@ pub const PLANT: usize = 0;
 /// Place of the servo.
 pub const SERVO: usize = 1;
 
-/// Writes parameters of an axis and makes them active as a whole, as an engineer would over SDO; in motion as well.
+/// Writes parameters of an axis and makes them active as a whole, as an engineer would over SDO; in
+/// motion as well.
 ///
 /// # Errors
 /// Where the drive refuses a value or the set.
-pub fn set<L: Link>(master: &mut Master<L>, axis: usize, values: &[(Parameter, i32)]) -> Outcome<()> {
+pub fn set<L: Link>(
+    master: &mut Master<L>,
+    axis: usize,
+    values: &[(Parameter, i32)],
+) -> Outcome<()> {
     for (parameter, value) in values {
         let entry = TABLE.iter().find(|entry| entry.parameter == *parameter);
         let entry = entry.ok_or_else(|| Failure::new("the drive has no such object"))?;

@@ -1,8 +1,10 @@
 //! Cortex-M targets for the toolchain: the one place that installs them.
 //!
-//! A machine with a stock toolchain has only the host's standard library. `rustup target add` fetches another one, but rustup does not lock: two at once
-//! rename the same downloads away from each other, and one of them fails. Tests run at once, in threads and in processes, so here everybody waits for the
-//! lock on the folder that rustup writes to. Adding a target that is there costs some milliseconds and no network.
+//! A machine with a stock toolchain has only the host's standard library. `rustup target add`
+//! fetches another one, but rustup does not lock: two at once rename the same downloads away from
+//! each other, and one of them fails. Tests run at once, in threads and in processes, so here
+//! everybody waits for the lock on the folder that rustup writes to. Adding a target that is there
+//! costs some milliseconds and no network.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -22,11 +24,17 @@ pub fn install(target: &str) {
 fn install_with(rustup: &OsStr, target: &str) -> Result<(), String> {
     let libraries = libraries(target)?;
     let _lock = locked(&libraries)?;
-    let added = Command::new(rustup).args(["target", "add", target]).output();
+    let added = Command::new(rustup)
+        .args(["target", "add", target])
+        .output();
     let why = match added {
-        Ok(added) if added.status.success() => "rustup serves another toolchain than the one on the path".to_owned(),
+        Ok(added) if added.status.success() => {
+            "rustup serves another toolchain than the one on the path".to_owned()
+        }
         Ok(added) => String::from_utf8_lossy(&added.stderr).trim().to_owned(),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => "there is no rustup on the path".to_owned(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            "there is no rustup on the path".to_owned()
+        }
         Err(error) => error.to_string(),
     };
     if has_core(&libraries) {
@@ -40,13 +48,20 @@ fn install_with(rustup: &OsStr, target: &str) -> Result<(), String> {
 
 /// Where the toolchain on the path keeps the target's libraries, there or not.
 fn libraries(target: &str) -> Result<PathBuf, String> {
-    let asked = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    let asked = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", target])
+        .output();
     let asked = asked.map_err(|error| format!("rustc: {error}"))?;
     let text = String::from_utf8_lossy(&asked.stdout);
-    if asked.status.success() { Ok(text.trim().into()) } else { Err(String::from_utf8_lossy(&asked.stderr).into()) }
+    if asked.status.success() {
+        Ok(text.trim().into())
+    } else {
+        Err(String::from_utf8_lossy(&asked.stderr).into())
+    }
 }
 
-/// Waits for the lock on `lib/rustlib`, two levels above a target's libraries. A lock on the folder itself leaves no file behind.
+/// Waits for the lock on `lib/rustlib`, two levels above a target's libraries. A lock on the folder
+/// itself leaves no file behind.
 fn locked(libraries: &Path) -> Result<File, String> {
     let folder = libraries.ancestors().nth(2).unwrap_or(libraries);
     let lock = File::open(folder).and_then(|folder| folder.lock().map(|()| folder));
@@ -55,8 +70,14 @@ fn locked(libraries: &Path) -> Result<File, String> {
 
 /// Whether the target's `core` is there.
 fn has_core(libraries: &Path) -> bool {
-    let names = std::fs::read_dir(libraries).into_iter().flatten().flatten().map(|entry| entry.file_name());
-    names.into_iter().any(|name| name.to_string_lossy().starts_with("libcore-"))
+    let names = std::fs::read_dir(libraries)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.file_name());
+    names
+        .into_iter()
+        .any(|name| name.to_string_lossy().starts_with("libcore-"))
 }
 
 #[cfg(test)]
@@ -69,12 +90,18 @@ mod tests {
     #[test]
     fn without_rustup_the_error_says_what_to_do() {
         let why = install_with("no-such-rustup".as_ref(), NEVER).unwrap_err();
-        assert!(why.contains("no rustup") && why.contains(&format!("rustup target add {NEVER}")), "{why}");
+        assert!(
+            why.contains("no rustup") && why.contains(&format!("rustup target add {NEVER}")),
+            "{why}"
+        );
     }
 
     #[test]
     fn without_rustup_a_target_that_is_there_is_enough() {
-        let asked = Command::new("rustc").args(["--print", "host-tuple"]).output().unwrap();
+        let asked = Command::new("rustc")
+            .args(["--print", "host-tuple"])
+            .output()
+            .unwrap();
         let host = String::from_utf8(asked.stdout).unwrap();
         assert_eq!(install_with("no-such-rustup".as_ref(), host.trim()), Ok(()));
     }
@@ -84,7 +111,10 @@ mod tests {
         let folder = libraries(NEVER).unwrap();
         let first = locked(&folder).unwrap();
         let second = File::open(folder.ancestors().nth(2).unwrap()).unwrap();
-        assert!(matches!(second.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
+        assert!(matches!(
+            second.try_lock(),
+            Err(std::fs::TryLockError::WouldBlock)
+        ));
         drop(first);
         second.lock().unwrap();
     }

@@ -1,4 +1,5 @@
-//! The board image links within its budgets, and no panic is reachable from the control path. Linking is not booting.
+//! The board image links within its budgets, and no panic is reachable from the control path.
+//! Linking is not booting.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,21 +9,42 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, elf
 use serde::Deserialize;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_path_buf()
 }
 
-/// Builds a leaf for a Cortex-M target, in a target folder of its own so that it does not wait for the tests' lock; gives the image.
+/// Builds a leaf for a Cortex-M target, in a target folder of its own so that it does not wait for
+/// the tests' lock; gives the image.
 fn build(package: &str, target: &str, profile: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("cortex-m");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap()
+        .join("cortex-m");
     targets::install(target);
     let built = Command::new(env!("CARGO"))
-        .args(["build", "--locked", "--package", package, "--target", target, "--profile", profile, "--target-dir"])
+        .args([
+            "build",
+            "--locked",
+            "--package",
+            package,
+            "--target",
+            target,
+            "--profile",
+            profile,
+            "--target-dir",
+        ])
         .arg(&folder)
         .current_dir(root())
         .env_remove("RUSTFLAGS")
         .output()
         .unwrap();
-    assert!(built.status.success(), "{package}: {}", String::from_utf8_lossy(&built.stderr));
+    assert!(
+        built.status.success(),
+        "{package}: {}",
+        String::from_utf8_lossy(&built.stderr)
+    );
     folder.join(target).join(profile).join(package)
 }
 
@@ -46,8 +68,17 @@ struct Budgets {
 }
 
 fn check(what: &str, used: u64, budget: &Budget) {
-    println!("{what}: {used} of {} bytes ({:.1} %)", budget.of, 100.0 * used as f64 / budget.of as f64);
-    assert!((budget.min..=budget.max).contains(&used), "{what}: {used} bytes, budget {} to {}", budget.min, budget.max);
+    println!(
+        "{what}: {used} of {} bytes ({:.1} %)",
+        budget.of,
+        100.0 * used as f64 / budget.of as f64
+    );
+    assert!(
+        (budget.min..=budget.max).contains(&used),
+        "{what}: {used} bytes, budget {} to {}",
+        budget.min,
+        budget.max
+    );
 }
 
 #[test]
@@ -57,7 +88,9 @@ fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
     let file = object::File::parse(&*bytes).unwrap();
     let (mut flash, mut ram) = (0, 0);
     for section in file.sections() {
-        let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
+        let SectionFlags::Elf { sh_flags } = section.flags() else {
+            continue;
+        };
         if sh_flags & u64::from(elf::SHF_ALLOC) == 0 || section.address() < 0x0800_0000 {
             continue;
         }
@@ -73,11 +106,27 @@ fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
 
     let table = file.section_by_name(".vector_table").unwrap();
     assert_eq!(table.address(), 0x0800_0000);
-    let words: Vec<u32> =
-        table.data().unwrap().chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
-    assert_eq!(words[0], 0x2000_0000 + 22 * 1024, "initial stack pointer at the end of RAM");
-    let reset = file.symbols().find(|symbol| symbol.name() == Ok("Reset")).unwrap().address();
-    assert_eq!(u64::from(words[1]) | 1, reset | 1, "the reset vector points to Reset");
+    let words: Vec<u32> = table
+        .data()
+        .unwrap()
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes(word.try_into().unwrap()))
+        .collect();
+    assert_eq!(
+        words[0],
+        0x2000_0000 + 22 * 1024,
+        "initial stack pointer at the end of RAM"
+    );
+    let reset = file
+        .symbols()
+        .find(|symbol| symbol.name() == Ok("Reset"))
+        .unwrap()
+        .address();
+    assert_eq!(
+        u64::from(words[1]) | 1,
+        reset | 1,
+        "the reset vector points to Reset"
+    );
     assert_eq!(file.entry() | 1, reset | 1);
 }
 
@@ -86,8 +135,17 @@ fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
     let image = build("control-path", "thumbv7em-none-eabi", "proof");
     let bytes = std::fs::read(&image).unwrap();
     let file = object::File::parse(&*bytes).unwrap();
-    let names: Vec<&str> = file.symbols().filter_map(|symbol| symbol.name().ok()).collect();
-    for entry in ["entry_new", "entry_boot", "entry_frame", "entry_time", "entry_due"] {
+    let names: Vec<&str> = file
+        .symbols()
+        .filter_map(|symbol| symbol.name().ok())
+        .collect();
+    for entry in [
+        "entry_new",
+        "entry_boot",
+        "entry_frame",
+        "entry_time",
+        "entry_due",
+    ] {
         assert!(names.contains(&entry), "{entry} is not in the image");
     }
     let soft = |name: &&&str| {
@@ -96,10 +154,16 @@ fn no_panic_no_float_and_no_long_division_is_reachable_from_the_control_path() {
             || name.ends_with("ldivmod")
             || name.contains("panic")
     };
-    assert_eq!(names.iter().filter(soft).collect::<Vec<_>>(), Vec::<&&str>::new());
+    assert_eq!(
+        names.iter().filter(soft).collect::<Vec<_>>(),
+        Vec::<&&str>::new()
+    );
     let text = file.section_by_name(".text").unwrap().size();
     println!("control path: {text} bytes of code");
-    assert!((10_000..60_000).contains(&text), "{text} bytes of code: is the control path really in it?");
+    assert!(
+        (10_000..60_000).contains(&text),
+        "{text} bytes of code: is the control path really in it?"
+    );
 }
 
 #[test]
@@ -131,5 +195,8 @@ fn the_proof_would_notice_a_panic() {
         .output()
         .unwrap();
     let message = String::from_utf8_lossy(&linked.stderr);
-    assert!(!linked.status.success() && message.contains("a_panic_is_reachable_from_the_control_path"), "{message}");
+    assert!(
+        !linked.status.success() && message.contains("a_panic_is_reachable_from_the_control_path"),
+        "{message}"
+    );
 }

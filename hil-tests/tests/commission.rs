@@ -11,27 +11,62 @@ use workbench::interrupt::Interrupt;
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     let out = tempfile::tempdir().unwrap();
     let machine = MachineArguments::default();
-    commission::command(&Commission { machine, out: out.path().to_path_buf() }, &Interrupt::never()).unwrap();
+    commission::command(
+        &Commission {
+            machine,
+            out: out.path().to_path_buf(),
+        },
+        &Interrupt::never(),
+    )
+    .unwrap();
 
     let text = std::fs::read_to_string(out.path().join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut rows = Vec::new();
     for axis in summary["axes"].as_array().unwrap() {
         let name = axis["name"].as_str().unwrap();
-        let mut found: Vec<&str> =
-            axis["found"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        let mut found: Vec<&str> = axis["found"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|name| name.as_str().unwrap())
+            .collect();
         found.sort_unstable();
         assert_eq!(found, ["presliding", "stribeck"], "axis {name}");
         assert_eq!(axis["verdict"], "explained", "axis {name}");
         let validate = |key: &str| axis["validate"][key].as_f64().unwrap();
-        rows.push(row(format!("axis {name}, force error before"), validate("force_error_before_percent"), "%"));
-        rows.push(row(format!("axis {name}, force error after"), validate("force_error_after_percent"), "%"));
-        rows.push(row(format!("axis {name}, about reversals before"), validate("reversal_error_before"), "N"));
-        rows.push(row(format!("axis {name}, about reversals after"), validate("reversal_error_after"), "N"));
+        rows.push(row(
+            format!("axis {name}, force error before"),
+            validate("force_error_before_percent"),
+            "%",
+        ));
+        rows.push(row(
+            format!("axis {name}, force error after"),
+            validate("force_error_after_percent"),
+            "%",
+        ));
+        rows.push(row(
+            format!("axis {name}, about reversals before"),
+            validate("reversal_error_before"),
+            "N",
+        ));
+        rows.push(row(
+            format!("axis {name}, about reversals after"),
+            validate("reversal_error_after"),
+            "N",
+        ));
         assert!(validate("force_error_after_percent") < validate("force_error_before_percent"));
         let parameter = |key: &str| axis["parameters"][key]["value"].as_f64().unwrap();
-        rows.push(row(format!("axis {name}, Coulomb friction"), parameter("coulomb"), "N"));
-        rows.push(row(format!("axis {name}, Stribeck velocity"), 1.0e3 * parameter("stribeck_velocity"), "mm/s"));
+        rows.push(row(
+            format!("axis {name}, Coulomb friction"),
+            parameter("coulomb"),
+            "N",
+        ));
+        rows.push(row(
+            format!("axis {name}, Stribeck velocity"),
+            1.0e3 * parameter("stribeck_velocity"),
+            "mm/s",
+        ));
     }
     let burst = |key: &str| summary[key]["peak_max_um"].as_f64().unwrap();
     let reduction = summary["burst_reduction_percent"].as_f64().unwrap();
@@ -44,18 +79,25 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
 
 fn check_files(out: &Path) {
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
-    for part in
-        ["<svg", "presliding", "Residual against velocity", "Residual against position", "(6) Error", "ring to ring"]
-    {
+    for part in [
+        "<svg",
+        "presliding",
+        "Residual against velocity",
+        "Residual against position",
+        "(6) Error",
+        "ring to ring",
+    ] {
         assert!(report.contains(part), "{part} is not in the report");
     }
     assert!(
-        !report.contains("http://") || report.matches("http://").count() == report.matches("http://www.w3.org").count(),
+        !report.contains("http://")
+            || report.matches("http://").count() == report.matches("http://www.w3.org").count(),
         "self-contained"
     );
     for file in ["model.toml", "compensation.toml"] {
         let text = std::fs::read_to_string(out.join(file)).unwrap();
-        text.parse::<toml::Table>().unwrap_or_else(|error| panic!("{file}: {error}"));
+        text.parse::<toml::Table>()
+            .unwrap_or_else(|error| panic!("{file}: {error}"));
     }
     for file in [
         "records.candump.log",
@@ -64,6 +106,9 @@ fn check_files(out: &Path) {
         "records-Y/validate.csv",
         "records-X/dataset.toml",
     ] {
-        assert!(std::fs::metadata(out.join(file)).unwrap().len() > 100, "{file}");
+        assert!(
+            std::fs::metadata(out.join(file)).unwrap().len() > 100,
+            "{file}"
+        );
     }
 }

@@ -9,17 +9,28 @@ use protocol::table::{FRAMES, Rate};
 const CYCLE: &str = include_str!("docs/cycle.md");
 
 fn check(name: &str, text: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../docs")
+        .join(name);
     if std::env::var_os("QUADRANT_BLESS").is_some() {
         std::fs::write(&path, text).unwrap();
     }
     let there = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(there == text, "docs/{name} is not what its table says (QUADRANT_BLESS=1 rewrites it)");
+    assert!(
+        there == text,
+        "docs/{name} is not what its table says (QUADRANT_BLESS=1 rewrites it)"
+    );
 }
 
 #[test]
 fn the_list_of_objects_is_the_table_of_the_drive() {
-    let text = [OBJECTS_HEAD.to_owned(), parameter_rows(), reading_rows(), reason_rows()].concat();
+    let text = [
+        OBJECTS_HEAD.to_owned(),
+        parameter_rows(),
+        reading_rows(),
+        reason_rows(),
+    ]
+    .concat();
     check("objects.md", &text);
 }
 
@@ -38,8 +49,9 @@ const OBJECTS_HEAD: &str = "# Objects of the drive\n\n\
     are raw numbers for one cycle time, which 2120h:6 states.\n\n";
 
 fn parameter_rows() -> String {
-    let mut text =
-        String::from("| row | object | parameter | step | min | max | after reset |\n|---|---|---|---|---|---|---|\n");
+    let mut text = String::from(
+        "| row | object | parameter | step | min | max | after reset |\n|---|---|---|---|---|---|---|\n",
+    );
     for (place, entry) in servo::objects::TABLE.iter().enumerate() {
         let (index, subindex) = (entry.address.index, entry.address.subindex);
         text += &format!(
@@ -66,7 +78,9 @@ fn reading_rows() -> String {
 }
 
 fn reason_rows() -> String {
-    let mut text = String::from("\n## Reasons of a refused commit (2F02h:2)\n\n| code | reason |\n|---|---|\n");
+    let mut text = String::from(
+        "\n## Reasons of a refused commit (2F02h:2)\n\n| code | reason |\n|---|---|\n",
+    );
     for (code, reason) in servo::parameters::SetError::REASONS {
         text += &format!("| {code} | {reason} |\n");
     }
@@ -90,7 +104,12 @@ fn the_list_of_frames_is_the_table_of_the_protocol() {
         let signals: Vec<String> = frame
             .signals
             .iter()
-            .map(|s| format!("{} ({}, {}, {} {})", s.name, s.start, s.length, s.weight, s.weight.unit))
+            .map(|s| {
+                format!(
+                    "{} ({}, {}, {} {})",
+                    s.name, s.start, s.length, s.weight, s.weight.unit
+                )
+            })
             .collect();
         let id = ids.identifier(frame.kind).as_raw();
         text += &format!(

@@ -1,4 +1,5 @@
-//! The paper's figures as scenarios: Fig. 1 (polar step and burst), Fig. 4 (gap outside), Fig. 5 (gap inside), Fig. 8 (dry friction).
+//! The paper's figures as scenarios: Fig. 1 (polar step and burst), Fig. 4 (gap outside), Fig. 5
+//! (gap inside), Fig. 8 (dry friction).
 //!
 //! Plots go to `target/paper/`; `docs/paper.md` has the table.
 
@@ -16,7 +17,12 @@ use workbench::run::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
-    Circle { radius_m: 1.0e-3 * radius_mm, feed_m_per_s: feed_mm_min / 6.0e4, turns: 3, counter_clockwise: true }
+    Circle {
+        radius_m: 1.0e-3 * radius_mm,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 3,
+        counter_clockwise: true,
+    }
 }
 
 fn none() -> Vec<AxisCompensation> {
@@ -29,7 +35,10 @@ fn run(machine: &Machine, circle: &Circle) -> Vec<Point> {
 }
 
 fn keep(name: &str, svg: &str) {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("paper");
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap()
+        .join("paper");
     std::fs::create_dir_all(&folder).unwrap();
     let text = plots::standalone(svg);
     if std::env::var_os("QUADRANT_BLESS").is_some() {
@@ -50,22 +59,40 @@ fn step(gap_um: f64) -> Measured {
     let points = run(&machine, &circle);
     let figures = ballbar::figures(&points, circle.radius_m, 1.0e-6 * gap_um, MEASURE_FROM_RAD);
     let actual = &machine.axes[0].actual;
-    let wanted_um = gap_um + 2.0e6 * actual.sliding.coulomb_n / actual.mechanics.screw_stiffness_n_per_m;
+    let wanted_um =
+        gap_um + 2.0e6 * actual.sliding.coulomb_n / actual.mechanics.screw_stiffness_n_per_m;
     for step_um in figures.step_um {
-        assert!((step_um / wanted_um - 1.0).abs() < 0.02, "gap {gap_um} µm: step {step_um} µm, wanted {wanted_um} µm");
+        assert!(
+            (step_um / wanted_um - 1.0).abs() < 0.02,
+            "gap {gap_um} µm: step {step_um} µm, wanted {wanted_um} µm"
+        );
     }
     if gap_um == 100.0 {
-        let trace = Trace { name: "gap 100 µm outside".into(), points: &points[..points.len() / 3], radius_m: 0.1 };
-        keep("fig-1a-step.svg", &plots::polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]).unwrap());
+        let trace = Trace {
+            name: "gap 100 µm outside".into(),
+            points: &points[..points.len() / 3],
+            radius_m: 0.1,
+        };
+        keep(
+            "fig-1a-step.svg",
+            &plots::polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]).unwrap(),
+        );
     }
-    row(format!("Fig. 4, gap {gap_um} µm outside, step X"), figures.step_um[0], "µm")
+    row(
+        format!("Fig. 4, gap {gap_um} µm outside, step X"),
+        figures.step_um[0],
+        "µm",
+    )
 }
 
 #[test]
 fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up() {
     let gaps = Scope::now().rows("paper-fig-4", &GAPS_UM, 1, 2);
     let rows = on_all_cores(gaps, |gap_um| step(*gap_um));
-    let scenarios: Vec<String> = gaps.iter().map(|gap_um| format!("Fig. 4, gap {gap_um} µm outside")).collect();
+    let scenarios: Vec<String> = gaps
+        .iter()
+        .map(|gap_um| format!("Fig. 4, gap {gap_um} µm outside"))
+        .collect();
     golden::check_some("paper-fig-4", &rows, &scenarios);
 }
 
@@ -73,9 +100,14 @@ fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up
 fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
     let gap_m = 1.0e-4;
     let machine = gap_outside(gap_m);
-    let rows =
-        commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 500.0), &Interrupt::never())
-            .unwrap();
+    let rows = commission::reversal_rows(
+        &machine,
+        &Place::InProcess,
+        &none(),
+        &circle(100.0, 500.0),
+        &Interrupt::never(),
+    )
+    .unwrap();
     let of = |row: &(f64, AxisCycle)| row.1.truth.unwrap();
     // While table − motor goes through the middle half of the gap.
     let crossing: Vec<(f64, f64)> = rows
@@ -84,11 +116,19 @@ fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
         .filter(|(_, ahead)| ahead.abs() < 0.25 * gap_m)
         .collect();
     assert!(crossing.len() > 50, "{} samples", crossing.len());
-    let (low, high) = crossing.iter().fold((f64::MAX, f64::MIN), |(low, high), (x, _)| (low.min(*x), high.max(*x)));
+    let (low, high) = crossing
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(low, high), (x, _)| {
+            (low.min(*x), high.max(*x))
+        });
     let moved_um = 1.0e6 * (high - low);
     golden::check(
         "paper-fig-4-flat",
-        &[row("way of the table while the motor crosses half the gap of 100 µm", moved_um, "µm")],
+        &[row(
+            "way of the table while the motor crosses half the gap of 100 µm",
+            moved_um,
+            "µm",
+        )],
     );
     assert!(moved_um < 0.5, "{moved_um} µm");
 }
@@ -103,12 +143,22 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
         let points = run(&gap_inside(1.0e-6 * gap_um), &circle);
         let figures = ballbar::figures(&points, circle.radius_m, 1.0e-6 * gap_um, MEASURE_FROM_RAD);
         let burst = figures.peak_max_um;
-        assert!((burst / prototype_um - 1.0).abs() < 0.25, "gap {gap_um} µm: {burst} µm, prototype {prototype_um} µm");
-        rows.push(row(format!("Fig. 5, gap {gap_um} µm inside, burst"), burst, "µm"));
+        assert!(
+            (burst / prototype_um - 1.0).abs() < 0.25,
+            "gap {gap_um} µm: {burst} µm, prototype {prototype_um} µm"
+        );
+        rows.push(row(
+            format!("Fig. 5, gap {gap_um} µm inside, burst"),
+            burst,
+            "µm",
+        ));
         bursts.push(burst);
         if gap_um == 400.0 {
-            let trace =
-                Trace { name: "gap 400 µm inside".into(), points: &points[..points.len() / 3], radius_m: 0.01 };
+            let trace = Trace {
+                name: "gap 400 µm inside".into(),
+                points: &points[..points.len() / 3],
+                radius_m: 0.01,
+            };
             keep(
                 "fig-5b-gap-inside.svg",
                 &plots::polar("Fig. 5(b): gap inside, R 10 mm, F 500 mm/min", &[trace]).unwrap(),
@@ -117,24 +167,40 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
     }
     assert!(bursts.windows(2).all(|pair| pair[0] < pair[1]));
     // Between 100 and 400 µm: burst ∝ gap^n.
-    rows.push(row("Fig. 5, exponent of burst over gap", (bursts[3] / bursts[1]).ln() / 4.0_f64.ln(), ""));
+    rows.push(row(
+        "Fig. 5, exponent of burst over gap",
+        (bursts[3] / bursts[1]).ln() / 4.0_f64.ln(),
+        "",
+    ));
     golden::check("paper-fig-5", &rows);
 }
 
 #[test]
 fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     let machine = dry_friction();
-    let rows =
-        commission::reversal_rows(&machine, &Place::InProcess, &none(), &circle(100.0, 2000.0), &Interrupt::never())
-            .unwrap();
-    for (place, svg) in commission::six_curves(&machine, "Fig. 8(a)", &rows).unwrap().iter().enumerate() {
+    let rows = commission::reversal_rows(
+        &machine,
+        &Place::InProcess,
+        &none(),
+        &circle(100.0, 2000.0),
+        &Interrupt::never(),
+    )
+    .unwrap();
+    for (place, svg) in commission::six_curves(&machine, "Fig. 8(a)", &rows)
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
         keep(&format!("fig-8a-{}.svg", place + 1), svg);
     }
     let still = |row: &(f64, AxisCycle), next: &(f64, AxisCycle)| {
         (next.1.truth.unwrap().table_m - row.1.truth.unwrap().table_m).abs() < 1.0e-12
     };
-    let standing: Vec<&(f64, AxisCycle)> =
-        rows.windows(2).filter(|pair| still(&pair[0], &pair[1])).map(|pair| &pair[0]).collect();
+    let standing: Vec<&(f64, AxisCycle)> = rows
+        .windows(2)
+        .filter(|pair| still(&pair[0], &pair[1]))
+        .map(|pair| &pair[0])
+        .collect();
     let (first, last) = (standing.first().unwrap(), standing.last().unwrap());
     let stagnation_ms = 1.0e3 * (last.0 - first.0);
     assert_eq!(
@@ -146,7 +212,10 @@ fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     let change_n = force(last) - force(first);
     let friction_n = machine.axes[0].actual.sliding.coulomb_n;
     // From sliding the one way to sliding the other way: twice the friction.
-    assert!((change_n / (2.0 * friction_n) - 1.0).abs() < 0.1, "{change_n} N");
+    assert!(
+        (change_n / (2.0 * friction_n) - 1.0).abs() < 0.1,
+        "{change_n} N"
+    );
     golden::check(
         "paper-fig-8",
         &[
@@ -161,14 +230,30 @@ fn fig_1_and_8_friction_inside_the_loop_gives_bursts_on_the_polar_plot() {
     let circle = circle(100.0, 2000.0);
     let points = run(&quiet_reference(), &circle);
     let dry = run(&dry_friction(), &circle);
-    let figures = |points: &[Point]| ballbar::figures(points, circle.radius_m, 0.0, MEASURE_FROM_RAD).peak_max_um;
-    let traces = [("presliding and Stribeck (reference)", &points), ("dry friction", &dry)]
-        .map(|(name, points)| Trace { name: name.into(), points: &points[..points.len() / 3], radius_m: 0.1 });
-    keep("fig-1b-burst.svg", &plots::polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces).unwrap());
+    let figures = |points: &[Point]| {
+        ballbar::figures(points, circle.radius_m, 0.0, MEASURE_FROM_RAD).peak_max_um
+    };
+    let traces = [
+        ("presliding and Stribeck (reference)", &points),
+        ("dry friction", &dry),
+    ]
+    .map(|(name, points)| Trace {
+        name: name.into(),
+        points: &points[..points.len() / 3],
+        radius_m: 0.1,
+    });
+    keep(
+        "fig-1b-burst.svg",
+        &plots::polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces).unwrap(),
+    );
     golden::check(
         "paper-fig-1",
         &[
-            row("Fig. 1(b), burst of the reference machine", figures(&points), "µm"),
+            row(
+                "Fig. 1(b), burst of the reference machine",
+                figures(&points),
+                "µm",
+            ),
             row("Fig. 8(b), burst with dry friction", figures(&dry), "µm"),
         ],
     );

@@ -1,14 +1,17 @@
-//! Whatever the bus says, in whatever order: what the drive commands stays within the axis' limits, and torque has a reason.
+//! Whatever the bus says, in whatever order: what the drive commands stays within the axis' limits,
+//! and torque has a reason.
 //!
-//! The real servo is closed with the real plant node, and with a point mass that answers SYNC. Random masters send control words, NMT commands, parameters and
-//! commits (limits lowered in motion), setpoints that jump, SYNCs that stay away or come with another counter; the ports lose, double, delay and corrupt. A
-//! witness inside the servo's port sees every frame that the servo sees and looks at it after each event.
+//! The real servo is closed with the real plant node, and with a point mass that answers SYNC.
+//! Random masters send control words, NMT commands, parameters and commits (limits lowered in
+//! motion), setpoints that jump, SYNCs that stay away or come with another counter; the ports lose,
+//! double, delay and corrupt. A witness inside the servo's port sees every frame that the servo
+//! sees and looks at it after each event.
 //!
 //! | asserted in every cycle | bound |
 //! |---|---|
 //! | change of the commanded velocity | acceleration limit |
-//! | commanded velocity | velocity limit; above a limit lowered in motion it falls, with a fault latched |
-//! | commanded position | position limits; beyond them by v² / 2 a at most, from where a set became active |
+//! | commanded velocity | velocity limit; above one lowered in motion it falls, with a fault |
+//! | commanded position | position limits; beyond by v² / 2 a at most since a set became active |
 //! | torque frame | torque limit; zero without a reference |
 //! | offset of the backlash unit | half the gap; beyond a gap lowered in motion it shrinks |
 //! | operation enabled | the stage's last word was that it is enabled |
@@ -30,7 +33,8 @@ use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
 use workbench::compensation::AxisCompensation;
 
 const PERIOD_US: u64 = 1000;
-/// A commanded velocity may pass its limit by one bit of a position (39 pm a cycle), its change by twelve (`controller::reference`), in 2⁻¹² of 10 nm.
+/// A commanded velocity may pass its limit by one bit of a position (39 pm a cycle), its change by
+/// twelve (`controller::reference`), in 2⁻¹² of 10 nm.
 const VELOCITY_BIT: i64 = 16;
 const ACCELERATION_BITS: i64 = 12 * 16;
 
@@ -142,9 +146,12 @@ impl Witness {
     fn hear(&mut self, frame: &CanFrame) {
         match decode(self.servo.ids(), frame) {
             Ok(Decoded::Message(Message::PlantStatus(PlantStatus { status, fault, .. }))) => {
-                self.stage_says_enabled = status.state() == Some(DriveState::OperationEnabled) && fault.is_none();
+                self.stage_says_enabled =
+                    status.state() == Some(DriveState::OperationEnabled) && fault.is_none();
             }
-            Ok(Decoded::Message(Message::PlantHeartbeat(NmtState::Initialising))) => self.stage_says_enabled = false,
+            Ok(Decoded::Message(Message::PlantHeartbeat(NmtState::Initialising))) => {
+                self.stage_says_enabled = false
+            }
             _ => {}
         }
     }
@@ -168,7 +175,8 @@ impl Witness {
             self.seen.sets += 1;
             self.begin_anew();
         }
-        // A cycle that was closed in this event may have had a reference that a fault later in the event took away.
+        // A cycle that was closed in this event may have had a reference that a fault later in the
+        // event took away.
         let was_energised = fault != self.fault_before || steps != self.steps_before + 1;
         for frame in frames {
             self.look_at_frame(frame, &limits, was_energised);
@@ -191,11 +199,20 @@ impl Witness {
     }
 
     fn look_at_frame(&mut self, frame: &CanFrame, limits: &Limits, was_energised: bool) {
-        let Ok(Decoded::Message(Message::Torque(torque))) = decode(self.servo.ids(), frame) else { return };
+        let Ok(Decoded::Message(Message::Torque(torque))) = decode(self.servo.ids(), frame) else {
+            return;
+        };
         let magnitude = i64::from(torque.torque.0).abs();
-        assert!(magnitude <= limits.torque, "torque {magnitude} above its limit {}", limits.torque);
+        assert!(
+            magnitude <= limits.torque,
+            "torque {magnitude} above its limit {}",
+            limits.torque
+        );
         let has_reference = was_energised || self.servo.reference().is_some();
-        assert!(magnitude == 0 || has_reference, "torque {magnitude} without a reference");
+        assert!(
+            magnitude == 0 || has_reference,
+            "torque {magnitude} without a reference"
+        );
         let enables = torque.control.command() == Some(Command::EnableOperation);
         assert!(
             !enables || was_energised || self.servo.drive().is_energised(),
@@ -208,7 +225,10 @@ impl Witness {
         self.seen.cycles += cycles;
         self.seen.bridged += u64::from(self.servo.bridged() != (0, 0));
         if drive == Drive::OperationEnabled {
-            assert!(self.stage_says_enabled, "operation enabled without a stage that confirmed");
+            assert!(
+                self.stage_says_enabled,
+                "operation enabled without a stage that confirmed"
+            );
             self.seen.enabled += cycles;
         }
         self.look_at_offset(limits);
@@ -223,18 +243,43 @@ impl Witness {
         self.before = reference.filter(|_| !rebased);
     }
 
-    fn look_at_reference(&mut self, cycles: u64, limits: &Limits, before: &Reference, now: &Reference) {
+    fn look_at_reference(
+        &mut self,
+        cycles: u64,
+        limits: &Limits,
+        before: &Reference,
+        now: &Reference,
+    ) {
         let [was, is] = [before, now].map(|reference| i64::from(reference.velocity.0.to_bits()));
-        let context = || format!("{:?}, {cycles} cycles, {limits:?}\n{before:?}\n{now:?}", self.servo.drive());
+        let context = || {
+            format!(
+                "{:?}, {cycles} cycles, {limits:?}\n{before:?}\n{now:?}",
+                self.servo.drive()
+            )
+        };
         let change = (is - was).abs();
-        // x(k + 1) was commanded in cycle k: a set that becomes active between them is too late for it.
+        // x(k + 1) was commanded in cycle k: a set that becomes active between them is too late for
+        // it.
         let (velocity, acceleration) = (limits.velocity, limits.acceleration);
         let (velocity_before, acceleration_before) = self.limits_before;
-        let allowed = i64::try_from(cycles).unwrap() * (acceleration.max(acceleration_before) + ACCELERATION_BITS);
-        assert!(change <= allowed, "velocity changed by {change}, {allowed} allowed: {}", context());
+        let allowed = i64::try_from(cycles).unwrap()
+            * (acceleration.max(acceleration_before) + ACCELERATION_BITS);
+        assert!(
+            change <= allowed,
+            "velocity changed by {change}, {allowed} allowed: {}",
+            context()
+        );
         let is_fast = is.abs() > velocity.max(velocity_before) + VELOCITY_BIT;
-        assert!(!is_fast || is.abs() <= was.abs(), "velocity {is} above its limit and not falling: {}", context());
-        assert!(!is_fast || self.servo.drive().fault().is_some(), "no fault with velocity {is}: {}", context());
+        assert!(
+            !is_fast || is.abs() <= was.abs(),
+            "velocity {is} above its limit and not falling: {}",
+            context()
+        );
+        assert!(
+            !is_fast || self.servo.drive().fault().is_some(),
+            "no fault with velocity {is}: {}",
+            context()
+        );
         self.look_at_position(limits, now, &context());
         self.limits_before = (velocity, acceleration);
         self.seen.moving += u64::from(is != 0);
@@ -247,8 +292,14 @@ impl Witness {
         let (from, speed) = (self.begun.0, self.begun.1.abs() / 16);
         let acceleration = (limits.acceleration / 16).max(1);
         let braking = speed * speed / (2 * acceleration) + 2 * speed + 2;
-        for (beyond, begun) in [(at - limits.high, from - limits.high), (limits.low - at, limits.low - from)] {
-            assert!(beyond <= begun.max(0) + braking, "{beyond} beyond the travel, {braking} allowed: {context}");
+        for (beyond, begun) in [
+            (at - limits.high, from - limits.high),
+            (limits.low - at, limits.low - from),
+        ] {
+            assert!(
+                beyond <= begun.max(0) + braking,
+                "{beyond} beyond the travel, {braking} allowed: {context}"
+            );
             let outwards = beyond > begun.max(0) + 2 * speed + 2;
             assert!(
                 !outwards || self.servo.drive().fault().is_some(),
@@ -260,7 +311,11 @@ impl Witness {
     fn look_at_offset(&mut self, limits: &Limits) {
         let offset = i64::from(self.servo.backlash_offset().0.to_bits()).abs();
         let allowed = limits.half_gap.max(self.offset_before);
-        assert!(offset <= allowed, "offset {offset}, half the gap {}", limits.half_gap);
+        assert!(
+            offset <= allowed,
+            "offset {offset}, half the gap {}",
+            limits.half_gap
+        );
         self.offset_before = offset;
         self.seen.offsets += u64::from(offset > 0);
     }
@@ -268,7 +323,8 @@ impl Witness {
 
 /// Position and the faster of the two velocities that are commanded already.
 fn begun(reference: &Reference) -> (i64, i64) {
-    let [now, next] = [reference.velocity, reference.next_velocity].map(|velocity| i64::from(velocity.0.to_bits()));
+    let [now, next] = [reference.velocity, reference.next_velocity]
+        .map(|velocity| i64::from(velocity.0.to_bits()));
     (reference.position.0.to_bits(), now.abs().max(next.abs()))
 }
 
@@ -284,7 +340,8 @@ impl Station for Witness {
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
         let mut frames = Vec::new();
         self.hear(frame);
-        self.servo.take(frame, now_us, &mut |frame| frames.push(frame));
+        self.servo
+            .take(frame, now_us, &mut |frame| frames.push(frame));
         self.pass_on(&frames, send);
     }
 
@@ -303,7 +360,8 @@ impl Station for Witness {
     }
 }
 
-/// A point mass without friction that answers SYNC, and a stage that now and then refuses or drops out.
+/// A point mass without friction that answers SYNC, and a stage that now and then refuses or drops
+/// out.
 struct PointMass {
     ids: AxisIds,
     dice: Dice,
@@ -322,7 +380,16 @@ impl PointMass {
     fn new(ids: AxisIds, seed: u64) -> Self {
         let (position_m, velocity_m_per_s, force_n, next_n) = (0.0, 0.0, 0.0, 0.0);
         let state = DriveState::SwitchOnDisabled;
-        Self { ids, dice: Dice(seed), position_m, velocity_m_per_s, force_n, next_n, state, cycle: 0 }
+        Self {
+            ids,
+            dice: Dice(seed),
+            position_m,
+            velocity_m_per_s,
+            force_n,
+            next_n,
+            state,
+            cycle: 0,
+        }
     }
 
     fn step(&mut self) {
@@ -338,7 +405,12 @@ impl PointMass {
     fn status(&self) -> Message {
         let status = StatusWord::of(self.state).with(StatusWord::VOLTAGE_ENABLED);
         let torque = TorqueMicroNm(0);
-        Message::PlantStatus(PlantStatus { status, brake: BrakeState::NotFitted, fault: None, torque })
+        Message::PlantStatus(PlantStatus {
+            status,
+            brake: BrakeState::NotFitted,
+            fault: None,
+            torque,
+        })
     }
 
     fn on_sync(&mut self, counter: SyncCounter, send: &mut dyn FnMut(CanFrame)) {
@@ -346,7 +418,11 @@ impl PointMass {
         self.cycle += 1;
         let motor = (self.position_m / Self::LEAD_M * 1_048_576.0).round() as i64;
         let load = LoadIncrements24::from_counts((self.position_m * 1.0e8).round() as i64);
-        let feedback = Feedback { motor: MotorIncrements(motor as i32), load, counter };
+        let feedback = Feedback {
+            motor: MotorIncrements(motor as i32),
+            load,
+            counter,
+        };
         send(Message::Feedback(feedback).encode(self.ids));
         if self.dice.once_in(3000) && self.state == DriveState::OperationEnabled {
             (self.state, self.force_n, self.next_n) = (DriveState::SwitchOnDisabled, 0.0, 0.0);
@@ -363,7 +439,9 @@ impl PointMass {
     fn on_torque(&mut self, torque: protocol::message::Torque, send: &mut dyn FnMut(CanFrame)) {
         let before = self.state;
         self.state = match torque.control.command() {
-            Some(Command::EnableOperation) if before == DriveState::OperationEnabled || !self.dice.once_in(4) => {
+            Some(Command::EnableOperation)
+                if before == DriveState::OperationEnabled || !self.dice.once_in(4) =>
+            {
                 DriveState::OperationEnabled
             }
             Some(Command::SwitchOn | Command::EnableOperation) => DriveState::SwitchedOn,
@@ -371,8 +449,11 @@ impl PointMass {
             _ => DriveState::SwitchOnDisabled,
         };
         let acts = self.state == DriveState::OperationEnabled;
-        self.next_n =
-            if acts { f64::from(torque.torque.0) * 1.0e-6 * std::f64::consts::TAU / Self::LEAD_M } else { 0.0 };
+        self.next_n = if acts {
+            f64::from(torque.torque.0) * 1.0e-6 * std::f64::consts::TAU / Self::LEAD_M
+        } else {
+            0.0
+        };
         if self.state != before {
             send(self.status().encode(self.ids));
         }
@@ -433,7 +514,9 @@ const WAY_UP: [ControlWord; 6] = [
     ControlWord::SWITCH_ON,
     ControlWord::ENABLE_OPERATION,
 ];
-const EVERY_WORD: [u16; 12] = [0x00, 0x02, 0x06, 0x07, 0x0F, 0x0F, 0x0F, 0x80, 0x8F, 0x010F, 0x0107, 0xFFFF];
+const EVERY_WORD: [u16; 12] = [
+    0x00, 0x02, 0x06, 0x07, 0x0F, 0x0F, 0x0F, 0x80, 0x8F, 0x010F, 0x0107, 0xFFFF,
+];
 
 impl Chaos {
     fn new(bus: InProcessBus, ids: AxisIds, seed: u64) -> Self {
@@ -473,7 +556,9 @@ impl Chaos {
         self.inject(FaultPlan::default());
         self.send(Message::Nmt(NmtCommand::StartRemoteNode, None));
         let machine = one_axis();
-        let set = workbench::drive::parameters(&machine.axes[0], 1.0e-3, &AxisCompensation::default()).unwrap();
+        let set =
+            workbench::drive::parameters(&machine.axes[0], 1.0e-3, &AxisCompensation::default())
+                .unwrap();
         for (entry, value) in set {
             self.write(entry.parameter, value);
         }
@@ -499,7 +584,14 @@ impl Chaos {
 
     fn inject(&mut self, plan: FaultPlan) {
         self.bus.inject(0, 0x11, plan);
-        self.bus.inject(1, 0x01, FaultPlan { seed: plan.seed ^ self.seed, ..plan });
+        self.bus.inject(
+            1,
+            0x01,
+            FaultPlan {
+                seed: plan.seed ^ self.seed,
+                ..plan
+            },
+        );
     }
 
     fn misbehave(&mut self) {
@@ -526,21 +618,33 @@ impl Chaos {
                 NmtCommand::ResetNode,
                 NmtCommand::ResetCommunication,
             ]);
-            let node = self.dice.of(&[None, Some(self.ids.servo), Some(self.ids.plant)]);
+            let node = self
+                .dice
+                .of(&[None, Some(self.ids.servo), Some(self.ids.plant)]);
             self.send(Message::Nmt(command, node));
         }
         if self.dice.once_in(2000) {
-            self.counter = SyncCounter::new(1 + u8::try_from(self.dice.below(240)).unwrap()).unwrap();
+            self.counter =
+                SyncCounter::new(1 + u8::try_from(self.dice.below(240)).unwrap()).unwrap();
         }
     }
 
     fn write(&mut self, parameter: Parameter, value: i32) {
-        let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
-        self.send(Message::SdoRequest(Request::Download(entry.address, Expedited::i32(value))));
+        let entry = TABLE
+            .iter()
+            .find(|entry| entry.parameter == parameter)
+            .unwrap();
+        self.send(Message::SdoRequest(Request::Download(
+            entry.address,
+            Expedited::i32(value),
+        )));
     }
 
     fn commit(&mut self) {
-        self.send(Message::SdoRequest(Request::Download(COMMIT, Expedited::u32(COMMIT_KEY))));
+        self.send(Message::SdoRequest(Request::Download(
+            COMMIT,
+            Expedited::u32(COMMIT_KEY),
+        )));
     }
 
     fn change_parameters(&mut self) {
@@ -548,14 +652,19 @@ impl Chaos {
             0 => self.write_within(Parameter::VelocityLimit, 20_000.0, 500_000.0),
             1 | 2 => {
                 let limit = self.dice.within(1.0e6, 8.0e6) as i32;
-                for parameter in
-                    [Parameter::AccelerationLimit, Parameter::QuickStopDeceleration, Parameter::SlowDownDeceleration]
-                {
+                for parameter in [
+                    Parameter::AccelerationLimit,
+                    Parameter::QuickStopDeceleration,
+                    Parameter::SlowDownDeceleration,
+                ] {
                     self.write(parameter, limit);
                 }
             }
             3 => {
-                let (low, high) = (self.dice.within(-25.0e6, -1.0e5), self.dice.within(1.0e5, 25.0e6));
+                let (low, high) = (
+                    self.dice.within(-25.0e6, -1.0e5),
+                    self.dice.within(1.0e5, 25.0e6),
+                );
                 self.write(Parameter::PositionMin, low as i32);
                 self.write(Parameter::PositionMax, high as i32);
             }
@@ -591,7 +700,8 @@ impl Chaos {
         if decent || !self.dice.once_in(300) {
             self.send(Message::Sync(self.counter));
         }
-        // Mostly what an axis of 5 m/s² can follow, and back before the end of travel, if none of that was lowered.
+        // Mostly what an axis of 5 m/s² can follow, and back before the end of travel, if none of
+        // that was lowered.
         if self.setpoint_m.abs() > 0.20 {
             self.wanted_m_per_s = -0.3 * self.setpoint_m.signum();
         }
@@ -601,7 +711,11 @@ impl Chaos {
         if decent || !self.dice.once_in(300) {
             let position = SetpointFine::saturating((self.setpoint_m * 2.56e10).round() as i64);
             let counter = self.counter.next();
-            self.send(Message::Setpoint(Setpoint { control: self.control, counter, position }));
+            self.send(Message::Setpoint(Setpoint {
+                control: self.control,
+                counter,
+                position,
+            }));
         }
         while let Some(frame) = self.bus.receive_until(start_us + PERIOD_US - 50) {
             if let Ok(Decoded::Message(Message::Feedback(feedback))) = decode(self.ids, &frame) {
@@ -626,11 +740,19 @@ fn run(seed: u64, ticks: u64, plant: Box<dyn Station>) -> Seen {
 
 fn expect_all(seen: &Seen, ticks: u64) {
     assert!(seen.cycles > ticks / 2, "{seen:?}");
-    assert!(seen.enabled > ticks / 10 && seen.moving > ticks / 10, "hardly ever enabled or moving: {seen:?}");
+    assert!(
+        seen.enabled > ticks / 10 && seen.moving > ticks / 10,
+        "hardly ever enabled or moving: {seen:?}"
+    );
     assert!(seen.sets > ticks / 2000 && seen.bridged > 0, "{seen:?}");
     // A gap that is compensated, and a limit that is lowered while the axis is beyond it, are rare.
-    let overrun = seen.offsets > 0 && seen.overruns > 0 && seen.faults[usize::from(Fault::LimitOverrun.code())] > 0;
-    assert!(overrun || ticks < RARE, "no limit was lowered in motion: {seen:?}");
+    let overrun = seen.offsets > 0
+        && seen.overruns > 0
+        && seen.faults[usize::from(Fault::LimitOverrun.code())] > 0;
+    assert!(
+        overrun || ticks < RARE,
+        "no limit was lowered in motion: {seen:?}"
+    );
 }
 
 /// Ticks in which everything happens at least once.
@@ -648,7 +770,14 @@ fn whatever_the_bus_says_the_servo_with_the_plant_stays_within_its_limits() {
     for (seed, ticks) in runs() {
         let ids = AxisIds::of_axis(0).unwrap();
         let axis = one_axis().axes.remove(0).actual;
-        expect_all(&run(seed, ticks, Box::new(PlantNode::new(ids, axis, 1.0e-3, seed))), ticks);
+        expect_all(
+            &run(
+                seed,
+                ticks,
+                Box::new(PlantNode::new(ids, axis, 1.0e-3, seed)),
+            ),
+            ticks,
+        );
     }
 }
 

@@ -10,7 +10,8 @@ use workbench::run::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 use workbench::tune;
 
-/// R mm, F mm/min; uncompensated and tuned-at-F2000 burst of the prototype, µm (reference-axis.toml).
+/// R mm, F mm/min; uncompensated and tuned-at-F2000 burst of the prototype, µm
+/// (reference-axis.toml).
 const CIRCLES: [(f64, f64, f64, f64); 5] = [
     (100.0, 2000.0, 33.71, 6.59),
     (100.0, 8000.0, 46.34, 19.98),
@@ -20,7 +21,12 @@ const CIRCLES: [(f64, f64, f64, f64); 5] = [
 ];
 
 fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
-    Circle { radius_m: 1.0e-3 * radius_mm, feed_m_per_s: feed_mm_min / 6.0e4, turns: 3, counter_clockwise: true }
+    Circle {
+        radius_m: 1.0e-3 * radius_mm,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 3,
+        counter_clockwise: true,
+    }
 }
 
 fn run(circle: &Circle, compensation: &[AxisCompensation]) -> CircleFigures {
@@ -30,25 +36,48 @@ fn run(circle: &Circle, compensation: &[AxisCompensation]) -> CircleFigures {
     ballbar::figures(&points, circle.radius_m, 0.0, MEASURE_FROM_RAD)
 }
 
-/// One circle without compensation, with the tuned pulse and with a bare Coulomb force, beside the prototype.
+/// One circle without compensation, with the tuned pulse and with a bare Coulomb force, beside the
+/// prototype.
 fn figures(cell: &(f64, f64, f64, f64), tuned: &[AxisCompensation]) -> Vec<Measured> {
     let (radius, feed, prototype, prototype_pulse) = *cell;
     let none = vec![AxisCompensation::default(); 2];
-    let coulomb = vec![AxisCompensation { reversal: Compensation::Coulomb { force_n: 400.0 }, backlash_m: 0.0 }; 2];
-    let of = |compensation: &[AxisCompensation]| run(&circle(radius, feed), compensation).peak_max_um;
+    let coulomb = vec![
+        AxisCompensation {
+            reversal: Compensation::Coulomb { force_n: 400.0 },
+            backlash_m: 0.0
+        };
+        2
+    ];
+    let of =
+        |compensation: &[AxisCompensation]| run(&circle(radius, feed), compensation).peak_max_um;
     let (before, pulse, force) = (of(&none), of(tuned), of(&coulomb));
-    for (what, came, wanted) in [("none", before, prototype), ("pulse", pulse, prototype_pulse)] {
-        assert!((came / wanted - 1.0).abs() < 0.25, "{}, {what}: {came} µm, prototype {wanted} µm", name(cell));
+    for (what, came, wanted) in [
+        ("none", before, prototype),
+        ("pulse", pulse, prototype_pulse),
+    ] {
+        assert!(
+            (came / wanted - 1.0).abs() < 0.25,
+            "{}, {what}: {came} µm, prototype {wanted} µm",
+            name(cell)
+        );
     }
     let mut rows = vec![
         row(format!("{}, none", name(cell)), before, "µm"),
-        row(format!("{}, pulse tuned at R 100 F 2000", name(cell)), pulse, "µm"),
+        row(
+            format!("{}, pulse tuned at R 100 F 2000", name(cell)),
+            pulse,
+            "µm",
+        ),
         row(format!("{}, bare Coulomb force", name(cell)), force, "µm"),
     ];
     if (radius, feed) == (100.0, 2000.0) {
         let reduction = 100.0 * (1.0 - pulse / before);
         assert!(reduction >= 78.0, "{reduction} %");
-        rows.push(row(format!("{}, burst reduction", name(cell)), reduction, "%"));
+        rows.push(row(
+            format!("{}, burst reduction", name(cell)),
+            reduction,
+            "%",
+        ));
     }
     rows
 }
@@ -62,9 +91,19 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
     if Scope::now().leaves_row_to("tests/commission.rs, which tunes at R 100 F 2000") {
         return;
     }
-    let tuned =
-        tune::pulse(&quiet_reference(), &Place::InProcess, &circle(100.0, 2000.0), 0.0, &Interrupt::never()).unwrap();
+    let tuned = tune::pulse(
+        &quiet_reference(),
+        &Place::InProcess,
+        &circle(100.0, 2000.0),
+        0.0,
+        &Interrupt::never(),
+    )
+    .unwrap();
     let cells = Scope::now().rows("reference-machine", &CIRCLES, 1, 3);
     let rows = on_all_cores(cells, |cell| figures(cell, &tuned.compensation)).concat();
-    golden::check_some("reference-machine", &rows, &cells.iter().map(name).collect::<Vec<_>>());
+    golden::check_some(
+        "reference-machine",
+        &rows,
+        &cells.iter().map(name).collect::<Vec<_>>(),
+    );
 }

@@ -1,7 +1,9 @@
-//! What a drive does when the bus is silent: one frame once, one in a hundred, one in twenty, or whatever dies.
+//! What a drive does when the bus is silent: one frame once, one in a hundred, one in twenty, or
+//! whatever dies.
 //!
-//! Every row of `golden/silence.md` is a run compared with the same run without the losses, on the reference axis with its noise. The rows over
-//! vcan run in a kernel that has it (`scripts/with-vcan`), every node a process of its own.
+//! Every row of `golden/silence.md` is a run compared with the same run without the losses, on the
+//! reference axis with its noise. The rows over vcan run in a kernel that has it
+//! (`scripts/with-vcan`), every node a process of its own.
 
 use std::collections::BTreeMap;
 use std::process::{Child, Command, Stdio};
@@ -31,13 +33,27 @@ type Path = fn(f64) -> f64;
 /// Up to 50 mm/s with a jerk of 50 m/s³, and on.
 fn constant(time_s: f64) -> f64 {
     let rise = 0.001_f64.sqrt();
-    Profile::new(&[Phase::Jerk(0.05, 0.0), Phase::Jerk(rise, 50.0), Phase::Jerk(rise, -50.0)]).at(time_s)
+    Profile::new(&[
+        Phase::Jerk(0.05, 0.0),
+        Phase::Jerk(rise, 50.0),
+        Phase::Jerk(rise, -50.0),
+    ])
+    .at(time_s)
 }
 
 /// Back to −180 mm/s, then up: 0.27 s to 0.37 s the jerk phase, until 0.4 s at 5 m/s².
 fn fast(time_s: f64) -> f64 {
-    let back = [Phase::Jerk(0.05, 0.0), Phase::Jerk(0.06, -50.0), Phase::Jerk(0.06, 50.0), Phase::Jerk(0.1, 0.0)];
-    let up = [Phase::Jerk(0.1, 50.0), Phase::Jerk(0.03, 0.0), Phase::Jerk(0.1, -50.0)];
+    let back = [
+        Phase::Jerk(0.05, 0.0),
+        Phase::Jerk(0.06, -50.0),
+        Phase::Jerk(0.06, 50.0),
+        Phase::Jerk(0.1, 0.0),
+    ];
+    let up = [
+        Phase::Jerk(0.1, 50.0),
+        Phase::Jerk(0.03, 0.0),
+        Phase::Jerk(0.1, -50.0),
+    ];
     Profile::new(&[back.as_slice(), up.as_slice()].concat()).at(time_s)
 }
 
@@ -58,9 +74,17 @@ fn long_step(time_s: f64) -> f64 {
 
 fn step_of(duration_s: f64) -> Profile {
     let rise = 0.001_f64.sqrt();
-    let to_50 = [Phase::Jerk(0.05, 0.0), Phase::Jerk(rise, 50.0), Phase::Jerk(rise, -50.0)];
-    let steps =
-        [Phase::Jerk(0.25 - 2.0 * rise, 0.0), Phase::Jump(5.0), Phase::Jerk(duration_s, 0.0), Phase::Jump(-5.0)];
+    let to_50 = [
+        Phase::Jerk(0.05, 0.0),
+        Phase::Jerk(rise, 50.0),
+        Phase::Jerk(rise, -50.0),
+    ];
+    let steps = [
+        Phase::Jerk(0.25 - 2.0 * rise, 0.0),
+        Phase::Jump(5.0),
+        Phase::Jerk(duration_s, 0.0),
+        Phase::Jump(-5.0),
+    ];
     Profile::new(&[to_50.as_slice(), steps.as_slice()].concat())
 }
 
@@ -84,14 +108,31 @@ const LOSSES: [(&str, FrameKind, bool); 5] = [
 ];
 
 fn once(kind: FrameKind, at_servo: bool, cycle: u32, damage: Damage) -> Plans {
-    let plan = FaultPlan { once: Some((kind, cycle, damage)), ..FaultPlan::default() };
-    if at_servo { Plans { servo: plan, ..Plans::default() } } else { Plans { plant: plan, ..Plans::default() } }
+    let plan = FaultPlan {
+        once: Some((kind, cycle, damage)),
+        ..FaultPlan::default()
+    };
+    if at_servo {
+        Plans {
+            servo: plan,
+            ..Plans::default()
+        }
+    } else {
+        Plans {
+            plant: plan,
+            ..Plans::default()
+        }
+    }
 }
 
 fn row(name: String, base: &Run, hit: &Run) -> Row {
     let path_um = 1.0e6 * largest_difference(&base.table_m, &hit.table_m);
     let torque = 100.0 * largest_difference(&base.force_n, &hit.force_n) / FORCE_LIMIT_N;
-    assert_eq!([hit.servo.cycles(), hit.plant.cycles()], [hit.table_m.len() as u32; 2], "{name}: cycles counted");
+    assert_eq!(
+        [hit.servo.cycles(), hit.plant.cycles()],
+        [hit.table_m.len() as u32; 2],
+        "{name}: cycles counted"
+    );
     let counts = [
         hit.faults.len() as u32,
         hit.servo.bridged,
@@ -101,15 +142,24 @@ fn row(name: String, base: &Run, hit: &Run) -> Row {
         hit.servo.by_deadline,
         hit.plant.by_deadline,
     ];
-    let cells = [path_um, torque].into_iter().chain(counts.map(f64::from)).map(Some).collect();
-    Row { name, cells, repeats: true }
+    let cells = [path_um, torque]
+        .into_iter()
+        .chain(counts.map(f64::from))
+        .map(Some)
+        .collect();
+    Row {
+        name,
+        cells,
+        repeats: true,
+    }
 }
 
 fn cell(row: &Row, column: usize) -> f64 {
     row.cells[column].unwrap()
 }
 
-/// Where a loss hits a path: at any of these cycles of the path (the worst is told), and what is allowed.
+/// Where a loss hits a path: at any of these cycles of the path (the worst is told), and what is
+/// allowed.
 struct Hit {
     name: &'static str,
     path: Path,
@@ -121,15 +171,51 @@ struct Hit {
 }
 
 const SMOOTH: [Hit; 5] = [
-    Hit { name: "constant 50 mm/s", path: constant, cycles: 400..401, path_um: 1.0, torque: 5.0, limit: 5.0 },
-    Hit { name: "jerk of 50 m/s³", path: fast, cycles: 300..301, path_um: 1.0, torque: 5.0, limit: 5.0 },
-    Hit { name: "begin of that jerk", path: fast, cycles: 268..274, path_um: 1.0, torque: 5.0, limit: 5.0 },
-    Hit { name: "at 5 m/s²", path: fast, cycles: 385..386, path_um: 1.0, torque: 5.0, limit: 5.0 },
-    Hit { name: "reversal of R 100 F 2000", path: turn, cycles: 1248..1254, path_um: 1.0, torque: 5.0, limit: 5.0 },
+    Hit {
+        name: "constant 50 mm/s",
+        path: constant,
+        cycles: 400..401,
+        path_um: 1.0,
+        torque: 5.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "jerk of 50 m/s³",
+        path: fast,
+        cycles: 300..301,
+        path_um: 1.0,
+        torque: 5.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "begin of that jerk",
+        path: fast,
+        cycles: 268..274,
+        path_um: 1.0,
+        torque: 5.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "at 5 m/s²",
+        path: fast,
+        cycles: 385..386,
+        path_um: 1.0,
+        torque: 5.0,
+        limit: 5.0,
+    },
+    Hit {
+        name: "reversal of R 100 F 2000",
+        path: turn,
+        cycles: 1248..1254,
+        path_um: 1.0,
+        torque: 5.0,
+        limit: 5.0,
+    },
 ];
 
-/// A path that takes all that the axis may leaves nothing to catch up with before the acceleration ends: a lost setpoint costs up to three quarters of a cycle's
-/// speed (3.75 mm/s) for so long. A tenth of reserve keeps it within the bound.
+/// A path that takes all that the axis may leaves nothing to catch up with before the acceleration
+/// ends: a lost setpoint costs up to three quarters of a cycle's speed (3.75 mm/s) for so long. A
+/// tenth of reserve keeps it within the bound.
 const STEPS: [Hit; 6] = [
     Hit {
         name: "step of 5 m/s² for 10 ms, limit 5.5 m/s²",
@@ -183,29 +269,52 @@ const STEPS: [Hit; 6] = [
 
 fn machine_of(hit: &Hit) -> Machine {
     let mut machine = noisy_axis();
-    machine.axes.iter_mut().for_each(|axis| axis.limits.acceleration_m_per_s2 = hit.limit);
+    machine
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.limits.acceleration_m_per_s2 = hit.limit);
     machine
 }
 
-/// The worst row over the cycles of a hit. The setpoint of a cycle of the path is sent in the cycle before it.
+/// The worst row over the cycles of a hit. The setpoint of a cycle of the path is sent in the cycle
+/// before it.
 fn worst(hit: &Hit, what: &str, kind: FrameKind, at_servo: bool, damage: Damage) -> Row {
     let (machine, cycles) = (machine_of(hit), hit.cycles.end + 300);
     let base = run(&machine, &hit.path, cycles, Plans::default());
     let rows = hit.cycles.clone().map(|cycle| {
-        let cycle = if kind == FrameKind::Setpoint { cycle + 1 } else { cycle + 2 };
+        let cycle = if kind == FrameKind::Setpoint {
+            cycle + 1
+        } else {
+            cycle + 2
+        };
         let plans = once(kind, at_servo, cycle, damage);
-        row(format!("{}, {what}", hit.name), &base, &run(&machine, &hit.path, cycles, plans))
+        row(
+            format!("{}, {what}", hit.name),
+            &base,
+            &run(&machine, &hit.path, cycles, plans),
+        )
     });
-    rows.max_by(|a, b| cell(a, 0).total_cmp(&cell(b, 0))).unwrap()
+    rows.max_by(|a, b| cell(a, 0).total_cmp(&cell(b, 0)))
+        .unwrap()
 }
 
 fn single_losses() -> Vec<Row> {
-    let cases: Vec<_> = SMOOTH.iter().chain(&STEPS).flat_map(|hit| LOSSES.map(|loss| (hit, loss))).collect();
+    let cases: Vec<_> = SMOOTH
+        .iter()
+        .chain(&STEPS)
+        .flat_map(|hit| LOSSES.map(|loss| (hit, loss)))
+        .collect();
     on_all_cores(&cases, |(hit, (what, kind, at_servo))| {
         let row = worst(hit, what, *kind, *at_servo, Damage::Lost);
         let (path_um, torque, faults) = (cell(&row, 0), cell(&row, 1), cell(&row, 2));
-        assert!(path_um <= hit.path_um && torque <= hit.torque && faults == 0.0, "{row:?}");
-        assert!(cell(&row, 3) + cell(&row, 4) <= 1.0 && cell(&row, 7) + cell(&row, 8) <= 1.0, "{row:?}");
+        assert!(
+            path_um <= hit.path_um && torque <= hit.torque && faults == 0.0,
+            "{row:?}"
+        );
+        assert!(
+            cell(&row, 3) + cell(&row, 4) <= 1.0 && cell(&row, 7) + cell(&row, 8) <= 1.0,
+            "{row:?}"
+        );
         row
     })
 }
@@ -213,21 +322,45 @@ fn single_losses() -> Vec<Row> {
 /// A setpoint that is wrong, which nobody can tell by itself.
 fn wrong_setpoints() -> Vec<Row> {
     let wrong = [("10 µm", 10), ("−10 µm", -10), ("1 µm", 1), ("−1 µm", -1)];
-    let cases: Vec<_> = SMOOTH.iter().flat_map(|hit| wrong.map(|wrong| (hit, wrong))).collect();
+    let cases: Vec<_> = SMOOTH
+        .iter()
+        .flat_map(|hit| wrong.map(|wrong| (hit, wrong)))
+        .collect();
     on_all_cores(&cases, |(hit, (by, micrometres))| {
         let damage = Damage::Setpoint(micrometres * 25_600);
-        let row = worst(hit, &format!("setpoint wrong by {by}"), FrameKind::Setpoint, true, damage);
-        assert!(cell(&row, 0) <= hit.path_um && cell(&row, 1) <= hit.torque && cell(&row, 2) == 0.0, "{row:?}");
+        let row = worst(
+            hit,
+            &format!("setpoint wrong by {by}"),
+            FrameKind::Setpoint,
+            true,
+            damage,
+        );
+        assert!(
+            cell(&row, 0) <= hit.path_um && cell(&row, 1) <= hit.torque && cell(&row, 2) == 0.0,
+            "{row:?}"
+        );
         row
     })
 }
 
 const PATHS: [(&str, Path); 2] = [("sine of 105 mm/s", quick_sine), ("R 100 F 2000", circle)];
-const DAMAGES: [&str; 5] = ["lost", "doubled", "late", "corrupted", "lost, doubled, late, corrupted each"];
+const DAMAGES: [&str; 5] = [
+    "lost",
+    "doubled",
+    "late",
+    "corrupted",
+    "lost, doubled, late, corrupted each",
+];
 
 /// Shares of the damages of the list above.
 fn plan(damage: usize, per_mille: u16, seed: u64) -> FaultPlan {
-    let share = |of: usize| if damage == of || damage == 4 { per_mille } else { 0 };
+    let share = |of: usize| {
+        if damage == of || damage == 4 {
+            per_mille
+        } else {
+            0
+        }
+    };
     FaultPlan {
         seed,
         lost_per_mille: share(0),
@@ -246,61 +379,110 @@ fn seeds() -> Vec<u64> {
 }
 
 fn one_percent() -> Vec<Row> {
-    let bases = on_all_cores(&PATHS, |(_, path)| run(&noisy_axis(), path, MANY, Plans::default()));
+    let bases = on_all_cores(&PATHS, |(_, path)| {
+        run(&noisy_axis(), path, MANY, Plans::default())
+    });
     let cases: Vec<_> = (0..PATHS.len())
         .flat_map(|path| {
-            (0..DAMAGES.len()).flat_map(move |damage| seeds().into_iter().map(move |seed| (path, damage, seed)))
+            (0..DAMAGES.len())
+                .flat_map(move |damage| seeds().into_iter().map(move |seed| (path, damage, seed)))
         })
         .collect();
     let rows = on_all_cores(&cases, |(path, damage, seed)| {
         let (plan, (name, at)) = (plan(*damage, 10, *seed), PATHS[*path]);
-        let hit = run(&noisy_axis(), &at, MANY, Plans { servo: plan, plant: plan });
-        let row = row(format!("1 % {}: {name}, seed {seed}", DAMAGES[*damage]), &bases[*path], &hit);
+        let hit = run(
+            &noisy_axis(),
+            &at,
+            MANY,
+            Plans {
+                servo: plan,
+                plant: plan,
+            },
+        );
+        let row = row(
+            format!("1 % {}: {name}, seed {seed}", DAMAGES[*damage]),
+            &bases[*path],
+            &hit,
+        );
         assert!(hit.faults.is_empty(), "{}: {:?}", row.name, hit.faults);
         assert!(cell(&row, 0) <= 5.0, "{row:?}");
         // Three kinds of frames at the servo, two at the plant, and 400 heartbeats.
-        assert!((800..6000).contains(&hit.injected), "{}: {} frames went wrong", row.name, hit.injected);
+        assert!(
+            (800..6000).contains(&hit.injected),
+            "{}: {} frames went wrong",
+            row.name,
+            hit.injected
+        );
         row
     });
-    rows.chunks(seeds().len()).flat_map(first_and_worst).collect()
+    rows.chunks(seeds().len())
+        .flat_map(first_and_worst)
+        .collect()
 }
 
 fn first_and_worst(rows: &[Row]) -> Vec<Row> {
-    let worst = rows.iter().max_by(|a, b| cell(a, 0).total_cmp(&cell(b, 0))).filter(|_| rows.len() > 1);
+    let worst = rows
+        .iter()
+        .max_by(|a, b| cell(a, 0).total_cmp(&cell(b, 0)))
+        .filter(|_| rows.len() > 1);
     let name = |row: &Row| row.name.split(", seed").next().unwrap().to_owned();
-    let worst = worst.map(|row| Row { name: format!("{}, worst of ten seeds", name(row)), ..row.clone() });
+    let worst = worst.map(|row| Row {
+        name: format!("{}, worst of ten seeds", name(row)),
+        ..row.clone()
+    });
     rows.first().cloned().into_iter().chain(worst).collect()
 }
 
-/// A latched fault is reset, and the path begins anew where the axis is and towards the middle, as an operator would have it; gives how often.
+/// A latched fault is reset, and the path begins anew where the axis is and towards the middle, as
+/// an operator would have it; gives how often.
 fn survive(axis: &mut Axis, path: Path) -> u32 {
     let (mut faults, mut begun, mut sense) = (0, 0, 1.0);
     for cycle in 0..MANY {
         axis.cycle(sense * path(1.0e-3 * f64::from(cycle - begun)));
         if axis.servo.borrow().drive().state() == DriveState::Fault {
-            assert!((0..20).any(|_| axis.enable_again()), "cycle {cycle}: cannot be enabled any more");
+            assert!(
+                (0..20).any(|_| axis.enable_again()),
+                "cycle {cycle}: cannot be enabled any more"
+            );
             (faults, begun) = (faults + 1, cycle + 1);
-            sense = if axis.master.axis(0).reference_m > 0.0 { -1.0 } else { 1.0 };
+            sense = if axis.master.axis(0).reference_m > 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
         }
     }
     faults
 }
 
 fn five_percent() -> Vec<Row> {
-    let cases: Vec<_> =
-        (0..DAMAGES.len()).flat_map(|damage| seeds().into_iter().map(move |seed| (damage, seed))).collect();
+    let cases: Vec<_> = (0..DAMAGES.len())
+        .flat_map(|damage| seeds().into_iter().map(move |seed| (damage, seed)))
+        .collect();
     let rows = on_all_cores(&cases, |(damage, seed)| {
         let mut axis = Axis::enabled(&noisy_axis());
         let seen = Watched::replace(&mut axis);
         let plan = plan(*damage, 50, *seed);
-        axis.inject(Plans { servo: plan, plant: plan });
+        axis.inject(Plans {
+            servo: plan,
+            plant: plan,
+        });
         let faults = survive(&mut axis, quick_sine);
         let name = format!("5 % {}: {}, seed {seed}", DAMAGES[*damage], PATHS[0].0);
         println!("{name}: {faults} faults");
         keeps_limits(&name, *seen.borrow());
-        Row { name, cells: [None, None, Some(f64::from(faults))].into_iter().chain([None; 6]).collect(), repeats: true }
+        Row {
+            name,
+            cells: [None, None, Some(f64::from(faults))]
+                .into_iter()
+                .chain([None; 6])
+                .collect(),
+            repeats: true,
+        }
     });
-    rows.chunks(seeds().len()).filter_map(|rows| rows.first().cloned()).collect()
+    rows.chunks(seeds().len())
+        .filter_map(|rows| rows.first().cloned())
+        .collect()
 }
 
 /// 0.5 m/s, 5 m/s² (and 12 bits of rounding), 0.25 m, 9 kN at 10 mm per revolution.
@@ -311,18 +493,28 @@ fn keeps_limits(name: &str, seen: Extremes) {
         seen.velocity <= 50_000.01 && seen.acceleration <= 500.1 && seen.position <= 25_000_000.0,
         "{name}: {seen:?}"
     );
-    assert!(seen.torque <= FORCE_LIMIT_N * 0.010 / std::f64::consts::TAU * 1.0e6 + 1.0, "{name}: {seen:?}");
+    assert!(
+        seen.torque <= FORCE_LIMIT_N * 0.010 / std::f64::consts::TAU * 1.0e6 + 1.0,
+        "{name}: {seen:?}"
+    );
     // It is the drive at work, not one that stands still.
-    assert!(seen.velocity > 10_000.0 && seen.torque > 1.0e5, "{name}: {seen:?}");
+    assert!(
+        seen.velocity > 10_000.0 && seen.torque > 1.0e5,
+        "{name}: {seen:?}"
+    );
 }
 
-/// Rows over vcan in the order in which a scope takes them: seed,lost,doubled,late,corrupted per mille, from a cycle after the axis was enabled.
+/// Rows over vcan in the order in which a scope takes them: seed,lost,doubled,late,corrupted per
+/// mille, from a cycle after the axis was enabled.
 const OVER_VCAN: [(&str, &str); 5] = [
     ("1 % lost", "1,10,0,0,0,100"),
     ("1 % doubled", "1,0,10,0,0,100"),
     ("1 % late", "1,0,0,10,0,100"),
     ("1 % corrupted", "1,0,0,0,10,100"),
-    ("1 % lost, doubled, late, corrupted each", "1,10,10,10,10,100"),
+    (
+        "1 % lost, doubled, late, corrupted each",
+        "1,10,10,10,10,100",
+    ),
 ];
 const OVER_VCAN_CYCLES: u32 = 5000;
 /// Long enough for a process to get its turn, short enough for a test.
@@ -333,14 +525,25 @@ struct Nodes(Vec<Child>);
 
 impl Nodes {
     fn start(faults: Option<&str>) -> Self {
-        let program = std::env::var_os("QUADRANT_PROGRAM").expect("rows_over_vcan says where the program is");
+        let program =
+            std::env::var_os("QUADRANT_PROGRAM").expect("rows_over_vcan says where the program is");
         let node = |arguments: &[&str]| {
             let mut command = Command::new(&program);
-            command.args(arguments).args(["--can", "vcan0", "--deadline-ms", &DEADLINE.as_millis().to_string()]);
-            command.args(faults.into_iter().flat_map(|plan| ["--faults", plan])).spawn().unwrap()
+            command.args(arguments).args([
+                "--can",
+                "vcan0",
+                "--deadline-ms",
+                &DEADLINE.as_millis().to_string(),
+            ]);
+            command
+                .args(faults.into_iter().flat_map(|plan| ["--faults", plan]))
+                .spawn()
+                .unwrap()
         };
-        let nodes =
-            Self(vec![node(&["plant", "--node", "0x11"]), node(&["servo", "--node", "1", "--plant-node", "0x11"])]);
+        let nodes = Self(vec![
+            node(&["plant", "--node", "0x11"]),
+            node(&["servo", "--node", "1", "--plant-node", "0x11"]),
+        ]);
         // They say nothing before they are asked; give them time to open their sockets.
         std::thread::sleep(Duration::from_secs(1));
         nodes
@@ -356,7 +559,8 @@ impl Drop for Nodes {
     }
 }
 
-/// A run over vcan as its frames tell it: load scale in 10 nm and torque in µN·m of each cycle, the counts of the servo, and its fault.
+/// A run over vcan as its frames tell it: load scale in 10 nm and torque in µN·m of each cycle, the
+/// counts of the servo, and its fault.
 struct Cable {
     load: Vec<f64>,
     torque: Vec<f64>,
@@ -366,27 +570,43 @@ struct Cable {
 
 fn over_cable(faults: Option<&str>) -> Cable {
     let (machine, _nodes) = (noisy_axis(), Nodes::start(faults));
-    let link = Interfaces::open(&machine, "vcan0").unwrap().with_pace(Pace::Lockstep { deadline: DEADLINE });
+    let link = Interfaces::open(&machine, "vcan0")
+        .unwrap()
+        .with_pace(Pace::Lockstep { deadline: DEADLINE });
     let mut master = Master::start(link, &machine).unwrap();
-    master.configure(&machine, &[AxisCompensation::default()]).unwrap();
+    master
+        .configure(&machine, &[AxisCompensation::default()])
+        .unwrap();
     master.enable().unwrap();
     let origin_m = master.axis(0).reference_m;
     for cycle in 0..OVER_VCAN_CYCLES {
-        master.cycle(&[origin_m + quick_sine(1.0e-3 * f64::from(cycle))]).unwrap();
+        master
+            .cycle(&[origin_m + quick_sine(1.0e-3 * f64::from(cycle))])
+            .unwrap();
     }
-    let counts = [1, 2, 3, 4].map(|at| f64::from(master.upload(0, Address::new(0x2200, at)).unwrap().to_u32()));
+    let counts = [1, 2, 3, 4]
+        .map(|at| f64::from(master.upload(0, Address::new(0x2200, at)).unwrap().to_u32()));
     let (fault, mut link) = (master.fault(0), master.into_link());
     let (load, torque) = cycles_of(&link.take_logs().remove(0));
-    Cable { load, torque, counts, fault }
+    Cable {
+        load,
+        torque,
+        counts,
+        fault,
+    }
 }
 
-/// Load scale and torque of each cycle, told by their counters: a plant that missed SYNC answers late.
+/// Load scale and torque of each cycle, told by their counters: a plant that missed SYNC answers
+/// late.
 fn cycles_of(log: &BusLog) -> (Vec<f64>, Vec<f64>) {
     let ids = AxisIds::of_axis(0).unwrap();
-    let (mut load, mut torque): (BTreeMap<u32, f64>, BTreeMap<u32, f64>) = (BTreeMap::new(), BTreeMap::new());
+    let (mut load, mut torque): (BTreeMap<u32, f64>, BTreeMap<u32, f64>) =
+        (BTreeMap::new(), BTreeMap::new());
     let (mut cycle, mut now, mut scale) = (0_u32, None, None);
     for (_, frame) in log.frames() {
-        let Ok(Decoded::Message(message)) = decode(ids, frame) else { continue };
+        let Ok(Decoded::Message(message)) = decode(ids, frame) else {
+            continue;
+        };
         // The cycle of a counter near the present SYNC.
         let of = |counter: SyncCounter| {
             let ahead = i64::from(now.map_or(0, |now| counter.cycles_since(now)));
@@ -400,11 +620,17 @@ fn cycles_of(log: &BusLog) -> (Vec<f64>, Vec<f64>) {
                 scale = Some((feedback.load, counts));
                 load.insert(of(feedback.counter), counts as f64);
             }
-            Message::Torque(frame) => _ = torque.insert(of(frame.counter), f64::from(frame.torque.0)),
+            Message::Torque(frame) => {
+                _ = torque.insert(of(frame.counter), f64::from(frame.torque.0))
+            }
             _ => {}
         }
     }
-    let all = |of: BTreeMap<u32, f64>| (1..=cycle).map(|cycle| of.get(&cycle).copied().unwrap_or(f64::NAN)).collect();
+    let all = |of: BTreeMap<u32, f64>| {
+        (1..=cycle)
+            .map(|cycle| of.get(&cycle).copied().unwrap_or(f64::NAN))
+            .collect()
+    };
     (all(load), all(torque))
 }
 
@@ -412,12 +638,17 @@ fn cycles_of(log: &BusLog) -> (Vec<f64>, Vec<f64>) {
 #[ignore = "run by a_drive_stays_calm_when_the_bus_does_not, in a kernel that has vcan"]
 fn rows_over_vcan() {
     let base = over_cable(None);
-    assert_eq!(base.counts[1..], [0.0; 3], "a run without losses closes no cycle by deadline");
+    assert_eq!(
+        base.counts[1..],
+        [0.0; 3],
+        "a run without losses closes no cycle by deadline"
+    );
     for (name, plan) in Scope::now().rows("rows over vcan", &OVER_VCAN, 1, 1) {
         let hit = over_cable(Some(plan));
         let path_um = 0.01 * largest_difference(&base.load, &hit.load);
-        let torque =
-            largest_difference(&base.torque, &hit.torque) / 1.0e4 * std::f64::consts::TAU / 0.010 / FORCE_LIMIT_N;
+        let torque = largest_difference(&base.torque, &hit.torque) / 1.0e4 * std::f64::consts::TAU
+            / 0.010
+            / FORCE_LIMIT_N;
         let missing = |of: &[f64]| of.iter().filter(|value| value.is_nan()).count();
         let faults = u32::from(hit.fault.is_some());
         // For the parent: a line of the table.
@@ -431,15 +662,27 @@ fn rows_over_vcan() {
             missing(&hit.torque),
             hit.fault
         );
-        assert!(path_um <= 5.0 && hit.fault.is_none(), "{name}: {path_um} µm, {:?}", hit.fault);
-        assert_eq!(hit.counts[..3].iter().sum::<f64>(), hit.load.len() as f64, "{name}: cycles counted");
+        assert!(
+            path_um <= 5.0 && hit.fault.is_none(),
+            "{name}: {path_um} µm, {:?}",
+            hit.fault
+        );
+        assert_eq!(
+            hit.counts[..3].iter().sum::<f64>(),
+            hit.load.len() as f64,
+            "{name}: cycles counted"
+        );
     }
 }
 
 /// Runs the rows over vcan in a kernel that has it; gives what it printed.
 fn over_vcan() -> Vec<Row> {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let target = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap();
+    let target = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap();
     let ran = Command::new(root.join("scripts/with-vcan"))
         .arg(std::env::current_exe().unwrap())
         .args(["--ignored", "--exact", "rows_over_vcan", "--nocapture"])
@@ -449,25 +692,58 @@ fn over_vcan() -> Vec<Row> {
         .stdin(Stdio::null())
         .output()
         .unwrap();
-    let (out, err) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
+    let (out, err) = (
+        String::from_utf8_lossy(&ran.stdout),
+        String::from_utf8_lossy(&ran.stderr),
+    );
     println!("{out}{err}");
-    assert!(ran.status.success() && out.contains("1 passed"), "rows over vcan failed ({})", ran.status);
-    out.lines().filter_map(|line| line.split_once("ROW|")).map(|(_, line)| printed(line)).collect()
+    assert!(
+        ran.status.success() && out.contains("1 passed"),
+        "rows over vcan failed ({})",
+        ran.status
+    );
+    out.lines()
+        .filter_map(|line| line.split_once("ROW|"))
+        .map(|(_, line)| printed(line))
+        .collect()
 }
 
 fn printed(line: &str) -> Row {
     let (name, cells) = line.trim().split_once('|').unwrap();
-    let cells: Vec<Option<f64>> = cells.split('|').map(|cell| Some(cell.parse().unwrap())).collect();
-    let [path, torque, faults, bridged, refused, late] = cells[..] else { panic!("{line}") };
-    let cells = vec![path, torque, faults, bridged, None, refused, None, late, None];
-    Row { name: name.to_owned(), cells, repeats: false }
+    let cells: Vec<Option<f64>> = cells
+        .split('|')
+        .map(|cell| Some(cell.parse().unwrap()))
+        .collect();
+    let [path, torque, faults, bridged, refused, late] = cells[..] else {
+        panic!("{line}")
+    };
+    let cells = vec![
+        path, torque, faults, bridged, None, refused, None, late, None,
+    ];
+    Row {
+        name: name.to_owned(),
+        cells,
+        repeats: false,
+    }
 }
 
 #[test]
 fn a_drive_stays_calm_when_the_bus_does_not() {
     let scope = Scope::now();
-    let cable = if scope == Scope::Quick { Vec::new() } else { over_vcan() };
-    let rows = [single_losses(), wrong_setpoints(), one_percent(), five_percent(), cable].concat();
-    let is_meant = |name: &str| scope.is_complete() || !(name.contains("vcan") || name.contains("ten seeds"));
+    let cable = if scope == Scope::Quick {
+        Vec::new()
+    } else {
+        over_vcan()
+    };
+    let rows = [
+        single_losses(),
+        wrong_setpoints(),
+        one_percent(),
+        five_percent(),
+        cable,
+    ]
+    .concat();
+    let is_meant =
+        |name: &str| scope.is_complete() || !(name.contains("vcan") || name.contains("ten seeds"));
     matrix::check("silence", &rows, &is_meant);
 }

@@ -1,7 +1,8 @@
 //! The scenarios over a real vcan, every node a process of its own.
 //!
-//! `over_vcan` is the test: it builds the program, gets a kernel with vcan (this one, or a user-mode guest: `scripts/with-vcan`) and runs the others, which are
-//! marked as ignored only because they need that kernel. It fails where they did not run.
+//! `over_vcan` is the test: it builds the program, gets a kernel with vcan (this one, or a
+//! user-mode guest: `scripts/with-vcan`) and runs the others, which are marked as ignored only
+//! because they need that kernel. It fails where they did not run.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,22 +23,33 @@ const QUICK: (&[&str], &str) = (&["separate_processes"], "1 passed; 0 failed");
 const ALL: (&[&str], &str) = (&[], "3 passed; 0 failed");
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_path_buf()
 }
 
 fn folder() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("vcan");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap()
+        .join("vcan");
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
 fn program() -> PathBuf {
-    std::env::var_os("QUADRANT_PROGRAM").expect("over_vcan says where the program is").into()
+    std::env::var_os("QUADRANT_PROGRAM")
+        .expect("over_vcan says where the program is")
+        .into()
 }
 
 #[test]
 fn over_vcan() {
-    let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().to_path_buf();
+    let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap()
+        .to_path_buf();
     let program = program::quadrant(&target);
     let (scenarios, passed) = Scope::now().pick(QUICK, ALL, ALL);
     let stats = folder().join("kernel-stats.txt");
@@ -52,11 +64,22 @@ fn over_vcan() {
         .stdin(Stdio::null())
         .output()
         .unwrap();
-    let (out, err) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
+    let (out, err) = (
+        String::from_utf8_lossy(&ran.stdout),
+        String::from_utf8_lossy(&ran.stderr),
+    );
     println!("{out}{err}");
-    assert!(ran.status.success(), "vcan scenarios failed ({})", ran.status);
+    assert!(
+        ran.status.success(),
+        "vcan scenarios failed ({})",
+        ran.status
+    );
     assert!(out.contains(passed), "not all vcan scenarios ran: {out}");
-    assert!(std::fs::read_to_string(stats).unwrap().contains("transmitted frames"));
+    assert!(
+        std::fs::read_to_string(stats)
+            .unwrap()
+            .contains("transmitted frames")
+    );
 
     let decoded = Command::new(root().join("scripts/decode-candump"))
         .arg(folder().join("first.candump.log"))
@@ -66,7 +89,10 @@ fn over_vcan() {
         .unwrap();
     let out = String::from_utf8_lossy(&decoded.stdout);
     println!("{out}{}", String::from_utf8_lossy(&decoded.stderr));
-    assert!(decoded.status.success() && out.contains("unknown 0"), "{out}");
+    assert!(
+        decoded.status.success() && out.contains("unknown 0"),
+        "{out}"
+    );
 }
 
 /// How the node processes are started.
@@ -86,7 +112,9 @@ impl Setup<'_> {
             command.args(["--faults", plan]);
         }
         if let Some(deadline) = self.deadline {
-            command.arg("--deadline-ms").arg(deadline.as_millis().to_string());
+            command
+                .arg("--deadline-ms")
+                .arg(deadline.as_millis().to_string());
         }
         command.spawn().unwrap()
     }
@@ -99,7 +127,9 @@ impl Setup<'_> {
             link = link.with_pace(Pace::Lockstep { deadline });
         }
         let mut master = Master::start(link, &machine).unwrap();
-        master.configure(&machine, &[AxisCompensation::default(); 2]).unwrap();
+        master
+            .configure(&machine, &[AxisCompensation::default(); 2])
+            .unwrap();
         master.enable().unwrap();
         master
     }
@@ -134,7 +164,14 @@ impl Nodes {
     /// Is asked to end; gives how it did.
     fn end(&mut self, node: usize, signal: &str) -> ExitStatus {
         let node = &mut self.0[node];
-        assert!(Command::new("kill").arg(signal).arg(node.id().to_string()).status().unwrap().success());
+        assert!(
+            Command::new("kill")
+                .arg(signal)
+                .arg(node.id().to_string())
+                .status()
+                .unwrap()
+                .success()
+        );
         node.wait().unwrap()
     }
 }
@@ -149,7 +186,8 @@ impl Drop for Nodes {
 }
 
 fn machine_file() -> PathBuf {
-    let text = plant_sim::Machine::reference_text().replace("like = \"X\"", "like = \"X\"\ninterface = \"vcan0\"");
+    let text = plant_sim::Machine::reference_text()
+        .replace("like = \"X\"", "like = \"X\"\ninterface = \"vcan0\"");
     let text = text.replacen("name = \"X\"", "name = \"X\"\ninterface = \"vcan0\"", 1);
     let path = folder().join("shared-bus.toml");
     std::fs::write(&path, text).unwrap();
@@ -160,24 +198,46 @@ fn machine_file() -> PathBuf {
 fn circle(name: &str, can: Option<&str>) -> Vec<String> {
     let log = folder().join(format!("{name}.candump.log"));
     let mut command = Command::new(program());
-    command.args(["circle", "--radius-mm", "5", "--feed-mm-min", "2000", "--machine"]).arg(machine_file());
+    command
+        .args([
+            "circle",
+            "--radius-mm",
+            "5",
+            "--feed-mm-min",
+            "2000",
+            "--machine",
+        ])
+        .arg(machine_file());
     command.arg("--candump").arg(&log);
     if let Some(interface) = can {
         command.args(["--can", interface]);
     }
     let ran = command.output().unwrap();
-    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert!(
+        ran.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
     let text = std::fs::read_to_string(log).unwrap();
-    text.lines().map(|line| line.rsplit(' ').next().unwrap().to_owned()).collect()
+    text.lines()
+        .map(|line| line.rsplit(' ').next().unwrap().to_owned())
+        .collect()
 }
 
-/// Frames of each identifier, from the reset of all nodes on: before it, processes boot when they like.
+/// Frames of each identifier, from the reset of all nodes on: before it, processes boot when they
+/// like.
 fn by_identifier(frames: &[String]) -> BTreeMap<String, Vec<String>> {
-    let reset = frames.iter().position(|frame| frame == "000#8200").expect("the workbench resets all nodes");
+    let reset = frames
+        .iter()
+        .position(|frame| frame == "000#8200")
+        .expect("the workbench resets all nodes");
     let mut sequences: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for frame in &frames[reset..] {
         let (identifier, data) = frame.split_once('#').unwrap();
-        sequences.entry(identifier.into()).or_default().push(data.into());
+        sequences
+            .entry(identifier.into())
+            .or_default()
+            .push(data.into());
     }
     sequences
 }
@@ -202,16 +262,31 @@ fn separate_processes_say_byte_for_byte_what_one_process_says_and_say_it_again()
         let _nodes = Nodes::start(Setup::default());
         circle("second", Some("vcan0"))
     };
-    // Outside the log there are heartbeats of four nodes, before the workbench listens and after it has closed its log.
+    // Outside the log there are heartbeats of four nodes, before the workbench listens and after it
+    // has closed its log.
     let outside = counted - first.len() as u64;
-    assert!(outside <= 8, "the kernel counts every frame of the log, and {outside} more");
-    println!("vcan: {} frames in the log, {counted} counted by the kernel", first.len());
-    for (name, other) in
-        [("first run over vcan", by_identifier(&first)), ("second run over vcan", by_identifier(&second))]
-    {
-        assert_eq!(in_process.keys().collect::<Vec<_>>(), other.keys().collect::<Vec<_>>(), "{name}: identifiers");
+    assert!(
+        outside <= 8,
+        "the kernel counts every frame of the log, and {outside} more"
+    );
+    println!(
+        "vcan: {} frames in the log, {counted} counted by the kernel",
+        first.len()
+    );
+    for (name, other) in [
+        ("first run over vcan", by_identifier(&first)),
+        ("second run over vcan", by_identifier(&second)),
+    ] {
+        assert_eq!(
+            in_process.keys().collect::<Vec<_>>(),
+            other.keys().collect::<Vec<_>>(),
+            "{name}: identifiers"
+        );
         for (identifier, frames) in &in_process {
-            let differing = frames.iter().zip(&other[identifier]).position(|(a, b)| a != b);
+            let differing = frames
+                .iter()
+                .zip(&other[identifier])
+                .position(|(a, b)| a != b);
             assert_eq!(differing, None, "{name}: identifier {identifier} differs");
             assert_eq!(
                 frames.len(),
@@ -234,8 +309,17 @@ const DEADLINE: Duration = Duration::from_millis(20);
 #[test]
 #[ignore = "run by over_vcan, in a kernel that has vcan"]
 fn frames_that_go_wrong_in_the_ports_stop_no_cycle_over_vcan() {
-    for plan in ["7,10,0,0,0", "7,0,10,0,0", "7,0,0,10,0", "7,0,0,0,10", "7,10,10,10,10"] {
-        let setup = Setup { faults: Some(plan), deadline: Some(DEADLINE) };
+    for plan in [
+        "7,10,0,0,0",
+        "7,0,10,0,0",
+        "7,0,0,10,0",
+        "7,0,0,0,10",
+        "7,10,10,10,10",
+    ] {
+        let setup = Setup {
+            faults: Some(plan),
+            deadline: Some(DEADLINE),
+        };
         let _nodes = Nodes::start(setup);
         let mut master = setup.enabled();
         let begun = Instant::now();
@@ -253,8 +337,12 @@ fn frames_that_go_wrong_in_the_ports_stop_no_cycle_over_vcan() {
 #[ignore = "run by over_vcan, in a kernel that has vcan"]
 fn dead_processes_and_a_silent_workbench_are_noticed_over_vcan() {
     let deadline = Duration::from_millis(200);
-    let setup = Setup { deadline: Some(deadline), ..Setup::default() };
-    // Servo of X is asked to end and does, with nothing more to say: its plant notices that torque is missing.
+    let setup = Setup {
+        deadline: Some(deadline),
+        ..Setup::default()
+    };
+    // Servo of X is asked to end and does, with nothing more to say: its plant notices that torque
+    // is missing.
     let mut nodes = Nodes::start(setup);
     let mut master = setup.enabled();
     (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
@@ -274,17 +362,28 @@ fn dead_processes_and_a_silent_workbench_are_noticed_over_vcan() {
     assert_eq!(master.fault(0), Some(Fault::FeedbackMissing), "servo of X");
     drop(nodes);
 
-    // The workbench falls silent: after three deadlines (a frame of the peer delays each once) time follows the clock, and both axes notice.
+    // The workbench falls silent: after three deadlines (a frame of the peer delays each once) time
+    // follows the clock, and both axes notice.
     let _nodes = Nodes::start(setup);
     let mut master = setup.enabled();
     (0..500).for_each(|cycle| master.cycle(&path(cycle)).unwrap());
     let reported = emergencies(&mut master.into_link(), Duration::from_secs(3));
     println!("the workbench is silent: {reported:?}");
     for axis in 0..2 {
-        let first = reported.iter().find(|(_, of, _)| *of == axis).map(|(at, _, fault)| (*at, *fault));
-        let (at, fault) = first.unwrap_or_else(|| panic!("axis {axis} reports nothing: {reported:?}"));
-        assert!(matches!(fault, Fault::SetpointMissing | Fault::SyncMissing), "axis {axis}: {fault:?}");
-        assert!(at >= 3 * deadline * 9 / 10 && at < 6 * deadline, "axis {axis}: {at:?}");
+        let first = reported
+            .iter()
+            .find(|(_, of, _)| *of == axis)
+            .map(|(at, _, fault)| (*at, *fault));
+        let (at, fault) =
+            first.unwrap_or_else(|| panic!("axis {axis} reports nothing: {reported:?}"));
+        assert!(
+            matches!(fault, Fault::SetpointMissing | Fault::SyncMissing),
+            "axis {axis}: {fault:?}"
+        );
+        assert!(
+            at >= 3 * deadline * 9 / 10 && at < 6 * deadline,
+            "axis {axis}: {at:?}"
+        );
     }
 }
 
@@ -293,10 +392,13 @@ fn emergencies(link: &mut Interfaces, patience: Duration) -> Vec<(Duration, usiz
     let begun = Instant::now();
     let mut reported = Vec::new();
     while begun.elapsed() < patience {
-        let Some(frame) = link.receive(0, Duration::from_millis(50)).unwrap() else { continue };
+        let Some(frame) = link.receive(0, Duration::from_millis(50)).unwrap() else {
+            continue;
+        };
         for axis in 0..2 {
-            if let Ok(Decoded::Message(Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency))) =
-                decode(axis_ids(axis).unwrap(), &frame)
+            if let Ok(Decoded::Message(
+                Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency),
+            )) = decode(axis_ids(axis).unwrap(), &frame)
             {
                 let fault = Fault::from_code(emergency.vendor_specific[0]);
                 reported.extend(fault.map(|fault| (begun.elapsed(), axis, fault)));

@@ -1,8 +1,10 @@
 //! A model on a record: low-passed columns, fit, prediction.
 //!
-//! The inverse model is `u = h(Σ θ · column)`, seen `delay` later, where h is the actuator: `q / (1 − k |q|)` undoes a delivered effort of
-//! `u / (1 + k |u|)`. With k = 0 the fit is linear; otherwise it is linearised about an earlier fit (Gauss–Newton), so that blocks and cross-validation
-//! stay those of a linear fit. The saturation is put on the prediction, never on the recorded effort: noise in a regressor would look like an effect.
+//! The inverse model is `u = h(Σ θ · column)`, seen `delay` later, where h is the actuator: `q / (1
+//! − k |q|)` undoes a delivered effort of `u / (1 + k |u|)`. With k = 0 the fit is linear;
+//! otherwise it is linearised about an earlier fit (Gauss–Newton), so that blocks and
+//! cross-validation stay those of a linear fit. The saturation is put on the prediction, never on
+//! the recorded effort: noise in a regressor would look like an effect.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -109,7 +111,8 @@ pub struct HalfWidths {
 
 type Columns = Rc<Vec<Vec<f64>>>;
 
-/// A record on which models are fitted; it keeps the low-passed columns of the terms that it has seen last.
+/// A record on which models are fitted; it keeps the low-passed columns of the terms that it has
+/// seen last.
 pub struct Bench<'a> {
     /// The axis.
     pub dataset: &'a Dataset,
@@ -125,12 +128,20 @@ impl<'a> Bench<'a> {
     /// A bench for a record.
     #[must_use]
     pub fn new(dataset: &'a Dataset, motion: &'a Kinematics) -> Self {
-        Self { dataset, motion, kept: RefCell::default() }
+        Self {
+            dataset,
+            motion,
+            kept: RefCell::default(),
+        }
     }
 
     fn low_passed(&self, term: &Term) -> Vec<Vec<f64>> {
-        let raw = term.effect.columns(self.motion, self.dataset, term.parameter);
-        raw.iter().map(|column| self.motion.filter.apply(column)).collect()
+        let raw = term
+            .effect
+            .columns(self.motion, self.dataset, term.parameter);
+        raw.iter()
+            .map(|column| self.motion.filter.apply(column))
+            .collect()
     }
 
     /// Low-passed columns of a term.
@@ -141,7 +152,10 @@ impl<'a> Bench<'a> {
         }
         let columns: Columns = Rc::new(self.low_passed(term));
         let mut kept = self.kept.borrow_mut();
-        let values: usize = kept.values().map(|columns| columns.len() * self.motion.len()).sum();
+        let values: usize = kept
+            .values()
+            .map(|columns| columns.len() * self.motion.len())
+            .sum();
         if values > KEPT_VALUES {
             kept.clear();
         }
@@ -155,11 +169,24 @@ impl<'a> Bench<'a> {
         let shift_rows = model.delay_s / self.motion.period_s;
         let mut columns = Vec::new();
         for term in &model.terms {
-            columns.extend(self.columns(term).iter().map(|column| shifted(column, shift_rows)));
+            columns.extend(
+                self.columns(term)
+                    .iter()
+                    .map(|column| shifted(column, shift_rows)),
+            );
         }
         let target = self.motion.effort_lp.clone();
-        let linear = Design { columns, target, slope: None, shift_rows };
-        if model.saturation.per_effort == 0.0 { linear } else { linear.about(&model.saturation) }
+        let linear = Design {
+            columns,
+            target,
+            slope: None,
+            shift_rows,
+        };
+        if model.saturation.per_effort == 0.0 {
+            linear
+        } else {
+            linear.about(&model.saturation)
+        }
     }
 
     /// A design with one more term.
@@ -179,7 +206,10 @@ impl<'a> Bench<'a> {
         for column in columns {
             let mut column = shifted(column, design.shift_rows);
             if let Some(slope) = &design.slope {
-                column.iter_mut().zip(slope).for_each(|(value, slope)| *value *= slope);
+                column
+                    .iter_mut()
+                    .zip(slope)
+                    .for_each(|(value, slope)| *value *= slope);
             }
             design.columns.push(column);
         }
@@ -190,7 +220,12 @@ impl<'a> Bench<'a> {
     #[must_use]
     pub fn blocks(&self, design: &Design) -> Blocks {
         let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, &design.target, &self.motion.fitted, self.motion.period_s)
+        Blocks::new(
+            &columns,
+            &design.target,
+            &self.motion.fitted,
+            self.motion.period_s,
+        )
     }
 
     /// Fit of a model with its held-out errors.
@@ -199,27 +234,46 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).cross_validate()
     }
 
-    /// Half widths of 95 % intervals of everything that was fitted: the columns' own and, linearised, the nonlinear parameters.
+    /// Half widths of 95 % intervals of everything that was fitted: the columns' own and,
+    /// linearised, the nonlinear parameters.
     #[must_use]
     pub fn half_widths(&self, model: &Model, coefficients: &[f64]) -> HalfWidths {
         let mut design = self.design(model);
         let columns = design.columns.len();
         let mut slope = |step: f64, moved: &dyn Fn(f64) -> Model| {
             let [up, down] = [step, -step].map(|step| self.predict_lp(&moved(step), coefficients));
-            design.columns.push(up.iter().zip(&down).map(|(up, down)| (up - down) / (2.0 * step)).collect());
+            design.columns.push(
+                up.iter()
+                    .zip(&down)
+                    .map(|(up, down)| (up - down) / (2.0 * step))
+                    .collect(),
+            );
         };
-        let tuned: Vec<usize> = (0..model.terms.len()).filter(|at| model.terms[*at].effect.is_tuned()).collect();
+        let tuned: Vec<usize> = (0..model.terms.len())
+            .filter(|at| model.terms[*at].effect.is_tuned())
+            .collect();
         for at in &tuned {
             let parameter = model.terms[*at].parameter;
-            slope(1.0e-4 * parameter, &|step| model.with_parameter(*at, parameter + step));
+            slope(1.0e-4 * parameter, &|step| {
+                model.with_parameter(*at, parameter + step)
+            });
         }
         if model.delay_s != 0.0 {
-            slope(1.0e-5, &|step| Model { delay_s: model.delay_s + step, ..model.clone() });
+            slope(1.0e-5, &|step| Model {
+                delay_s: model.delay_s + step,
+                ..model.clone()
+            });
         }
         let Saturation { per_effort, about } = &model.saturation;
         if model.saturates() {
-            let moved = |step: f64| Saturation { per_effort: per_effort + step, about: about.clone() };
-            slope(1.0e-3 * per_effort, &|step| Model { saturation: moved(step), ..model.clone() });
+            let moved = |step: f64| Saturation {
+                per_effort: per_effort + step,
+                about: about.clone(),
+            };
+            slope(1.0e-3 * per_effort, &|step| Model {
+                saturation: moved(step),
+                ..model.clone()
+            });
         }
         let all = self.blocks(&design).half_widths();
         let (linear, rest) = all.split_at(columns);
@@ -228,9 +282,18 @@ impl<'a> Bench<'a> {
         for at in tuned {
             parameters[at] = rest.next();
         }
-        let delay_s = if model.delay_s == 0.0 { None } else { rest.next() };
+        let delay_s = if model.delay_s == 0.0 {
+            None
+        } else {
+            rest.next()
+        };
         let saturation = if model.saturates() { rest.next() } else { None };
-        HalfWidths { linear: linear.to_vec(), parameters, delay_s, saturation }
+        HalfWidths {
+            linear: linear.to_vec(),
+            parameters,
+            delay_s,
+            saturation,
+        }
     }
 
     /// Sum of squares that a model leaves in the sample.
@@ -242,22 +305,42 @@ impl<'a> Bench<'a> {
     /// Prediction in the low-passed domain.
     #[must_use]
     pub fn predict_lp(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let linear = Model { saturation: Saturation::default(), ..model.clone() };
-        let wanted = weighted(&self.design(&linear).columns, coefficients, self.motion.len());
-        wanted.into_iter().map(|q| model.saturation.commanded(q)).collect()
+        let linear = Model {
+            saturation: Saturation::default(),
+            ..model.clone()
+        };
+        let wanted = weighted(
+            &self.design(&linear).columns,
+            coefficients,
+            self.motion.len(),
+        );
+        wanted
+            .into_iter()
+            .map(|q| model.saturation.commanded(q))
+            .collect()
     }
 
-    /// What the motor gives to the load side, but for its own mass: the delivered effort without what acts on the motor itself (ripple); low-passed.
+    /// What the motor gives to the load side, but for its own mass: the delivered effort without
+    /// what acts on the motor itself (ripple); low-passed.
     #[must_use]
     pub fn transmitted(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let commanded = shifted(&self.motion.effort_lp, -model.delay_s / self.motion.period_s);
-        let mut transmitted: Vec<f64> = commanded.into_iter().map(|u| model.saturation.delivered(u)).collect();
+        let commanded = shifted(
+            &self.motion.effort_lp,
+            -model.delay_s / self.motion.period_s,
+        );
+        let mut transmitted: Vec<f64> = commanded
+            .into_iter()
+            .map(|u| model.saturation.delivered(u))
+            .collect();
         let mut rest = coefficients.iter();
         for term in &model.terms {
             for column in self.columns(term).iter() {
                 let coefficient = rest.next().copied().unwrap_or(0.0);
                 if term.effect.acts_on_motor() {
-                    transmitted.iter_mut().zip(column).for_each(|(sum, value)| *sum -= coefficient * value);
+                    transmitted
+                        .iter_mut()
+                        .zip(column)
+                        .for_each(|(sum, value)| *sum -= coefficient * value);
                 }
             }
         }
@@ -267,18 +350,29 @@ impl<'a> Bench<'a> {
     /// Prediction that is not low-passed.
     #[must_use]
     pub fn predict(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let raw = model.terms.iter().flat_map(|term| term.effect.columns(self.motion, self.dataset, term.parameter));
+        let raw = model.terms.iter().flat_map(|term| {
+            term.effect
+                .columns(self.motion, self.dataset, term.parameter)
+        });
         let shift_rows = model.delay_s / self.motion.period_s;
         let columns: Vec<Vec<f64>> = raw.map(|column| shifted(&column, shift_rows)).collect();
         let wanted = weighted(&columns, coefficients, self.motion.len());
-        wanted.into_iter().map(|q| model.saturation.commanded(q)).collect()
+        wanted
+            .into_iter()
+            .map(|q| model.saturation.commanded(q))
+            .collect()
     }
 
     /// Residual in the low-passed domain.
     #[must_use]
     pub fn residual(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
         let predicted = self.predict_lp(model, coefficients);
-        self.motion.effort_lp.iter().zip(predicted).map(|(effort, predicted)| effort - predicted).collect()
+        self.motion
+            .effort_lp
+            .iter()
+            .zip(predicted)
+            .map(|(effort, predicted)| effort - predicted)
+            .collect()
     }
 
     /// Force error over moving samples, percent.
@@ -286,7 +380,10 @@ impl<'a> Bench<'a> {
     pub fn force_error_percent(&self, model: &Model, coefficients: &[f64]) -> f64 {
         let residual = self.residual(model, coefficients);
         let norm = |values: &[f64]| {
-            let moving = values.iter().zip(&self.motion.moving).filter(|(_, moving)| **moving);
+            let moving = values
+                .iter()
+                .zip(&self.motion.moving)
+                .filter(|(_, moving)| **moving);
             moving.map(|(value, _)| value * value).sum::<f64>().sqrt()
         };
         100.0 * norm(&residual) / norm(&self.motion.effort_lp).max(f64::MIN_POSITIVE)
@@ -302,16 +399,24 @@ impl Design {
             *target += slope * q - saturation.commanded(*q);
         }
         for column in &mut self.columns {
-            column.iter_mut().zip(&slope).for_each(|(value, slope)| *value *= slope);
+            column
+                .iter_mut()
+                .zip(&slope)
+                .for_each(|(value, slope)| *value *= slope);
         }
-        Self { slope: Some(slope), ..self }
+        Self {
+            slope: Some(slope),
+            ..self
+        }
     }
 }
 
 fn weighted(columns: &[Vec<f64>], coefficients: &[f64], rows: usize) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     for (column, coefficient) in columns.iter().zip(coefficients) {
-        sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += coefficient * value);
+        sum.iter_mut()
+            .zip(column)
+            .for_each(|(sum, value)| *sum += coefficient * value);
     }
     sum
 }
@@ -327,7 +432,12 @@ fn shifted(column: &[f64], by: f64) -> Vec<f64> {
             let at = (row as f64 + by).clamp(1.0, last as f64);
             let base = (at.floor() as usize).clamp(1, last);
             let u = at - base as f64;
-            let [a, b, c, d] = [column[base - 1], column[base], column[base + 1], column[base + 2]];
+            let [a, b, c, d] = [
+                column[base - 1],
+                column[base],
+                column[base + 1],
+                column[base + 2],
+            ];
             a * (-u * (u - 1.0) * (u - 2.0) / 6.0)
                 + b * ((u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0)
                 + c * (-(u + 1.0) * u * (u - 2.0) / 2.0)

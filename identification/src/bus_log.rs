@@ -1,7 +1,8 @@
 //! Records from the bus: a log of `candump -l` and the DBC of its nodes.
 //!
-//! A row is made with every frame of the message that carries the position (or of `row`, if that is given), from the values that were last seen. Time is
-//! that of the stamps; in lock-step, where stamps say nothing, it is the count of a message that comes once a cycle (`cycle`).
+//! A row is made with every frame of the message that carries the position (or of `row`, if that is
+//! given), from the values that were last seen. Time is that of the stamps; in lock-step, where
+//! stamps say nothing, it is the count of a message that comes once a cycle (`cycle`).
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -39,15 +40,30 @@ struct Column {
 }
 
 /// Reads a log.
-pub(crate) fn read(path: &Path, bus: &BusForm, mapping: &Mapping, period_s: Option<f64>) -> Outcome<Table> {
+pub(crate) fn read(
+    path: &Path,
+    bus: &BusForm,
+    mapping: &Mapping,
+    period_s: Option<f64>,
+) -> Outcome<Table> {
     let dbc_path = path.with_file_name(&bus.dbc);
     let shown = dbc_path.display().to_string();
-    let dbc = Dbc::try_from(text(&dbc_path)?.as_str())
-        .map_err(|error| IdentificationError::new(format!("{shown}: not a DBC: {}", one_line(&error.to_string()))))?;
-    let messages: HashMap<&str, u32> =
-        dbc.messages.iter().map(|message| (message.name.as_str(), message.id.raw())).collect();
+    let dbc = Dbc::try_from(text(&dbc_path)?.as_str()).map_err(|error| {
+        IdentificationError::new(format!(
+            "{shown}: not a DBC: {}",
+            one_line(&error.to_string())
+        ))
+    })?;
+    let messages: HashMap<&str, u32> = dbc
+        .messages
+        .iter()
+        .map(|message| (message.name.as_str(), message.id.raw()))
+        .collect();
     let message = |name: &str| {
-        messages.get(name).copied().ok_or_else(|| IdentificationError::new(format!("{shown}: no message {name}")))
+        messages
+            .get(name)
+            .copied()
+            .ok_or_else(|| IdentificationError::new(format!("{shown}: no message {name}")))
     };
     let mut columns = Vec::new();
     for (name, source) in mapping {
@@ -55,9 +71,16 @@ pub(crate) fn read(path: &Path, bus: &BusForm, mapping: &Mapping, period_s: Opti
     }
     let row = match &bus.row {
         Some(name) => message(name)?,
-        None => columns.iter().find(|c| c.name.starts_with("position_")).map(|c| c.message).ok_or_else(|| {
-            IdentificationError::new(format!("{}: [columns] has no position_m or position_rad", path.display()))
-        })?,
+        None => columns
+            .iter()
+            .find(|c| c.name.starts_with("position_"))
+            .map(|c| c.message)
+            .ok_or_else(|| {
+                IdentificationError::new(format!(
+                    "{}: [columns] has no position_m or position_rad",
+                    path.display()
+                ))
+            })?,
     };
     let cycle = bus.cycle.as_deref().map(message).transpose()?;
     if cycle.is_some() && period_s.is_none() {
@@ -70,7 +93,8 @@ pub(crate) fn read(path: &Path, bus: &BusForm, mapping: &Mapping, period_s: Opti
 }
 
 fn text(path: &Path) -> Outcome<String> {
-    std::fs::read_to_string(path).map_err(|error| IdentificationError::new(format!("{}: {error}", path.display())))
+    std::fs::read_to_string(path)
+        .map_err(|error| IdentificationError::new(format!("{}: {error}", path.display())))
 }
 
 fn one_line(text: &str) -> String {
@@ -79,16 +103,31 @@ fn one_line(text: &str) -> String {
 
 fn column(dbc: &Dbc, shown: &str, name: &str, form: SourceForm) -> Outcome<Column> {
     let wanted = form.name.clone();
-    let (message, signal) = wanted
-        .split_once('.')
-        .ok_or_else(|| IdentificationError::new(format!("{name}: \"{wanted}\" is not of the form Message.Signal")))?;
+    let (message, signal) = wanted.split_once('.').ok_or_else(|| {
+        IdentificationError::new(format!(
+            "{name}: \"{wanted}\" is not of the form Message.Signal"
+        ))
+    })?;
     let found = dbc.messages.iter().find(|known| known.name == message);
-    let signal = found.and_then(|known| known.signals.iter().find(|known| known.name == signal).cloned());
+    let signal = found.and_then(|known| {
+        known
+            .signals
+            .iter()
+            .find(|known| known.name == signal)
+            .cloned()
+    });
     match (found, signal) {
-        (Some(message), Some(signal)) => {
-            Ok(Column { name: name.into(), message: message.id.raw(), signal, form, last: None, turns: 0.0 })
-        }
-        _ => Err(IdentificationError::new(format!("{shown}: no signal {wanted}, which [columns] {name} asks for"))),
+        (Some(message), Some(signal)) => Ok(Column {
+            name: name.into(),
+            message: message.id.raw(),
+            signal,
+            form,
+            last: None,
+            turns: 0.0,
+        }),
+        _ => Err(IdentificationError::new(format!(
+            "{shown}: no signal {wanted}, which [columns] {name} asks for"
+        ))),
     }
 }
 
@@ -102,9 +141,17 @@ fn fill(
 ) -> Outcome<Table> {
     let mut header = vec!["time_s".to_owned()];
     header.extend(columns.iter().map(|column| column.name.clone()));
-    let mut table = Table { path: path.display().to_string(), columns: vec![Vec::new(); header.len()], header };
+    let mut table = Table {
+        path: path.display().to_string(),
+        columns: vec![Vec::new(); header.len()],
+        header,
+    };
     let mut cycles = 0.0;
-    for (index, line) in text(path)?.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+    for (index, line) in text(path)?
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty())
+    {
         let frame = Frame::parse(line).ok_or_else(|| {
             IdentificationError::new(format!(
                 "{}:{}: \"{}\" is not a line of candump -l: (seconds) interface identifier#data",
@@ -113,19 +160,33 @@ fn fill(
                 line.chars().take(60).collect::<String>()
             ))
         })?;
-        if bus.interface.as_ref().is_some_and(|wanted| wanted != frame.interface) {
+        if bus
+            .interface
+            .as_ref()
+            .is_some_and(|wanted| wanted != frame.interface)
+        {
             continue;
         }
         if cycle == Some(frame.id) {
             cycles += 1.0;
         }
-        for column in columns.iter_mut().filter(|column| column.message == frame.id) {
+        for column in columns
+            .iter_mut()
+            .filter(|column| column.message == frame.id)
+        {
             column.take(&frame.data);
         }
         let values: Option<Vec<f64>> = columns.iter().map(Column::value).collect();
         if let (true, Some(values)) = (frame.id == row, values) {
-            table.columns[0].push(if cycle.is_some() { cycles * period_s } else { frame.time_s });
-            table.columns[1..].iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+            table.columns[0].push(if cycle.is_some() {
+                cycles * period_s
+            } else {
+                frame.time_s
+            });
+            table.columns[1..]
+                .iter_mut()
+                .zip(values)
+                .for_each(|(column, value)| column.push(value));
         }
     }
     Ok(table)
@@ -133,7 +194,9 @@ fn fill(
 
 impl Column {
     fn take(&mut self, data: &[u8]) {
-        let Some(raw) = raw(&self.signal, data) else { return };
+        let Some(raw) = raw(&self.signal, data) else {
+            return;
+        };
         let value = raw * self.signal.factor + self.signal.offset;
         if let (Some(range), Some(last)) = (self.form.wraps_at, self.last) {
             let step = value - last;
@@ -155,7 +218,10 @@ fn raw(signal: &Signal, data: &[u8]) -> Option<f64> {
     if size == 0 || size > 64 {
         return None;
     }
-    let bit = |at: u64| data.get((at / 8) as usize).map(|byte| u64::from(byte >> (at % 8) & 1));
+    let bit = |at: u64| {
+        data.get((at / 8) as usize)
+            .map(|byte| u64::from(byte >> (at % 8) & 1))
+    };
     let mut value = 0_u64;
     match signal.byte_order {
         ByteOrder::LittleEndian => {
@@ -170,13 +236,25 @@ fn raw(signal: &Signal, data: &[u8]) -> Option<f64> {
             let mut at = signal.start_bit;
             for _ in 0..size {
                 value = value << 1 | bit(at)?;
-                at = if at.is_multiple_of(8) { at + 15 } else { at - 1 };
+                at = if at.is_multiple_of(8) {
+                    at + 15
+                } else {
+                    at - 1
+                };
             }
         }
     }
     let negative = signal.value_type == ValueType::Signed && value >> (size - 1) & 1 == 1;
-    let range = if size == 64 { 2.0_f64.powi(64) } else { (1_u64 << size) as f64 };
-    Some(if negative { value as f64 - range } else { value as f64 })
+    let range = if size == 64 {
+        2.0_f64.powi(64)
+    } else {
+        (1_u64 << size) as f64
+    };
+    Some(if negative {
+        value as f64 - range
+    } else {
+        value as f64
+    })
 }
 
 /// A line of `candump -l`.
@@ -194,7 +272,12 @@ const EXTENDED: u32 = 1 << 31;
 impl<'a> Frame<'a> {
     fn parse(line: &'a str) -> Option<Self> {
         let mut words = line.split_whitespace();
-        let time_s = words.next()?.strip_prefix('(')?.strip_suffix(')')?.parse::<f64>().ok()?;
+        let time_s = words
+            .next()?
+            .strip_prefix('(')?
+            .strip_suffix(')')?
+            .parse::<f64>()
+            .ok()?;
         let interface = words.next()?;
         let (id, data) = words.next()?.split_once('#')?;
         let extended = if id.len() > 3 { EXTENDED } else { 0 };
@@ -208,7 +291,9 @@ impl<'a> Frame<'a> {
         if !data.is_ascii() || data.len() % 2 != 0 {
             return None;
         }
-        let bytes = (0..data.len()).step_by(2).map(|at| u8::from_str_radix(&data[at..at + 2], 16).ok());
+        let bytes = (0..data.len())
+            .step_by(2)
+            .map(|at| u8::from_str_radix(&data[at..at + 2], 16).ok());
         Some(Self {
             time_s: Some(time_s).filter(|t| t.is_finite())?,
             interface,
@@ -227,7 +312,12 @@ mod tests {
         BO_ 529 Torque: 2 A\n SG_ Command : 7|16@0- (1,0) [0|0] \"Nm\" A\n";
 
     fn form(name: &str, wraps_at: Option<f64>) -> crate::table::Source {
-        crate::table::Source::Form(SourceForm { name: name.into(), scale: 2.0, offset: 0.0, wraps_at })
+        crate::table::Source::Form(SourceForm {
+            name: name.into(),
+            scale: 2.0,
+            offset: 0.0,
+            wraps_at,
+        })
     }
 
     fn table(log: &str) -> Outcome<Table> {
@@ -235,7 +325,12 @@ mod tests {
         std::fs::write(folder.path().join("a.dbc"), DBC).unwrap();
         let path = folder.path().join("train.log");
         std::fs::write(&path, log).unwrap();
-        let bus = BusForm { dbc: "a.dbc".into(), row: None, cycle: Some("Sync".into()), interface: None };
+        let bus = BusForm {
+            dbc: "a.dbc".into(),
+            row: None,
+            cycle: Some("Sync".into()),
+            interface: None,
+        };
         let mapping = Mapping::from([
             ("position_m".into(), form("Feedback.Position", None)),
             ("load_position_m".into(), form("Feedback.Low", Some(256.0))),
@@ -257,7 +352,9 @@ mod tests {
 
     #[test]
     fn what_is_no_frame_is_named_with_its_line() {
-        let error = table("(1.0) can0 080#01\n(1.0) can0 19#0G\n").unwrap_err().to_string();
+        let error = table("(1.0) can0 080#01\n(1.0) can0 19#0G\n")
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("train.log:2:"), "{error}");
     }
 

@@ -1,8 +1,10 @@
-//! The difference of motor and load position: backlash, compliance and pitch error, where there is a load scale.
+//! The difference of motor and load position: backlash, compliance and pitch error, where there is
+//! a load scale.
 //!
-//! Candidates: a gap (the load coasts, or waits, while the motor crosses it: [`crate::load`]), wind-up by the transmitted force
-//! (`F − M1·a` over K), and a function periodic in position. Judged on held-out blocks like the force, but accepted only where the amplitude is
-//! beyond the encoders' counts.
+//! Candidates: a gap (the load coasts, or waits, while the motor crosses it: [`crate::load`]),
+//! wind-up by the transmitted force (`F − M1·a` over K), and a function periodic in position.
+//! Judged on held-out blocks like the force, but accepted only where the amplitude is beyond the
+//! encoders' counts.
 
 use std::f64::consts::TAU;
 
@@ -20,7 +22,8 @@ const SHARE_OF_ALL: f64 = 0.01;
 /// Smallest amplitude, in counts of the coarser encoder.
 const FEWEST_COUNTS: f64 = 2.0;
 const T: f64 = 2.0;
-/// Smallest rms that an effect removes, in counts of the coarser encoder: every screw has some stiffness.
+/// Smallest rms that an effect removes, in counts of the coarser encoder: every screw has some
+/// stiffness.
 const SMALLEST_RMS_COUNTS: f64 = 1.0;
 
 /// What the difference says.
@@ -74,7 +77,10 @@ impl Column {
         let position = path.position;
         match self {
             Self::Constant => vec![vec![1.0; motion.len()]],
-            Self::WindUp => vec![path.transmitted.to_vec(), motion.filter.apply(&motion.acceleration)],
+            Self::WindUp => vec![
+                path.transmitted.to_vec(),
+                motion.filter.apply(&motion.acceleration),
+            ],
             Self::Play(behind) => vec![behind.follow(position, motion.period_s).lag],
             Self::Pitch { k } => {
                 let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
@@ -93,12 +99,25 @@ struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     fn new(motion: &'a Kinematics, path: Path<'a>, target: &'a [f64]) -> Self {
-        let mask = motion.moving.iter().zip(&motion.slow).map(|(moving, slow)| *moving || *slow).collect();
-        Self { motion, path, target, mask }
+        let mask = motion
+            .moving
+            .iter()
+            .zip(&motion.slow)
+            .map(|(moving, slow)| *moving || *slow)
+            .collect();
+        Self {
+            motion,
+            path,
+            target,
+            mask,
+        }
     }
 
     fn design(&self, terms: &[Column]) -> Vec<Vec<f64>> {
-        terms.iter().flat_map(|term| term.columns(self.motion, self.path)).collect()
+        terms
+            .iter()
+            .flat_map(|term| term.columns(self.motion, self.path))
+            .collect()
     }
 
     fn blocks(&self, terms: &[Column]) -> Blocks {
@@ -115,7 +134,11 @@ impl<'a> Bench<'a> {
         let design = self.design(terms);
         let (mut sum, mut count) = (0.0, 0.0);
         for at in (0..self.target.len()).filter(|at| self.mask[*at]) {
-            let predicted: f64 = design.iter().zip(coefficients).map(|(column, c)| c * column[at]).sum();
+            let predicted: f64 = design
+                .iter()
+                .zip(coefficients)
+                .map(|(column, c)| c * column[at])
+                .sum();
             sum += (self.target[at] - predicted).powi(2);
             count += 1.0;
         }
@@ -192,7 +215,8 @@ impl Difference {
         for term in &self.terms {
             match term {
                 Column::Pitch { k } => {
-                    let [a, b] = [0, 1].map(|i| self.coefficients.get(place + i).copied().unwrap_or(0.0));
+                    let [a, b] =
+                        [0, 1].map(|i| self.coefficients.get(place + i).copied().unwrap_or(0.0));
                     return Some((a.hypot(b), *k));
                 }
                 Column::WindUp => place += 2,
@@ -207,9 +231,16 @@ impl Difference {
     pub fn on(&self, motion: &Kinematics, path: Path<'_>) -> Option<(f64, f64)> {
         let target = motion.difference.as_deref()?;
         let bench = Bench::new(motion, path, target);
-        let declared: Vec<Column> =
-            self.terms.iter().copied().filter(|term| !self.found.contains(&term.name())).collect();
-        Some((bench.rms_um(&declared, &self.declared), bench.rms_um(&self.terms, &self.coefficients)))
+        let declared: Vec<Column> = self
+            .terms
+            .iter()
+            .copied()
+            .filter(|term| !self.found.contains(&term.name()))
+            .collect();
+        Some((
+            bench.rms_um(&declared, &self.declared),
+            bench.rms_um(&self.terms, &self.coefficients),
+        ))
     }
 }
 
@@ -217,7 +248,12 @@ fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
     let mut place = 0;
     for term in terms {
         match term {
-            Column::WindUp => return coefficients.get(place).filter(|c| **c > 0.0).map(|c| 1.0 / c),
+            Column::WindUp => {
+                return coefficients
+                    .get(place)
+                    .filter(|c| **c > 0.0)
+                    .map(|c| 1.0 / c);
+            }
             Column::Constant | Column::Play(_) => place += 1,
             Column::Pitch { .. } => place += 2,
         }
@@ -226,7 +262,9 @@ fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
 }
 
 fn candidates(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset, base: &Fit) -> Vec<Column> {
-    let has = |name: &str| terms.iter().any(|term| term.name() == name) || dataset.declared.iter().any(|d| d == name);
+    let has = |name: &str| {
+        terms.iter().any(|term| term.name() == name) || dataset.declared.iter().any(|d| d == name)
+    };
     let mut list = Vec::new();
     if !has("compliance") {
         list.push(Column::WindUp);
@@ -258,20 +296,44 @@ fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
     };
     // A gap is as wide as it is: its lag is subtracted, not scaled.
     let sse = |behind: Behind| {
-        let lag = behind.follow(bench.path.position, bench.motion.period_s).lag;
-        let target: Vec<f64> = bench.target.iter().zip(lag).map(|(target, lag)| target - lag).collect();
-        Bench { target: &target, mask: bench.mask.clone(), ..*bench }.blocks(terms).fit().sse
+        let lag = behind
+            .follow(bench.path.position, bench.motion.period_s)
+            .lag;
+        let target: Vec<f64> = bench
+            .target
+            .iter()
+            .zip(lag)
+            .map(|(target, lag)| target - lag)
+            .collect();
+        Bench {
+            target: &target,
+            mask: bench.mask.clone(),
+            ..*bench
+        }
+        .blocks(terms)
+        .fit()
+        .sse
     };
     let grid = crate::effects::geometric(counts, 1.0e-3_f64.max(100.0 * counts), 24);
     let mut gap = smallest(grid, &|gap| sse(behind(gap, 0.4, 0.0))).unwrap_or(counts);
     let (mut share, mut restitution) = (SHARES[2], RESTITUTIONS[0]);
     let mut step = 0.15;
     for _ in 0..ROUNDS {
-        gap = descend(gap, step * gap, (counts, f64::MAX), &|gap| sse(behind(gap, share, restitution)));
-        restitution = smallest(RESTITUTIONS.to_vec(), &|r| sse(behind(gap, share, r))).unwrap_or(restitution);
-        share = smallest(SHARES.to_vec(), &|share| sse(behind(gap, share, restitution))).unwrap_or(share);
-        restitution = descend(restitution, 0.1, (0.0, 0.99), &|r| sse(behind(gap, share, r)));
-        share = descend(share, 0.05, (0.01, 0.95), &|share| sse(behind(gap, share, restitution)));
+        gap = descend(gap, step * gap, (counts, f64::MAX), &|gap| {
+            sse(behind(gap, share, restitution))
+        });
+        restitution =
+            smallest(RESTITUTIONS.to_vec(), &|r| sse(behind(gap, share, r))).unwrap_or(restitution);
+        share = smallest(SHARES.to_vec(), &|share| {
+            sse(behind(gap, share, restitution))
+        })
+        .unwrap_or(share);
+        restitution = descend(restitution, 0.1, (0.0, 0.99), &|r| {
+            sse(behind(gap, share, r))
+        });
+        share = descend(share, 0.05, (0.01, 0.95), &|share| {
+            sse(behind(gap, share, restitution))
+        });
         step = 0.02;
     }
     Column::Play(behind(gap, share, restitution))
@@ -285,7 +347,11 @@ fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column>
         .step_by(8)
         .filter(|at| bench.mask[*at])
         .map(|at| {
-            let predicted: f64 = design.iter().zip(&base.coefficients).map(|(column, c)| c * column[at]).sum();
+            let predicted: f64 = design
+                .iter()
+                .zip(&base.coefficients)
+                .map(|(column, c)| c * column[at])
+                .sum();
             (bench.path.position[at], bench.target[at] - predicted)
         })
         .collect();
@@ -298,9 +364,14 @@ fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column>
     };
     let count = ((4000.0 * (high - low)) as usize).min(4000);
     let waves = (8..count.max(9)).map(|i| step * i as f64);
-    let best = waves.map(|k| (power(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let best = waves
+        .map(|k| (power(k), k))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?
+        .1;
     let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
-    fine.map(|k| (power(k), k)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| Column::Pitch { k })
+    fine.map(|k| (power(k), k))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, k)| Column::Pitch { k })
 }
 
 fn judge(
@@ -318,13 +389,23 @@ fn judge(
     let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
     let total: f64 = base.held_out.iter().sum();
     let (physical, parameter) = match column {
-        Column::Play(behind) => ((0.8..=1.2).contains(&own[0]) && behind.gap >= counts, behind.gap),
+        Column::Play(behind) => (
+            (0.8..=1.2).contains(&own[0]) && behind.gap >= counts,
+            behind.gap,
+        ),
         Column::WindUp => {
             let motor_mass = -own[1] / own[0];
             let inertia = crate::selection::plain_fit(bench.motion).inertia;
-            let effort = bench.path.transmitted.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+            let effort = bench
+                .path
+                .transmitted
+                .iter()
+                .fold(0.0_f64, |most, effort| most.max(effort.abs()));
             let visible = own[0] * effort >= counts;
-            (visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia, 1.0 / own[0])
+            (
+                visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia,
+                1.0 / own[0],
+            )
         }
         Column::Pitch { k } => (own[0].hypot(own[1]) >= counts, k),
         Column::Constant => (false, 0.0),
@@ -332,8 +413,18 @@ fn judge(
     let removed_of_all = gain.share * total / all.max(f64::MIN_POSITIVE);
     let rows = bench.mask.iter().filter(|inside| **inside).count() as f64;
     let removed_rms = (gain.share.max(0.0) * total / rows.max(1.0)).sqrt();
-    let matters = removed_rms >= SMALLEST_RMS_COUNTS * dataset.resolution.max(dataset.load_resolution);
-    let accepted = physical && matters && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
-    let scored = Scored { effect: column.name(), parameter, gain, physical, accepted, nameless: false, round };
+    let matters =
+        removed_rms >= SMALLEST_RMS_COUNTS * dataset.resolution.max(dataset.load_resolution);
+    let accepted =
+        physical && matters && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
+    let scored = Scored {
+        effect: column.name(),
+        parameter,
+        gain,
+        physical,
+        accepted,
+        nameless: false,
+        round,
+    };
     (scored, column)
 }

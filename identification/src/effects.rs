@@ -1,7 +1,8 @@
 //! The library of effects: one file each, one list.
 //!
-//! An effect of the inverse model gives columns for the regression, at most one nonlinear parameter with its grid, and a test whether what
-//! was fitted is physical. Adding one touches its file and [`LIBRARY`].
+//! An effect of the inverse model gives columns for the regression, at most one nonlinear parameter
+//! with its grid, and a test whether what was fitted is physical. Adding one touches its file and
+//! [`LIBRARY`].
 
 use crate::kinematics::Kinematics;
 use crate::record::{AxisKind, Dataset};
@@ -86,14 +87,26 @@ impl Naming<'_> {
     #[must_use]
     pub fn coefficient(&self, name: &str, place: usize, unit: String) -> Named {
         let (value, half_width) = self.coefficients.get(place).copied().unwrap_or((0.0, 0.0));
-        Named { name: name.into(), value, half_width: Some(half_width), unit }
+        Named {
+            name: name.into(),
+            value,
+            half_width: Some(half_width),
+            unit,
+        }
     }
 
     /// A quantity that is proportional to the nonlinear parameter, or to one over it.
     #[must_use]
     pub fn nonlinear(&self, name: &str, value: f64, unit: String) -> Named {
-        let half_width = self.parameter_half_width.map(|half| half * (value / self.parameter).abs());
-        Named { name: name.into(), value, half_width, unit }
+        let half_width = self
+            .parameter_half_width
+            .map(|half| half * (value / self.parameter).abs());
+        Named {
+            name: name.into(),
+            value,
+            half_width,
+            unit,
+        }
     }
 }
 
@@ -207,7 +220,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether it is a structure without a name: it keeps named effects from absorbing it, and leads to `unexplained`.
+    /// Whether it is a structure without a name: it keeps named effects from absorbing it, and
+    /// leads to `unexplained`.
     fn is_nameless(&self) -> bool {
         false
     }
@@ -239,8 +253,15 @@ pub static LIBRARY: [&dyn Effect; 13] = [
 ];
 
 /// Effects that are not columns of the inverse model: found by their own stage.
-pub const OTHERS: [&str; 7] =
-    ["coulomb_asymmetry", "presliding", "backlash", "compliance", "pitch_error", "torque_saturation", "delay"];
+pub const OTHERS: [&str; 7] = [
+    "coulomb_asymmetry",
+    "presliding",
+    "backlash",
+    "compliance",
+    "pitch_error",
+    "torque_saturation",
+    "delay",
+];
 
 /// The effect of a name, where it is one of the inverse model.
 #[must_use]
@@ -257,7 +278,10 @@ pub fn is_known(name: &str) -> bool {
 /// All names that may be declared.
 #[must_use]
 pub fn known_names() -> Vec<&'static str> {
-    let named = LIBRARY.into_iter().filter(|effect| !effect.is_nameless()).map(Effect::name);
+    let named = LIBRARY
+        .into_iter()
+        .filter(|effect| !effect.is_nameless())
+        .map(Effect::name);
     named.chain(OTHERS).collect()
 }
 
@@ -265,5 +289,7 @@ pub fn known_names() -> Vec<&'static str> {
 #[must_use]
 pub fn geometric(low: f64, high: f64, count: u32) -> Vec<f64> {
     let ratio = (high / low).powf(1.0 / f64::from(count.max(2) - 1));
-    (0..count).map(|i| low * ratio.powi(i32::try_from(i).unwrap_or(0))).collect()
+    (0..count)
+        .map(|i| low * ratio.powi(i32::try_from(i).unwrap_or(0)))
+        .collect()
 }

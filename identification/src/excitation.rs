@@ -9,7 +9,12 @@ pub fn warnings(dataset: &Dataset, motion: &Kinematics, found: &[String]) -> Vec
     let mut list = dataset.notes.clone();
     list.extend(same_force(dataset, found));
     let moving = |test: &dyn Fn(f64) -> bool| {
-        motion.velocity_lp.iter().zip(&motion.moving).filter(|(v, moving)| **moving && test(**v)).count()
+        motion
+            .velocity_lp
+            .iter()
+            .zip(&motion.moving)
+            .filter(|(v, moving)| **moving && test(**v))
+            .count()
     };
     let all = moving(&|_| true).max(1);
     let (forwards, backwards) = (moving(&|v| v > 0.0), moving(&|v| v < 0.0));
@@ -38,14 +43,27 @@ pub fn warnings(dataset: &Dataset, motion: &Kinematics, found: &[String]) -> Vec
 /// Number of reversals.
 #[must_use]
 pub fn reversals(motion: &Kinematics) -> usize {
-    let signs: Vec<f64> =
-        motion.velocity_lp.iter().zip(&motion.moving).filter(|(_, moving)| **moving).map(|(v, _)| v.signum()).collect();
+    let signs: Vec<f64> = motion
+        .velocity_lp
+        .iter()
+        .zip(&motion.moving)
+        .filter(|(_, moving)| **moving)
+        .map(|(v, _)| v.signum())
+        .collect();
     signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
 
 /// Explanations that no record can tell apart.
 fn same_force(dataset: &Dataset, found: &[String]) -> Vec<String> {
-    let has = |name: &str| found.iter().chain(&dataset.declared).any(|known| known == name);
+    let has = |name: &str| {
+        found
+            .iter()
+            .chain(&dataset.declared)
+            .any(|known| known == name)
+    };
     let text = "offset and coulomb_asymmetry are the same force (a constant one, at rest as in motion): no record tells them apart, and offset stands for both";
-    (has("offset") || has("coulomb_asymmetry")).then(|| text.to_owned()).into_iter().collect()
+    (has("offset") || has("coulomb_asymmetry"))
+        .then(|| text.to_owned())
+        .into_iter()
+        .collect()
 }

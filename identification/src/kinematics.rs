@@ -1,10 +1,12 @@
 //! From positions to velocity, acceleration, direction and masks, aligned with the effort.
 //!
-//! A zero-order-hold effort acts from its row to the next, so positions and their derivatives are taken at the middle of that interval: the
-//! velocity is the difference quotient, the acceleration the mean of two adjacent second differences (the triangle-weighted mean acceleration
-//! over the hold). An instantaneous effort is paired with central differences.
+//! A zero-order-hold effort acts from its row to the next, so positions and their derivatives are
+//! taken at the middle of that interval: the velocity is the difference quotient, the acceleration
+//! the mean of two adjacent second differences (the triangle-weighted mean acceleration over the
+//! hold). An instantaneous effort is paired with central differences.
 //!
-//! Nonlinear columns are made from the low-passed velocity and position and then low-passed themselves, linear ones from the raw derivatives.
+//! Nonlinear columns are made from the low-passed velocity and position and then low-passed
+//! themselves, linear ones from the raw derivatives.
 
 use crate::filter::{LowPass, TRIM, fit_cutoff_hz};
 use crate::record::{Dataset, EffortHold, Record};
@@ -29,7 +31,8 @@ pub struct Kinematics {
     pub load_acceleration: Option<Vec<f64>>,
     /// Low-passed position.
     pub position_lp: Vec<f64>,
-    /// Low-passed velocity where friction acts: at the load scale if there is one, else at the motor.
+    /// Low-passed velocity where friction acts: at the load scale if there is one, else at the
+    /// motor.
     pub velocity_lp: Vec<f64>,
     /// Raw position where friction acts.
     pub friction_position: Vec<f64>,
@@ -52,7 +55,8 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Kinematics of a record with the cut-off of its fit; `None` where the sample rate leaves no room for the low-pass.
+    /// Kinematics of a record with the cut-off of its fit; `None` where the sample rate leaves no
+    /// room for the low-pass.
     #[must_use]
     pub fn new(dataset: &Dataset, record: &Record) -> Option<Self> {
         Self::with_cutoff(dataset, record, fit_cutoff_hz(record))
@@ -64,9 +68,17 @@ impl Kinematics {
         let period_s = record.period_s;
         let filter = LowPass::new(period_s, cutoff)?;
         let motor = Derivatives::new(&record.position, period_s, dataset.hold);
-        let friction = record.load.as_ref().map(|load| Derivatives::new(load, period_s, dataset.hold));
-        let relative =
-            |load: &Derivatives| load.acceleration.iter().zip(&motor.acceleration).map(|(l, m)| l - m).collect();
+        let friction = record
+            .load
+            .as_ref()
+            .map(|load| Derivatives::new(load, period_s, dataset.hold));
+        let relative = |load: &Derivatives| {
+            load.acceleration
+                .iter()
+                .zip(&motor.acceleration)
+                .map(|(l, m)| l - m)
+                .collect()
+        };
         let load_acceleration = friction.as_ref().map(relative);
         let friction = friction.as_ref().unwrap_or(&motor);
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, dataset.hold);
@@ -75,8 +87,16 @@ impl Kinematics {
         let limit = dataset.kind.moving_velocity();
         let (moving, slow) = masks(&motor_lp, limit, period_s);
         let spoilt = spoilt(record, dataset.effort_limit, period_s);
-        let fitted = moving.iter().zip(&spoilt).map(|(moving, spoilt)| *moving && !spoilt).collect();
-        let slow = slow.iter().zip(&spoilt).map(|(slow, spoilt)| *slow && !spoilt).collect();
+        let fitted = moving
+            .iter()
+            .zip(&spoilt)
+            .map(|(moving, spoilt)| *moving && !spoilt)
+            .collect();
+        let slow = slow
+            .iter()
+            .zip(&spoilt)
+            .map(|(slow, spoilt)| *slow && !spoilt)
+            .collect();
         Some(Self {
             period_s,
             time_s: record.time_s.clone(),
@@ -86,7 +106,14 @@ impl Kinematics {
             friction_position: friction.position.clone(),
             velocity_lp,
             effort_lp: filter.apply(&effort),
-            difference: record.load.as_ref().map(|load| record.position.iter().zip(load).map(|(m, l)| m - l).collect()),
+            difference: record.load.as_ref().map(|load| {
+                record
+                    .position
+                    .iter()
+                    .zip(load)
+                    .map(|(m, l)| m - l)
+                    .collect()
+            }),
             moving,
             fitted,
             slow,
@@ -113,8 +140,14 @@ impl Kinematics {
     /// Range of positions over moving samples.
     #[must_use]
     pub fn span(&self) -> (f64, f64) {
-        let moving = self.position_lp.iter().zip(&self.moving).filter(|(_, moving)| **moving);
-        moving.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (x, _)| (low.min(*x), high.max(*x)))
+        let moving = self
+            .position_lp
+            .iter()
+            .zip(&self.moving)
+            .filter(|(_, moving)| **moving);
+        moving.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (x, _)| {
+            (low.min(*x), high.max(*x))
+        })
     }
 
     /// Duration, s.
@@ -152,14 +185,18 @@ impl Derivatives {
             },
             EffortHold::Instant => Self {
                 position: x.to_vec(),
-                velocity: rows.clone().map(|i| (at(i + 1) - at(i - 1)) / (2.0 * t)).collect(),
+                velocity: rows
+                    .clone()
+                    .map(|i| (at(i + 1) - at(i - 1)) / (2.0 * t))
+                    .collect(),
                 acceleration: rows.map(second).collect(),
             },
         }
     }
 }
 
-/// The effort that acts: through a known first-order lag; for a zero-order hold, its mean over the interval.
+/// The effort that acts: through a known first-order lag; for a zero-order hold, its mean over the
+/// interval.
 fn acting_effort(effort: &[f64], lag_s: f64, period_s: f64, hold: EffortHold) -> Vec<f64> {
     if lag_s <= 0.0 {
         return effort.to_vec();
@@ -183,10 +220,15 @@ fn acting_effort(effort: &[f64], lag_s: f64, period_s: f64, hold: EffortHold) ->
 /// Share of the limit from which an effort counts as limited.
 const LIMITED: f64 = 0.999;
 
-/// Samples about a hole in the record or about an effort at its limit: what acted there is not known.
+/// Samples about a hole in the record or about an effort at its limit: what acted there is not
+/// known.
 fn spoilt(record: &Record, limit: Option<f64>, period_s: f64) -> Vec<bool> {
     let limited = |effort: &f64| limit.is_some_and(|limit| effort.abs() >= LIMITED * limit);
-    let bad = record.effort.iter().zip(&record.interpolated).map(|(effort, hole)| *hole || limited(effort));
+    let bad = record
+        .effort
+        .iter()
+        .zip(&record.interpolated)
+        .map(|(effort, hole)| *hole || limited(effort));
     let margin = (SLOW_MARGIN_S / period_s).round() as usize;
     let rows = record.len();
     let mut spoilt = vec![false; rows];
@@ -220,16 +262,24 @@ mod tests {
 
     #[test]
     fn the_acceleration_of_a_parabola_is_exact_under_both_holds() {
-        let x: Vec<f64> = (0..50).map(|i| 0.5 * 3.0 * (1.0e-3 * f64::from(i)).powi(2)).collect();
+        let x: Vec<f64> = (0..50)
+            .map(|i| 0.5 * 3.0 * (1.0e-3 * f64::from(i)).powi(2))
+            .collect();
         for hold in [EffortHold::Instant, EffortHold::ZeroOrder] {
             let derivatives = Derivatives::new(&x, 1.0e-3, hold);
-            assert!(derivatives.acceleration[5..45].iter().all(|a| (a - 3.0).abs() < 1.0e-6));
+            assert!(
+                derivatives.acceleration[5..45]
+                    .iter()
+                    .all(|a| (a - 3.0).abs() < 1.0e-6)
+            );
         }
     }
 
     #[test]
     fn slow_samples_take_their_neighbours_with_them() {
-        let velocity: Vec<f64> = (0..1000).map(|i| if i == 500 { 0.0 } else { 0.1 }).collect();
+        let velocity: Vec<f64> = (0..1000)
+            .map(|i| if i == 500 { 0.0 } else { 0.1 })
+            .collect();
         let (moving, slow) = masks(&velocity, 1.0e-3, 1.0e-3);
         assert_eq!(slow.iter().filter(|slow| **slow).count(), 41);
         assert!(!moving[480] && !moving[520] && moving[479] && moving[521]);

@@ -55,25 +55,40 @@ pub(crate) struct AtReversals {
 ///
 /// # Errors
 /// Where the record leaves nothing to fit.
-pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Identification, IdentificationError> {
+pub fn identify(
+    dataset: &Dataset,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Identification, IdentificationError> {
     let motion = kinematics(dataset, &dataset.train)?;
     let low_cutoff = actuator::delay_cutoff_hz(dataset.train.period_s);
-    let low = Kinematics::with_cutoff(dataset, &dataset.train, low_cutoff).ok_or_else(|| no_room(dataset))?;
+    let low = Kinematics::with_cutoff(dataset, &dataset.train, low_cutoff)
+        .ok_or_else(|| no_room(dataset))?;
     let validation = kinematics(dataset, &dataset.validate)?;
     check_samples(dataset, &motion, &validation)?;
     plausibility::check(dataset, &motion)?;
     let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &low));
-    let pair = Pair { bench: &bench, low: &low };
+    let pair = Pair {
+        bench: &bench,
+        low: &low,
+    };
     progress("fitting the declared model");
     let mut start = selection::declared_model(dataset);
     selection::prepare(pair, &mut start);
     progress("scoring candidate effects");
     let mut selected = selection::select(pair, start.clone(), progress);
-    selection::veto(&bench, &Bench::new(dataset, &validation), &mut selected, start.terms.len());
+    selection::veto(
+        &bench,
+        &Bench::new(dataset, &validation),
+        &mut selected,
+        start.terms.len(),
+    );
     progress("looking at motor and load");
     let coefficients = bench.fit(&selected.model).coefficients;
     let transmitted = bench.transmitted(&selected.model, &coefficients);
-    let path = difference::Path { position: &dataset.train.position, transmitted: &transmitted };
+    let path = difference::Path {
+        position: &dataset.train.position,
+        transmitted: &transmitted,
+    };
     let difference = difference::difference(dataset, &motion, path);
     progress("simulating reversals: stick, bristle, gap");
     let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
@@ -96,7 +111,11 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
         motion: &motion,
         validation: &validation,
         declared: fitted(pair, start, deflection.filter(|_| declares_presliding)),
-        extended: fitted(pair, model, deflection.filter(|_| accepted.presliding || declares_presliding)),
+        extended: fitted(
+            pair,
+            model,
+            deflection.filter(|_| accepted.presliding || declares_presliding),
+        ),
         selected,
         difference,
         presliding,
@@ -107,7 +126,11 @@ pub fn identify(dataset: &Dataset, progress: &mut dyn FnMut(&str)) -> Result<Ide
     Ok(assemble(&findings))
 }
 
-fn check_samples(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics) -> Result<(), IdentificationError> {
+fn check_samples(
+    dataset: &Dataset,
+    motion: &Kinematics,
+    validation: &Kinematics,
+) -> Result<(), IdentificationError> {
     let fitted = motion.fitted.iter().filter(|fitted| **fitted).count();
     if fitted < crate::record::FEWEST_ROWS / 2 {
         return Err(IdentificationError::new(format!(
@@ -124,57 +147,97 @@ fn check_samples(dataset: &Dataset, motion: &Kinematics, validation: &Kinematics
     Ok(())
 }
 
-fn kinematics(dataset: &Dataset, record: &crate::record::Record) -> Result<Kinematics, IdentificationError> {
+fn kinematics(
+    dataset: &Dataset,
+    record: &crate::record::Record,
+) -> Result<Kinematics, IdentificationError> {
     Kinematics::new(dataset, record).ok_or_else(|| no_room(dataset))
 }
 
 fn no_room(dataset: &Dataset) -> IdentificationError {
-    IdentificationError::new(format!("{}: the sample period leaves no room for the low-pass", dataset.name))
+    IdentificationError::new(format!(
+        "{}: the sample period leaves no room for the low-pass",
+        dataset.name
+    ))
 }
 
-/// A load scale shows gaps directly and friction where it acts; without it the free run decides, if the controller is known. Where it is not, the
-/// simulation follows the record too closely to be a judge of bristles, but a gap that it sees is one.
+/// A load scale shows gaps directly and friction where it acts; without it the free run decides, if
+/// the controller is known. Where it is not, the simulation follows the record too closely to be a
+/// judge of bristles, but a gap that it sees is one.
 fn at_reversals(
     presliding: Option<&Presliding>,
     reversals: Option<&Reversals>,
     difference: Option<&Difference>,
 ) -> AtReversals {
     let inverse = presliding.is_some_and(|p| p.accepted);
-    let suspicious = presliding.is_some_and(|p| !p.accepted && p.dahl < reversal::SUSPICION * p.rigid);
+    let suspicious =
+        presliding.is_some_and(|p| !p.accepted && p.dahl < reversal::SUSPICION * p.rigid);
     if let Some(difference) = difference {
         let unexplained = suspicious && difference.gap.is_none();
-        return AtReversals { presliding: inverse, backlash: false, unexplained };
+        return AtReversals {
+            presliding: inverse,
+            backlash: false,
+            unexplained,
+        };
     }
     let Some(reversals) = reversals else {
-        return AtReversals { presliding: inverse, backlash: false, unexplained: suspicious };
+        return AtReversals {
+            presliding: inverse,
+            backlash: false,
+            unexplained: suspicious,
+        };
     };
     let seen = reversals.accepted;
     match reversals.drive {
         Drive::Known(_) if seen.undecided => tie(presliding, reversals),
-        Drive::Known(_) => AtReversals { presliding: seen.presliding, backlash: seen.backlash, unexplained: false },
+        Drive::Known(_) => AtReversals {
+            presliding: seen.presliding,
+            backlash: seen.backlash,
+            unexplained: false,
+        },
         Drive::Followed => {
-            let presliding = if seen.backlash { seen.presliding } else { inverse };
+            let presliding = if seen.backlash {
+                seen.presliding
+            } else {
+                inverse
+            };
             let unexplained = !presliding && !seen.backlash && (suspicious || seen.undecided);
-            AtReversals { presliding, backlash: seen.backlash, unexplained }
+            AtReversals {
+                presliding,
+                backlash: seen.backlash,
+                unexplained,
+            }
         }
     }
 }
 
-/// Ratios of the inverse model below which a bristle and above which a gap breaks a tie of the free run: noise that really acts raises what every shape
-/// leaves there.
+/// Ratios of the inverse model below which a bristle and above which a gap breaks a tie of the free
+/// run: noise that really acts raises what every shape leaves there.
 const BRISTLE_TIE: f64 = 0.5;
 const GAP_TIE: f64 = 0.8;
 
 fn tie(presliding: Option<&Presliding>, reversals: &Reversals) -> AtReversals {
     let ratio = presliding.map_or(f64::NAN, |p| p.dahl / p.rigid);
-    let gap_wins = reversals.gap.as_ref().is_some_and(|gap| gap.held_out < reversals.bristle.held_out);
-    let (bristle, gap) = (ratio < BRISTLE_TIE && !gap_wins, ratio > GAP_TIE && gap_wins);
-    AtReversals { presliding: bristle, backlash: gap, unexplained: !bristle && !gap }
+    let gap_wins = reversals
+        .gap
+        .as_ref()
+        .is_some_and(|gap| gap.held_out < reversals.bristle.held_out);
+    let (bristle, gap) = (
+        ratio < BRISTLE_TIE && !gap_wins,
+        ratio > GAP_TIE && gap_wins,
+    );
+    AtReversals {
+        presliding: bristle,
+        backlash: gap,
+        unexplained: !bristle && !gap,
+    }
 }
 
 /// Deflection of the bristle: from the free run where that has one, else from the inverse model.
 fn deflection(presliding: Option<&Presliding>, reversals: Option<&Reversals>) -> Option<f64> {
-    let simulated = reversals.filter(|r| r.accepted.presliding).map(|r| r.best().model.shape.deflection);
+    let simulated = reversals
+        .filter(|r| r.accepted.presliding)
+        .map(|r| r.best().model.shape.deflection);
     simulated.or_else(|| presliding.map(|p| p.deflection))
 }
 
@@ -182,15 +245,29 @@ fn deflection(presliding: Option<&Presliding>, reversals: Option<&Reversals>) ->
 fn fitted(pair: Pair<'_>, model: Model, deflection: Option<f64>) -> Fitted {
     let Some(width) = deflection else {
         let coefficients = pair.bench.fit(&model).coefficients;
-        return Fitted { model, coefficients, deflection };
+        return Fitted {
+            model,
+            coefficients,
+            deflection,
+        };
     };
     let dataset = pair.bench.dataset;
     let [motion, slow] = [pair.bench, pair.low].map(|bench| bristle::motion(bench.motion, width));
     let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &slow));
     let mut model = model;
-    selection::refine(Pair { bench: &bench, low: &low }, &mut model);
+    selection::refine(
+        Pair {
+            bench: &bench,
+            low: &low,
+        },
+        &mut model,
+    );
     let coefficients = bench.fit(&model).coefficients;
-    Fitted { model, coefficients, deflection }
+    Fitted {
+        model,
+        coefficients,
+        deflection,
+    }
 }
 
 struct Judged {
@@ -203,7 +280,10 @@ struct Judged {
 impl Fitted {
     /// The motion as this model sees it.
     pub(crate) fn motion(&self, motion: &Kinematics) -> Kinematics {
-        self.deflection.map_or_else(|| motion.clone(), |deflection| bristle::motion(motion, deflection))
+        self.deflection.map_or_else(
+            || motion.clone(),
+            |deflection| bristle::motion(motion, deflection),
+        )
     }
 
     fn judge(&self, dataset: &Dataset, motion: &Kinematics) -> Judged {
@@ -225,37 +305,78 @@ impl Fitted {
 }
 
 fn assemble(findings: &Findings<'_>) -> Identification {
-    let Findings { dataset, motion, validation, declared, extended, selected, difference, .. } = findings;
-    let train = [declared.judge(dataset, motion), extended.judge(dataset, motion)];
-    let validate = [declared.judge(dataset, validation), extended.judge(dataset, validation)];
+    let Findings {
+        dataset,
+        motion,
+        validation,
+        declared,
+        extended,
+        selected,
+        difference,
+        ..
+    } = findings;
+    let train = [
+        declared.judge(dataset, motion),
+        extended.judge(dataset, motion),
+    ];
+    let validate = [
+        declared.judge(dataset, validation),
+        extended.judge(dataset, validation),
+    ];
     let slow_ripple = slow_ripple(dataset, motion, &declared.model);
     let found = found(findings, slow_ripple.is_some());
     let residual = structure(motion, &train, selected);
     let percent_left = train[1].force_percent * residual.share_after.sqrt();
     // Impacts in a gap leave structure in the force that no column of an inverse model can have.
-    let has_gap = found.iter().chain(&dataset.declared).any(|name| name == "backlash");
-    let matters = residual.share_after >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
-    let apart = difference.as_ref().is_some_and(|d| !has_gap && leaves_much(dataset, d));
-    let unexplained = matters || !selected.nameless.is_empty() || findings.accepted.unexplained || apart;
-    let transmitted = Bench::new(dataset, validation).transmitted(&extended.model, &extended.coefficients);
-    let path = difference::Path { position: &dataset.validate.position, transmitted: &transmitted };
+    let has_gap = found
+        .iter()
+        .chain(&dataset.declared)
+        .any(|name| name == "backlash");
+    let matters = residual.share_after >= UNEXPLAINED_SHARE
+        && percent_left >= UNEXPLAINED_PERCENT
+        && !has_gap;
+    let apart = difference
+        .as_ref()
+        .is_some_and(|d| !has_gap && leaves_much(dataset, d));
+    let unexplained =
+        matters || !selected.nameless.is_empty() || findings.accepted.unexplained || apart;
+    let transmitted =
+        Bench::new(dataset, validation).transmitted(&extended.model, &extended.coefficients);
+    let path = difference::Path {
+        position: &dataset.validate.position,
+        transmitted: &transmitted,
+    };
     let on_validation = |d: &Difference| d.on(validation, path);
-    let free_run = findings.reversals.as_ref().and_then(|reversals| free_run_errors::report(findings, reversals));
+    let free_run = findings
+        .reversals
+        .as_ref()
+        .and_then(|reversals| free_run_errors::report(findings, reversals));
     let report = Report {
         dataset: dataset.name.clone(),
         declared: dataset.declared.clone(),
         candidates: ranking::candidates(findings, &found),
-        train: errors(&train, difference.as_ref().map(|d| (d.before_um, d.after_um))),
+        train: errors(
+            &train,
+            difference.as_ref().map(|d| (d.before_um, d.after_um)),
+        ),
         validate: errors(&validate, difference.as_ref().and_then(on_validation)),
         whole: whole(dataset, declared, extended),
         protocols: protocols::table(findings),
-        residual: ResidualReport { looks_like: looks_like(&residual, findings, apart), ..residual },
+        residual: ResidualReport {
+            looks_like: looks_like(&residual, findings, apart),
+            ..residual
+        },
         free_run: free_run.as_ref().map(|(report, _)| report.clone()),
         parameters: ranking::parameters(findings, slow_ripple.as_ref()),
         cutoff_hz: crate::filter::fit_cutoff_hz(&dataset.train),
         as_defined: as_defined(findings),
         slow_ripple,
-        verdict: if unexplained { "unexplained" } else { "explained" }.into(),
+        verdict: if unexplained {
+            "unexplained"
+        } else {
+            "explained"
+        }
+        .into(),
         warnings: excitation::warnings(dataset, motion, &found),
         found,
     };
@@ -275,13 +396,35 @@ fn assemble(findings: &Findings<'_>) -> Identification {
 }
 
 fn found(findings: &Findings<'_>, slow_ripple: bool) -> Vec<String> {
-    let accepted = [(findings.accepted.presliding, "presliding"), (findings.accepted.backlash, "backlash")];
-    let at_reversals = accepted.into_iter().filter(|(accepted, _)| *accepted).map(|(_, name)| name);
-    let in_difference = findings.difference.iter().flat_map(|d| d.found.iter().copied());
+    let accepted = [
+        (findings.accepted.presliding, "presliding"),
+        (findings.accepted.backlash, "backlash"),
+    ];
+    let at_reversals = accepted
+        .into_iter()
+        .filter(|(accepted, _)| *accepted)
+        .map(|(_, name)| name);
+    let in_difference = findings
+        .difference
+        .iter()
+        .flat_map(|d| d.found.iter().copied());
     let ripple = slow_ripple.then_some("torque_ripple");
-    let all = findings.selected.found.iter().copied().chain(at_reversals).chain(in_difference).chain(ripple);
+    let all = findings
+        .selected
+        .found
+        .iter()
+        .copied()
+        .chain(at_reversals)
+        .chain(in_difference)
+        .chain(ripple);
     let mut list: Vec<String> = Vec::new();
-    for name in all.filter(|name| !findings.dataset.declared.iter().any(|declared| declared == name)) {
+    for name in all.filter(|name| {
+        !findings
+            .dataset
+            .declared
+            .iter()
+            .any(|declared| declared == name)
+    }) {
         if !list.iter().any(|known| known == name) {
             list.push(name.into());
         }
@@ -302,13 +445,25 @@ fn errors(judged: &[Judged; 2], difference_um: Option<(f64, f64)>) -> Errors {
 
 /// Errors with the defined low-pass, where the fit used another: training and validation record.
 fn as_defined(findings: &Findings<'_>) -> Option<[Errors; 2]> {
-    let Findings { dataset, declared, extended, .. } = findings;
+    let Findings {
+        dataset,
+        declared,
+        extended,
+        ..
+    } = findings;
     if !dataset.train.jittered {
         return None;
     }
     let on = |record: &crate::record::Record| {
-        let motion = Kinematics::with_cutoff(dataset, record, crate::filter::cutoff_hz(record.period_s))?;
-        Some(errors(&[declared.judge(dataset, &motion), extended.judge(dataset, &motion)], None))
+        let motion =
+            Kinematics::with_cutoff(dataset, record, crate::filter::cutoff_hz(record.period_s))?;
+        Some(errors(
+            &[
+                declared.judge(dataset, &motion),
+                extended.judge(dataset, &motion),
+            ],
+            None,
+        ))
     };
     Some([on(&dataset.train)?, on(&dataset.validate)?])
 }
@@ -329,10 +484,18 @@ fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> 
     let shares = |judged: &Judged| residual::structures(motion, &judged.residual);
     let (before, after) = (shares(&train[0]), shares(&train[1]));
     let best = |round: usize| {
-        let of_round = selected.scored.iter().filter(|scored| scored.round == round && scored.physical);
+        let of_round = selected
+            .scored
+            .iter()
+            .filter(|scored| scored.round == round && scored.physical);
         of_round.map(|scored| scored.gain.share).fold(0.0, f64::max)
     };
-    let last = selected.scored.iter().map(|scored| scored.round).max().unwrap_or(0);
+    let last = selected
+        .scored
+        .iter()
+        .map(|scored| scored.round)
+        .max()
+        .unwrap_or(0);
     let largest = |list: &[Structure]| list.first().map_or(0.0, |structure| structure.share);
     let share_before = largest(&before).max(best(0));
     let share_after = largest(&after).max(best(last));
@@ -341,7 +504,9 @@ fn structure(motion: &Kinematics, train: &[Judged; 2], selected: &Selection) -> 
         white_after: share_after < WHITE_SHARE,
         share_before,
         share_after,
-        looks_like: after.first().map_or(String::new(), |structure| structure.over.into()),
+        looks_like: after
+            .first()
+            .map_or(String::new(), |structure| structure.over.into()),
     }
 }
 
@@ -350,12 +515,21 @@ const LARGEST_DIFFERENCE_UM: f64 = 3.0;
 const LARGEST_DIFFERENCE_COUNTS: f64 = 10.0;
 
 fn leaves_much(dataset: &Dataset, difference: &Difference) -> bool {
-    let counts = 1.0e-6 * difference.after_um / dataset.resolution.max(dataset.load_resolution).max(f64::MIN_POSITIVE);
+    let counts = 1.0e-6 * difference.after_um
+        / dataset
+            .resolution
+            .max(dataset.load_resolution)
+            .max(f64::MIN_POSITIVE);
     difference.after_um > LARGEST_DIFFERENCE_UM && counts > LARGEST_DIFFERENCE_COUNTS
 }
 
 fn looks_like(residual: &ResidualReport, findings: &Findings<'_>, apart: bool) -> String {
-    let mut parts: Vec<String> = findings.selected.nameless.iter().map(|name| format!("a {name}")).collect();
+    let mut parts: Vec<String> = findings
+        .selected
+        .nameless
+        .iter()
+        .map(|name| format!("a {name}"))
+        .collect();
     if residual.share_after >= WHITE_SHARE && !residual.looks_like.is_empty() {
         parts.push(format!(
             "structure over {} ({:.0} % of the residual)",
@@ -367,21 +541,41 @@ fn looks_like(residual: &ResidualReport, findings: &Findings<'_>, apart: bool) -
         parts.push("structure at reversals that is neither stick nor a bristle nor a gap".into());
     }
     if apart {
-        parts.push("motor and load that move apart otherwise than by a gap, a stiffness or a pitch error".into());
+        parts.push(
+            "motor and load that move apart otherwise than by a gap, a stiffness or a pitch error"
+                .into(),
+        );
     }
     parts.join("; ")
 }
 
 fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> Curves {
     let moving = (0..motion.len()).filter(|at| motion.moving[*at]).map(|at| {
-        [motion.velocity_lp[at], motion.position_lp[at], validation[0].residual[at], validation[1].residual[at]]
+        [
+            motion.velocity_lp[at],
+            motion.position_lp[at],
+            validation[0].residual[at],
+            validation[1].residual[at],
+        ]
     });
-    // One row per row of the record: predictions go back from the uniform base to the time stamps of the file.
-    let origin = dataset.validate.rows.first().map_or(0.0, |row| row.0) - motion.time_s.first().copied().unwrap_or(0.0);
-    let at: Vec<f64> = dataset.validate.rows.iter().map(|(t, _)| t - origin).collect();
+    // One row per row of the record: predictions go back from the uniform base to the time stamps
+    // of the file.
+    let origin = dataset.validate.rows.first().map_or(0.0, |row| row.0)
+        - motion.time_s.first().copied().unwrap_or(0.0);
+    let at: Vec<f64> = dataset
+        .validate
+        .rows
+        .iter()
+        .map(|(t, _)| t - origin)
+        .collect();
     let even = !dataset.validate.jittered && at.len() == motion.len();
-    let on_rows =
-        |values: &[f64]| if even { values.to_vec() } else { crate::record::interpolate(&motion.time_s, values, &at) };
+    let on_rows = |values: &[f64]| {
+        if even {
+            values.to_vec()
+        } else {
+            crate::record::interpolate(&motion.time_s, values, &at)
+        }
+    };
     Curves {
         time_s: dataset.validate.rows.iter().map(|(t, _)| *t).collect(),
         effort: if dataset.effort_lag_s > 0.0 {
@@ -403,10 +597,18 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
 pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
     let motion = kinematics(dataset, &dataset.train)?;
     let model = selection::declared_model(dataset);
-    let place = model.terms.iter().position(|term| term.effect.name() == "coulomb");
+    let place = model
+        .terms
+        .iter()
+        .position(|term| term.effect.name() == "coulomb");
     let fit = Bench::new(dataset, &motion).fit(&model);
     // The declared effects in front of it have one column each.
-    place.and_then(|place| fit.coefficients.get(place).copied()).ok_or_else(|| {
-        IdentificationError::new(format!("{}: the declared model has no Coulomb friction", dataset.name))
-    })
+    place
+        .and_then(|place| fit.coefficients.get(place).copied())
+        .ok_or_else(|| {
+            IdentificationError::new(format!(
+                "{}: the declared model has no Coulomb friction",
+                dataset.name
+            ))
+        })
 }

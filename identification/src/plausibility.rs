@@ -1,4 +1,5 @@
-//! Whether a dataset can be what it says: units off by a thousand, signs swapped, columns that stand still or do not belong together.
+//! Whether a dataset can be what it says: units off by a thousand, signs swapped, columns that
+//! stand still or do not belong together.
 
 use crate::error::IdentificationError;
 use crate::free_run::controller::Law;
@@ -25,7 +26,10 @@ const FASTEST_M_PER_S: f64 = 50.0;
 pub fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
     let name = &dataset.name;
     let refuse = |text: String| Err(IdentificationError::new(format!("{name}: {text}")));
-    for (what, record) in [("training", &dataset.train), ("validation", &dataset.validate)] {
+    for (what, record) in [
+        ("training", &dataset.train),
+        ("validation", &dataset.validate),
+    ] {
         check_position(dataset, what, record)?;
         check_followers(dataset, what, record)?;
     }
@@ -65,8 +69,13 @@ fn is_thousand(factor: f64) -> bool {
 fn inertia_share(motion: &Kinematics, inertia: f64) -> f64 {
     let acceleration = motion.filter.apply(&motion.acceleration);
     let square = |values: &[f64], scale: f64| {
-        let fitted = values.iter().zip(&motion.fitted).filter(|(_, fitted)| **fitted);
-        fitted.map(|(value, _)| (scale * value).powi(2)).sum::<f64>()
+        let fitted = values
+            .iter()
+            .zip(&motion.fitted)
+            .filter(|(_, fitted)| **fitted);
+        fitted
+            .map(|(value, _)| (scale * value).powi(2))
+            .sum::<f64>()
     };
     square(&acceleration, inertia) / square(&motion.effort_lp, 1.0).max(f64::MIN_POSITIVE)
 }
@@ -74,8 +83,18 @@ fn inertia_share(motion: &Kinematics, inertia: f64) -> f64 {
 fn check_position(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     let unit = dataset.kind.position_unit();
     let (low, high) = crate::record::range(&record.position);
-    let fastest = record.position.windows(6).map(|w| (w[5] - w[0]).abs()).fold(0.0, f64::max) / (5.0 * record.period_s);
-    let refuse = |text: String| Err(IdentificationError::new(format!("{}: {what} record: {text}", dataset.name)));
+    let fastest = record
+        .position
+        .windows(6)
+        .map(|w| (w[5] - w[0]).abs())
+        .fold(0.0, f64::max)
+        / (5.0 * record.period_s);
+    let refuse = |text: String| {
+        Err(IdentificationError::new(format!(
+            "{}: {what} record: {text}",
+            dataset.name
+        )))
+    };
     if dataset.kind == AxisKind::Linear && (high - low > LONGEST_M || fastest > FASTEST_M_PER_S) {
         return refuse(format!(
             "position_{unit} spans {:.1} {unit} and moves at up to {fastest:.1} {unit}/s; is it in millimetres?",
@@ -97,14 +116,20 @@ fn check_position(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
 }
 
 fn smallest_step(values: &[f64]) -> f64 {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let steps = values
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|step| *step > 0.0);
     steps.fold(f64::INFINITY, f64::min)
 }
 
 /// Load position and setpoint must go with the motor.
 fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     let unit = dataset.kind.position_unit();
-    for (column, values) in [("load_position", &record.load), ("reference", &record.reference)] {
+    for (column, values) in [
+        ("load_position", &record.load),
+        ("reference", &record.reference),
+    ] {
         let Some(values) = values else { continue };
         let slope = slope(&record.position, values);
         // A setpoint is not needed: only one in a wrong unit or direction is worth a refusal.
@@ -133,6 +158,8 @@ fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
 fn slope(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
     let (mx, my) = (mean(x), mean(y));
-    let sums = x.iter().zip(y).fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + (x - mx).powi(2), xy + (x - mx) * (y - my)));
+    let sums = x.iter().zip(y).fold((0.0, 0.0), |(xx, xy), (x, y)| {
+        (xx + (x - mx).powi(2), xy + (x - mx) * (y - my))
+    });
     sums.1 / f64::max(sums.0, f64::MIN_POSITIVE)
 }

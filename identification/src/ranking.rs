@@ -29,14 +29,20 @@ pub(crate) fn candidates(findings: &Findings<'_>, found: &[String]) -> Vec<Candi
     for candidate in &mut list {
         candidate.accepted = found.contains(&candidate.effect);
     }
-    list.sort_by(|a, b| b.accepted.cmp(&a.accepted).then(b.share.total_cmp(&a.share)));
+    list.sort_by(|a, b| {
+        b.accepted
+            .cmp(&a.accepted)
+            .then(b.share.total_cmp(&a.share))
+    });
     list
 }
 
 fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
     let mut list: Vec<Candidate> = Vec::new();
     for scored in &findings.selected.scored {
-        let known = list.iter_mut().find(|candidate| candidate.effect == scored.effect);
+        let known = list
+            .iter_mut()
+            .find(|candidate| candidate.effect == scored.effect);
         match known {
             Some(known) if known.share >= scored.gain.share => {}
             Some(known) => (known.share, known.evidence) = (scored.gain.share, scored.gain.t),
@@ -47,17 +53,29 @@ fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
 }
 
 fn force_candidate(findings: &Findings<'_>, scored: &Scored) -> Candidate {
-    let Findings { dataset, motion, validation, .. } = findings;
+    let Findings {
+        dataset,
+        motion,
+        validation,
+        ..
+    } = findings;
     let mut model = findings.declared.model.clone();
     match crate::effects::find(scored.effect) {
-        Some(effect) => model.terms.push(Term { effect, parameter: scored.parameter }),
+        Some(effect) => model.terms.push(Term {
+            effect,
+            parameter: scored.parameter,
+        }),
         None if scored.effect == "delay" => model.delay_s = scored.parameter,
-        None => model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter),
+        None => {
+            model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter)
+        }
     }
     let coefficients = Bench::new(dataset, motion).fit(&model).coefficients;
     Candidate {
         effect: scored.effect.into(),
-        validation_error_percent: Some(Bench::new(dataset, validation).force_error_percent(&model, &coefficients)),
+        validation_error_percent: Some(
+            Bench::new(dataset, validation).force_error_percent(&model, &coefficients),
+        ),
         evidence: scored.gain.t,
         share: scored.gain.share,
         judged_on: EFFORT,
@@ -81,9 +99,17 @@ fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
 
 /// Force error on the validation record of the declared model with a bristle in place of the sign.
 fn with_bristle(findings: &Findings<'_>, deflection: f64) -> f64 {
-    let Findings { dataset, motion, validation, .. } = findings;
+    let Findings {
+        dataset,
+        motion,
+        validation,
+        ..
+    } = findings;
     let model = &findings.declared.model;
-    let (train, validate) = (bristle::motion(motion, deflection), bristle::motion(validation, deflection));
+    let (train, validate) = (
+        bristle::motion(motion, deflection),
+        bristle::motion(validation, deflection),
+    );
     let coefficients = Bench::new(dataset, &train).fit(model).coefficients;
     Bench::new(dataset, &validate).force_error_percent(model, &coefficients)
 }
@@ -93,7 +119,11 @@ fn removed(after: f64, before: f64) -> f64 {
 }
 
 fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
-    let Some(reversals) = findings.reversals.as_ref().filter(|_| findings.difference.is_none()) else {
+    let Some(reversals) = findings
+        .reversals
+        .as_ref()
+        .filter(|_| findings.difference.is_none())
+    else {
         return Vec::new();
     };
     let candidate = |effect: &str, judged: &Judged| Candidate {
@@ -106,11 +136,18 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
         accepted: false,
     };
     let gap = reversals.gap.as_ref().map(|gap| candidate("backlash", gap));
-    [Some(candidate("presliding", &reversals.bristle)), gap].into_iter().flatten().collect()
+    [Some(candidate("presliding", &reversals.bristle)), gap]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 fn on_difference(findings: &Findings<'_>) -> Vec<Candidate> {
-    let first = findings.difference.iter().flat_map(|d| &d.scored).filter(|scored| scored.round == 0);
+    let first = findings
+        .difference
+        .iter()
+        .flat_map(|d| &d.scored)
+        .filter(|scored| scored.round == 0);
     first
         .map(|scored| Candidate {
             effect: scored.effect.into(),
@@ -126,26 +163,48 @@ fn on_difference(findings: &Findings<'_>) -> Vec<Candidate> {
 }
 
 /// Parameters of the extended model, with intervals.
-pub(crate) fn parameters(findings: &Findings<'_>, ripple: Option<&SlowRipple>) -> BTreeMap<String, Parameter> {
+pub(crate) fn parameters(
+    findings: &Findings<'_>,
+    ripple: Option<&SlowRipple>,
+) -> BTreeMap<String, Parameter> {
     let mut named = of_the_inverse_model(findings);
     let length = findings.dataset.kind.position_unit();
-    let plain =
-        |name: &str, value: f64, unit: &str| Named { name: name.into(), value, half_width: None, unit: unit.into() };
-    let deflection = findings.extended.deflection.filter(|_| !findings.has_free_run_shape());
+    let plain = |name: &str, value: f64, unit: &str| Named {
+        name: name.into(),
+        value,
+        half_width: None,
+        unit: unit.into(),
+    };
+    let deflection = findings
+        .extended
+        .deflection
+        .filter(|_| !findings.has_free_run_shape());
     named.extend(deflection.map(|deflection| plain("presliding_deflection", deflection, length)));
     if let Some(difference) = &findings.difference {
         let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
         named.extend(difference.gap.map(|gap| plain("backlash_gap", gap, length)));
-        named.extend(difference.stiffness.map(|k| plain("compliance_stiffness", k, &stiffness_unit)));
+        named.extend(
+            difference
+                .stiffness
+                .map(|k| plain("compliance_stiffness", k, &stiffness_unit)),
+        );
         named.extend(difference.pitch().into_iter().flat_map(|(amplitude, k)| {
-            [plain("pitch_error_amplitude", amplitude, length), plain("pitch_error_period", 1.0 / k, length)]
+            [
+                plain("pitch_error_amplitude", amplitude, length),
+                plain("pitch_error_period", 1.0 / k, length),
+            ]
         }));
     }
     for order in ripple.iter().flat_map(|ripple| &ripple.orders) {
         let unit = findings.dataset.effort.unit().to_owned();
         let half_width = Some(order.half_width);
         let name = format!("torque_ripple_amplitude_order_{}", order.per_rev);
-        named.push(Named { name, value: order.amplitude, half_width, unit });
+        named.push(Named {
+            name,
+            value: order.amplitude,
+            half_width,
+            unit,
+        });
     }
     table(named)
 }
@@ -153,7 +212,13 @@ pub(crate) fn parameters(findings: &Findings<'_>, ripple: Option<&SlowRipple>) -
 /// Named parameters as a table.
 pub(crate) fn table(named: Vec<Named>) -> BTreeMap<String, Parameter> {
     let mut table = BTreeMap::new();
-    for Named { name, value, half_width, unit } in named {
+    for Named {
+        name,
+        value,
+        half_width,
+        unit,
+    } in named
+    {
         let half = half_width.unwrap_or(0.0);
         let mut key = name.clone();
         let mut times = 1;
@@ -161,21 +226,47 @@ pub(crate) fn table(named: Vec<Named>) -> BTreeMap<String, Parameter> {
             times += 1;
             key = format!("{name}_{times}");
         }
-        table.insert(key, Parameter { value, unit, low: value - half, high: value + half });
+        table.insert(
+            key,
+            Parameter {
+                value,
+                unit,
+                low: value - half,
+                high: value + half,
+            },
+        );
     }
     table
 }
 
 fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
-    let Findings { dataset, motion, extended, .. } = findings;
+    let Findings {
+        dataset,
+        motion,
+        extended,
+        ..
+    } = findings;
     let seen = extended.motion(motion);
-    let half_widths = Bench::new(dataset, &seen).half_widths(&extended.model, &extended.coefficients);
-    let mut rest = extended.coefficients.iter().copied().zip(half_widths.linear.iter().copied());
+    let half_widths =
+        Bench::new(dataset, &seen).half_widths(&extended.model, &extended.coefficients);
+    let mut rest = extended
+        .coefficients
+        .iter()
+        .copied()
+        .zip(half_widths.linear.iter().copied());
     let mut named: Vec<Named> = Vec::new();
     for (term, parameter_half_width) in extended.model.terms.iter().zip(&half_widths.parameters) {
-        let own: Vec<(f64, f64)> = rest.by_ref().take(term.effect.width(term.parameter)).collect();
+        let own: Vec<(f64, f64)> = rest
+            .by_ref()
+            .take(term.effect.width(term.parameter))
+            .collect();
         let parameter_half_width = *parameter_half_width;
-        let naming = Naming { parameter: term.parameter, parameter_half_width, coefficients: &own, dataset };
+        let naming = Naming {
+            parameter: term.parameter,
+            parameter_half_width,
+            coefficients: &own,
+            dataset,
+        };
         named.extend(term.effect.parameters(&naming));
     }
     let fitted = |name: &str, value: f64, half_width: Option<f64>, unit: String| Named {
@@ -185,11 +276,21 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
         unit,
     };
     if extended.model.delay_s != 0.0 {
-        named.push(fitted("delay", extended.model.delay_s, half_widths.delay_s, "s".into()));
+        named.push(fitted(
+            "delay",
+            extended.model.delay_s,
+            half_widths.delay_s,
+            "s".into(),
+        ));
     }
     if extended.model.saturates() {
         let k = extended.model.saturation.per_effort;
-        named.push(fitted("torque_saturation", k, half_widths.saturation, format!("1/{}", dataset.effort.unit())));
+        named.push(fitted(
+            "torque_saturation",
+            k,
+            half_widths.saturation,
+            format!("1/{}", dataset.effort.unit()),
+        ));
     }
     named.extend(findings.free_run_shape());
     named
@@ -199,15 +300,28 @@ impl Findings<'_> {
     /// Whether the deflection or the gap come from the free run.
     fn has_free_run_shape(&self) -> bool {
         self.difference.is_none()
-            && self.reversals.as_ref().is_some_and(|r| r.accepted.presliding || r.accepted.backlash)
+            && self
+                .reversals
+                .as_ref()
+                .is_some_and(|r| r.accepted.presliding || r.accepted.backlash)
     }
 
     /// Deflection and gap from the free run, with their intervals.
     fn free_run_shape(&self) -> Vec<Named> {
-        let Some(reversals) = self.reversals.as_ref().filter(|_| self.has_free_run_shape()) else {
+        let Some(reversals) = self
+            .reversals
+            .as_ref()
+            .filter(|_| self.has_free_run_shape())
+        else {
             return Vec::new();
         };
-        let is_shape = |named: &Named| named.name.starts_with("presliding") || named.name.starts_with("backlash");
-        reversals.named(self.dataset).into_iter().filter(is_shape).collect()
+        let is_shape = |named: &Named| {
+            named.name.starts_with("presliding") || named.name.starts_with("backlash")
+        };
+        reversals
+            .named(self.dataset)
+            .into_iter()
+            .filter(is_shape)
+            .collect()
     }
 }

@@ -111,9 +111,11 @@ pub struct Record {
     pub reference: Option<Vec<f64>>,
     /// Effort.
     pub effort: Vec<f64>,
-    /// Time of each sample since the first row of the file (or since power-on, where the file counts from there), s.
+    /// Time of each sample since the first row of the file (or since power-on, where the file
+    /// counts from there), s.
     pub time_s: Vec<f64>,
-    /// The rows of the file that this record was made from: time stamp and effort as they stand there.
+    /// The rows of the file that this record was made from: time stamp and effort as they stand
+    /// there.
     pub rows: Vec<(f64, f64)>,
     /// Whether the time stamps jittered, so that the samples were interpolated.
     pub jittered: bool,
@@ -153,11 +155,16 @@ impl Record {
 
     /// Rows of the file that fall into a range of samples.
     fn rows_between(&self, from: usize, to: usize) -> Vec<(f64, f64)> {
-        let origin = self.rows.first().map_or(0.0, |row| row.0) - self.time_s.first().copied().unwrap_or(0.0);
+        let origin = self.rows.first().map_or(0.0, |row| row.0)
+            - self.time_s.first().copied().unwrap_or(0.0);
         let half = 0.5 * self.period_s;
         let low = self.time_s.get(from).map_or(f64::INFINITY, |t| t - half);
         let high = self.time_s.get(to).map_or(f64::INFINITY, |t| t - half);
-        self.rows.iter().copied().filter(|(t, _)| (low..high).contains(&(t - origin))).collect()
+        self.rows
+            .iter()
+            .copied()
+            .filter(|(t, _)| (low..high).contains(&(t - origin)))
+            .collect()
     }
 }
 
@@ -261,7 +268,11 @@ impl Dataset {
     ///
     /// # Errors
     /// What is wrong with which file, in one line.
-    pub fn read(folder: &Path, validate: Option<&Path>, declared: Option<Vec<String>>) -> Outcome<Self> {
+    pub fn read(
+        folder: &Path,
+        validate: Option<&Path>,
+        declared: Option<Vec<String>>,
+    ) -> Outcome<Self> {
         if !folder.is_dir() {
             return Err(IdentificationError::new(format!(
                 "{}: not a folder; a dataset is a folder with train.csv and dataset.toml",
@@ -277,7 +288,9 @@ impl Dataset {
         };
         let (whole, effort) = read_record(&file("train"), axis.kind, &form)?;
         let beside = file("validate");
-        let other: Option<PathBuf> = validate.map(Path::to_path_buf).or_else(|| beside.is_file().then_some(beside));
+        let other: Option<PathBuf> = validate
+            .map(Path::to_path_buf)
+            .or_else(|| beside.is_file().then_some(beside));
         let (mut train, mut validation, held_back) = match other {
             Some(path) => {
                 let (validation, validation_effort) = read_record(&path, axis.kind, &form)?;
@@ -296,10 +309,17 @@ impl Dataset {
         for (what, record) in [("training", &train), ("validation", &validation)] {
             check_motion(folder, what, record, axis.kind)?;
         }
-        let stated_limit = form.controller.as_ref().and_then(|c| c.force_limit_n).filter(|_| effort == Effort::Force);
+        let stated_limit = form
+            .controller
+            .as_ref()
+            .and_then(|c| c.force_limit_n)
+            .filter(|_| effort == Effort::Force);
         let (resolution, load_resolution) = match axis.kind {
             AxisKind::Linear => (axis.encoder_resolution_m, axis.load_encoder_resolution_m),
-            AxisKind::Rotary => (axis.encoder_resolution_rad, axis.load_encoder_resolution_rad),
+            AxisKind::Rotary => (
+                axis.encoder_resolution_rad,
+                axis.load_encoder_resolution_rad,
+            ),
         };
         Ok(Self {
             name: form.name.unwrap_or_else(|| folder.display().to_string()),
@@ -309,10 +329,14 @@ impl Dataset {
             effort_lag_s: form.effort_lag_s.unwrap_or(0.0),
             lead_m_per_rev: axis.lead_m_per_rev,
             resolution: resolution.unwrap_or_else(|| smallest_step(&train.position)),
-            load_resolution: load_resolution.unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
+            load_resolution: load_resolution
+                .unwrap_or_else(|| train.load.as_deref().map_or(0.0, smallest_step)),
             effort_limit: stated_limit.or_else(|| plateau(&train.effort)),
             controller: form.controller,
-            declared: check_declared(folder, declared.or(form.declared.map(|declared| declared.effects)))?,
+            declared: check_declared(
+                folder,
+                declared.or(form.declared.map(|declared| declared.effects)),
+            )?,
             train,
             validate: validation,
             held_back,
@@ -332,8 +356,9 @@ impl Dataset {
     pub fn whole(&self) -> Option<Record> {
         self.held_back.then(|| {
             let join = |a: &[f64], b: &[f64]| [a, b].concat();
-            let both =
-                |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| a.as_deref().zip(b.as_deref()).map(|(a, b)| join(a, b));
+            let both = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| {
+                a.as_deref().zip(b.as_deref()).map(|(a, b)| join(a, b))
+            };
             Record {
                 position: join(&self.train.position, &self.validate.position),
                 load: both(&self.train.load, &self.validate.load),
@@ -341,7 +366,11 @@ impl Dataset {
                 effort: join(&self.train.effort, &self.validate.effort),
                 time_s: join(&self.train.time_s, &self.validate.time_s),
                 rows: [&self.train.rows[..], &self.validate.rows[..]].concat(),
-                interpolated: [&self.train.interpolated[..], &self.validate.interpolated[..]].concat(),
+                interpolated: [
+                    &self.train.interpolated[..],
+                    &self.validate.interpolated[..],
+                ]
+                .concat(),
                 ..self.train.clone()
             }
         })
@@ -349,12 +378,19 @@ impl Dataset {
 }
 
 fn read_form(path: &Path) -> Outcome<(DatasetForm, Vec<String>)> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| IdentificationError::new(format!("{}: {error}; a dataset needs this file", path.display())))?;
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        IdentificationError::new(format!(
+            "{}: {error}; a dataset needs this file",
+            path.display()
+        ))
+    })?;
     let notes = slips(path, &text);
     let form: DatasetForm = toml::from_str(&text).map_err(|error| {
-        let line =
-            error.span().map_or(0, |span| text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1);
+        let line = error.span().map_or(0, |span| {
+            text.get(..span.start)
+                .map_or(0, |before| before.matches('\n').count())
+                + 1
+        });
         IdentificationError::new(format!("{}:{line}: {}", path.display(), error.message()))
     })?;
     Ok((form, notes))
@@ -403,21 +439,38 @@ const KEYS: [(&str, &[&str]); 4] = [
     ),
     ("declared", &["effects"]),
 ];
-/// Edits between a key and one that was meant, and the shortest key that is asked: short words are near each other (`note` and `name`).
+/// Edits between a key and one that was meant, and the shortest key that is asked: short words are
+/// near each other (`note` and `name`).
 const TYPO: usize = 2;
 const SHORTEST_KEY: usize = 7;
 
 /// Keys that are nearly one that we know: slips of the pen, which would be ignored without a word.
 fn slips(path: &Path, text: &str) -> Vec<String> {
-    let Ok(table) = text.parse::<toml::Table>() else { return Vec::new() };
+    let Ok(table) = text.parse::<toml::Table>() else {
+        return Vec::new();
+    };
     let mut notes = Vec::new();
     for (section, known) in KEYS {
-        let part = if section.is_empty() { Some(&table) } else { table.get(section).and_then(toml::Value::as_table) };
-        for key in part.into_iter().flat_map(|part| part.keys()).filter(|key| !known.contains(&key.as_str())) {
+        let part = if section.is_empty() {
+            Some(&table)
+        } else {
+            table.get(section).and_then(toml::Value::as_table)
+        };
+        for key in part
+            .into_iter()
+            .flat_map(|part| part.keys())
+            .filter(|key| !known.contains(&key.as_str()))
+        {
             let near = |known: &&&str| strsim::damerau_levenshtein(key, known) <= TYPO;
-            if let Some(meant) = known.iter().filter(|_| key.len() >= SHORTEST_KEY).find(near) {
-                let line =
-                    text.lines().position(|line| line.trim_start().starts_with(key.as_str())).map_or(0, |at| at + 1);
+            if let Some(meant) = known
+                .iter()
+                .filter(|_| key.len() >= SHORTEST_KEY)
+                .find(near)
+            {
+                let line = text
+                    .lines()
+                    .position(|line| line.trim_start().starts_with(key.as_str()))
+                    .map_or(0, |at| at + 1);
                 notes.push(format!(
                     "{}:{line}: key {key} is not known and was ignored; did you mean {meant}?",
                     path.display()
@@ -435,16 +488,56 @@ fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
         ("sample_period_s", form.sample_period_s, 1.0e-6, 1.0),
         ("effort_lag_s", form.effort_lag_s, 0.0, 0.1),
         ("lead_m_per_rev", axis.lead_m_per_rev, 1.0e-5, 1.0),
-        ("encoder_resolution_m", axis.encoder_resolution_m, 0.0, 1.0e-2),
-        ("encoder_resolution_rad", axis.encoder_resolution_rad, 0.0, 1.0),
-        ("load_encoder_resolution_m", axis.load_encoder_resolution_m, 0.0, 1.0e-2),
-        ("load_encoder_resolution_rad", axis.load_encoder_resolution_rad, 0.0, 1.0),
-        ("position_gain_per_s", controller.position_gain_per_s, 0.0, 1.0e6),
-        ("velocity_gain_n_s_per_m", controller.velocity_gain_n_s_per_m, 0.0, 1.0e12),
-        ("velocity_gain_v_s_per_m", controller.velocity_gain_v_s_per_m, 0.0, 1.0e12),
+        (
+            "encoder_resolution_m",
+            axis.encoder_resolution_m,
+            0.0,
+            1.0e-2,
+        ),
+        (
+            "encoder_resolution_rad",
+            axis.encoder_resolution_rad,
+            0.0,
+            1.0,
+        ),
+        (
+            "load_encoder_resolution_m",
+            axis.load_encoder_resolution_m,
+            0.0,
+            1.0e-2,
+        ),
+        (
+            "load_encoder_resolution_rad",
+            axis.load_encoder_resolution_rad,
+            0.0,
+            1.0,
+        ),
+        (
+            "position_gain_per_s",
+            controller.position_gain_per_s,
+            0.0,
+            1.0e6,
+        ),
+        (
+            "velocity_gain_n_s_per_m",
+            controller.velocity_gain_n_s_per_m,
+            0.0,
+            1.0e12,
+        ),
+        (
+            "velocity_gain_v_s_per_m",
+            controller.velocity_gain_v_s_per_m,
+            0.0,
+            1.0e12,
+        ),
         ("integral_per_s", controller.integral_per_s, 0.0, 1.0e6),
         ("velocity_filter", controller.velocity_filter, 1.0e-6, 1.0),
-        ("acceleration_feedforward_kg", controller.acceleration_feedforward_kg, 0.0, 1.0e9),
+        (
+            "acceleration_feedforward_kg",
+            controller.acceleration_feedforward_kg,
+            0.0,
+            1.0e9,
+        ),
         ("force_limit_n", controller.force_limit_n, 1.0e-6, 1.0e9),
     ];
     for (key, value, low, high) in positive {
@@ -459,7 +552,11 @@ fn check_form(folder: &Path, form: &DatasetForm) -> Outcome<()> {
 }
 
 fn check_declared(folder: &Path, declared: Option<Vec<String>>) -> Outcome<Vec<String>> {
-    let declared = declared.unwrap_or_else(|| ["inertia", "viscous", "coulomb", "offset"].map(String::from).to_vec());
+    let declared = declared.unwrap_or_else(|| {
+        ["inertia", "viscous", "coulomb", "offset"]
+            .map(String::from)
+            .to_vec()
+    });
     let mut declared: Vec<String> = declared.iter().map(|name| name.trim().to_owned()).collect();
     let mut seen = std::collections::BTreeSet::new();
     declared.retain(|name| seen.insert(name.clone()));
@@ -469,9 +566,10 @@ fn check_declared(folder: &Path, declared: Option<Vec<String>>) -> Outcome<Vec<S
             folder.display(),
             crate::effects::known_names().join(", ")
         ))),
-        None if declared.is_empty() => {
-            Err(IdentificationError::new(format!("{}: no declared effects; give at least inertia", folder.display())))
-        }
+        None if declared.is_empty() => Err(IdentificationError::new(format!(
+            "{}: no declared effects; give at least inertia",
+            folder.display()
+        ))),
         None => Ok(declared),
     }
 }
@@ -515,8 +613,10 @@ fn read_record(path: &Path, kind: AxisKind, form: &DatasetForm) -> Outcome<(Reco
 }
 
 fn effort_column(table: &Table) -> Outcome<(Vec<f64>, Effort)> {
-    let present: Vec<Effort> =
-        Effort::ALL.into_iter().filter(|effort| table.header.iter().any(|name| name == effort.column())).collect();
+    let present: Vec<Effort> = Effort::ALL
+        .into_iter()
+        .filter(|effort| table.header.iter().any(|name| name == effort.column()))
+        .collect();
     match present[..] {
         [effort] => Ok((table.required(effort.column())?, effort)),
         [] => Err(IdentificationError::new(format!(
@@ -542,7 +642,9 @@ fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
         )));
     }
     let period = median_step(time_s);
-    let gap = time_s.windows(2).position(|pair| pair[1] - pair[0] > 50.0 * period);
+    let gap = time_s
+        .windows(2)
+        .position(|pair| pair[1] - pair[0] > 50.0 * period);
     match gap {
         Some(row) => Err(IdentificationError::new(format!(
             "{path}:{}: {:.3} s are missing (the median step is {period:.6} s); split the record there",
@@ -557,9 +659,11 @@ fn check_time(path: &str, time_s: &[f64]) -> Outcome<()> {
 fn check_period(path: &str, time_s: &[f64], stated: Option<f64>) -> Outcome<()> {
     let median = median_step(time_s);
     match stated {
-        Some(period) if !(0.01..100.0).contains(&(median / period)) => Err(IdentificationError::new(format!(
-            "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them in another unit?"
-        ))),
+        Some(period) if !(0.01..100.0).contains(&(median / period)) => {
+            Err(IdentificationError::new(format!(
+                "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them in another unit?"
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -577,7 +681,11 @@ fn check_effort(path: &str, which: Effort, record: &Record) -> Outcome<()> {
 
 fn check_motion(folder: &Path, what: &str, record: &Record, kind: AxisKind) -> Outcome<()> {
     let limit = kind.moving_velocity() * record.period_s * 5.0;
-    let moving = record.position.windows(6).filter(|w| (w[5] - w[0]).abs() > limit).count();
+    let moving = record
+        .position
+        .windows(6)
+        .filter(|w| (w[5] - w[0]).abs() > limit)
+        .count();
     if moving * 20 < record.len() {
         return Err(IdentificationError::new(format!(
             "{}: the axis hardly moves in the {what} record ({moving} of {} rows above {} {}/s); record motion, or check the unit of the position",
@@ -590,7 +698,13 @@ fn check_motion(folder: &Path, what: &str, record: &Record, kind: AxisKind) -> O
     Ok(())
 }
 
-fn check_pair(path: &Path, train: &Record, effort: Effort, other: &Record, other_effort: Effort) -> Outcome<()> {
+fn check_pair(
+    path: &Path,
+    train: &Record,
+    effort: Effort,
+    other: &Record,
+    other_effort: Effort,
+) -> Outcome<()> {
     if effort != other_effort {
         return Err(IdentificationError::new(format!(
             "{}: effort is {}, the training record has {}; record both the same way",
@@ -618,7 +732,11 @@ fn check_pair(path: &Path, train: &Record, effort: Effort, other: &Record, other
 }
 
 pub(crate) fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(*v), high.max(*v))
+        })
 }
 
 /// So many equal largest efforts in a row are a limit.
@@ -626,9 +744,14 @@ const PLATEAU_ROWS: usize = 5;
 
 /// The largest effort, where it stands for several rows: the drive was at its limit.
 fn plateau(effort: &[f64]) -> Option<f64> {
-    let most = effort.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+    let most = effort
+        .iter()
+        .fold(0.0_f64, |most, effort| most.max(effort.abs()));
     let at_most = |effort: &f64| effort.abs() >= most * (1.0 - 1.0e-9);
-    effort.windows(PLATEAU_ROWS).any(|rows| rows.iter().all(at_most)).then_some(most)
+    effort
+        .windows(PLATEAU_ROWS)
+        .any(|rows| rows.iter().all(at_most))
+        .then_some(most)
 }
 
 fn median_step(time_s: &[f64]) -> f64 {
@@ -639,20 +762,34 @@ fn median_step(time_s: &[f64]) -> f64 {
 
 /// Smallest step between two rows, the rounding of an encoder whose resolution was not stated.
 fn smallest_step(values: &[f64]) -> f64 {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let steps = values
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|step| *step > 0.0);
     let smallest = steps.fold(f64::INFINITY, f64::min);
     if smallest.is_finite() { smallest } else { 0.0 }
 }
 
-/// Brings a record with jittered time stamps onto a uniform base by linear interpolation; leaves a uniform one as it is.
+/// Brings a record with jittered time stamps onto a uniform base by linear interpolation; leaves a
+/// uniform one as it is.
 fn uniform(raw: Record, period_s: Option<f64>, origin_s: f64) -> Record {
     let median = median_step(&raw.time_s);
-    let period_s = period_s.filter(|period| (period / median - 1.0).abs() < 0.2).unwrap_or(median);
+    let period_s = period_s
+        .filter(|period| (period / median - 1.0).abs() < 0.2)
+        .unwrap_or(median);
     let start = raw.time_s[0];
-    let even = raw.time_s.iter().enumerate().all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
+    let even = raw
+        .time_s
+        .iter()
+        .enumerate()
+        .all(|(i, t)| (t - start - period_s * i as f64).abs() < 0.1 * period_s);
     if even {
         let time_s = raw.time_s.iter().map(|t| t - origin_s).collect();
-        return Record { period_s, time_s, ..raw };
+        return Record {
+            period_s,
+            time_s,
+            ..raw
+        };
     }
     let duration = raw.time_s[raw.time_s.len() - 1] - start;
     let rows = (duration / period_s).floor() as usize + 1;
@@ -674,12 +811,16 @@ fn uniform(raw: Record, period_s: Option<f64>, origin_s: f64) -> Record {
 /// Rows further apart than so many median steps leave a hole; less is jitter.
 const HOLE_PERIODS: f64 = 10.0;
 
-/// Share of rows whose distance from the last one is off by more than a tenth, from which a clock jitters; fewer are missing rows.
+/// Share of rows whose distance from the last one is off by more than a tenth, from which a clock
+/// jitters; fewer are missing rows.
 const JITTERY_SHARE: f64 = 0.02;
 
 fn jitters(time_s: &[f64], period_s: f64) -> bool {
     let off = |step: f64| ((step / period_s).round() - step / period_s).abs() > 0.1;
-    let count = time_s.windows(2).filter(|pair| off(pair[1] - pair[0])).count();
+    let count = time_s
+        .windows(2)
+        .filter(|pair| off(pair[1] - pair[0]))
+        .count();
     count as f64 > JITTERY_SHARE * time_s.len() as f64
 }
 
@@ -691,7 +832,9 @@ fn in_holes(time_s: &[f64], at: &[f64], hole_s: f64) -> Vec<bool> {
             while right + 1 < time_s.len() && time_s[right] < *t {
                 right += 1;
             }
-            time_s[right] - time_s[right - 1] > hole_s && *t > time_s[right - 1] && *t < time_s[right]
+            time_s[right] - time_s[right - 1] > hole_s
+                && *t > time_s[right - 1]
+                && *t < time_s[right]
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 //! Least squares on blocks: fit, held-out error, intervals, all from one Gram matrix per block.
 //!
-//! Residuals of a servo axis are correlated, so whole blocks of one second are left out, with a guard at their ends; random rows would tell the
-//! fit what it is asked to predict.
+//! Residuals of a servo axis are correlated, so whole blocks of one second are left out, with a
+//! guard at their ends; random rows would tell the fit what it is asked to predict.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -41,7 +41,9 @@ impl Blocks {
     pub fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
         let size = columns.len() + 1;
         // A short record still has one block a fold.
-        let per_block = ((BLOCK_S / period_s).round() as usize).min(target.len() / FOLDS).max(1);
+        let per_block = ((BLOCK_S / period_s).round() as usize)
+            .min(target.len() / FOLDS)
+            .max(1);
         let guard = ((GUARD_S / period_s).round() as usize).min(per_block / 10);
         let blocks = target.len().div_ceil(per_block);
         let mut grams = vec![DMatrix::zeros(size, size); blocks];
@@ -62,13 +64,22 @@ impl Blocks {
                 }
             }
         }
-        grams.iter_mut().for_each(DMatrix::fill_upper_triangle_with_lower_triangle);
+        grams
+            .iter_mut()
+            .for_each(DMatrix::fill_upper_triangle_with_lower_triangle);
         grams.retain(|gram| gram[(size - 1, size - 1)] > 0.0);
         let total = sum(&grams, size);
         // A column of zeros keeps a scale that can be divided by.
-        let scale: Vec<f64> = (0..size).map(|i| total[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+        let scale: Vec<f64> = (0..size)
+            .map(|i| total[(i, i)].sqrt())
+            .map(|s| if s > 0.0 { s } else { 1.0 })
+            .collect();
         let folds = FOLDS.min(grams.len()).max(1);
-        Self { grams, scale, folds }
+        Self {
+            grams,
+            scale,
+            folds,
+        }
     }
 
     /// Number of blocks with samples in them.
@@ -108,19 +119,27 @@ impl Blocks {
                 held_out[block] = left(gram, &coefficients);
             }
         }
-        Fit { held_out, ..self.fit() }
+        Fit {
+            held_out,
+            ..self.fit()
+        }
     }
 
     /// Half widths of 95 % intervals by the jackknife over folds.
     #[must_use]
     pub fn half_widths(&self) -> Vec<f64> {
         let total = sum(&self.grams, self.scale.len());
-        let folds: Vec<DVector<f64>> = (0..self.folds).map(|fold| self.without_fold(&total, fold)).collect();
+        let folds: Vec<DVector<f64>> = (0..self.folds)
+            .map(|fold| self.without_fold(&total, fold))
+            .collect();
         let count = folds.len() as f64;
         (0..self.scale.len() - 1)
             .map(|i| {
                 let mean = folds.iter().map(|fold| fold[i]).sum::<f64>() / count;
-                let spread = folds.iter().map(|fold| (fold[i] - mean).powi(2)).sum::<f64>();
+                let spread = folds
+                    .iter()
+                    .map(|fold| (fold[i] - mean).powi(2))
+                    .sum::<f64>();
                 1.96 * ((count - 1.0) / count * spread).sqrt()
             })
             .collect()
@@ -128,7 +147,11 @@ impl Blocks {
 
     fn without_fold(&self, total: &DMatrix<f64>, fold: usize) -> DVector<f64> {
         let mut rest = total.clone();
-        self.grams.iter().skip(fold).step_by(self.folds).for_each(|gram| rest -= gram);
+        self.grams
+            .iter()
+            .skip(fold)
+            .step_by(self.folds)
+            .for_each(|gram| rest -= gram);
         self.solve(&rest)
     }
 
@@ -139,13 +162,17 @@ impl Blocks {
         let ridge = RIDGE * normal.trace().max(f64::MIN_POSITIVE) / size.max(1) as f64;
         (0..size).for_each(|i| normal[(i, i)] += ridge);
         let right = DVector::from_fn(size, |i, _| scaled(i, size));
-        let solution = normal.cholesky().map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
+        let solution = normal
+            .cholesky()
+            .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
         DVector::from_fn(size, |i, _| solution[i] * self.scale[size] / self.scale[i])
     }
 }
 
 fn sum(grams: &[DMatrix<f64>], size: usize) -> DMatrix<f64> {
-    grams.iter().fold(DMatrix::zeros(size, size), |sum, gram| sum + gram)
+    grams
+        .iter()
+        .fold(DMatrix::zeros(size, size), |sum, gram| sum + gram)
 }
 
 /// Σ(y − Xθ)² from a Gram matrix.
@@ -159,7 +186,11 @@ fn left(gram: &DMatrix<f64>, coefficients: &DVector<f64>) -> f64 {
         }
     }
     // A column that overflowed must not look like a perfect fit.
-    if sse.is_finite() { sse.max(0.0) } else { f64::MAX }
+    if sse.is_finite() {
+        sse.max(0.0)
+    } else {
+        f64::MAX
+    }
 }
 
 /// How much better a fit is than another on held-out blocks.
@@ -177,12 +208,19 @@ impl Gain {
     /// Gain of `after` over `before`, on the same blocks.
     #[must_use]
     pub fn of(before: &Fit, after: &Fit) -> Self {
-        let gains: Vec<f64> = before.held_out.iter().zip(&after.held_out).map(|(b, a)| b - a).collect();
+        let gains: Vec<f64> = before
+            .held_out
+            .iter()
+            .zip(&after.held_out)
+            .map(|(b, a)| b - a)
+            .collect();
         let sum = gains.iter().sum::<f64>();
         let base: f64 = before.held_out.iter().sum();
         Self {
             share: sum / base.max(f64::MIN_POSITIVE),
-            percent: 100.0 * sum.signum() * (sum.abs() / before.total.max(f64::MIN_POSITIVE)).sqrt(),
+            percent: 100.0
+                * sum.signum()
+                * (sum.abs() / before.total.max(f64::MIN_POSITIVE)).sqrt(),
             t: t_of(&gains),
         }
     }
@@ -199,7 +237,8 @@ pub fn t_of(gains: &[f64]) -> f64 {
     }
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count.max(1.0);
-    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let variance =
+        gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     mean / (variance / count.max(1.0)).sqrt().max(f64::MIN_POSITIVE)
 }
 
@@ -210,9 +249,17 @@ mod tests {
     #[test]
     fn a_known_line_is_found_and_a_foreign_column_gains_nothing() {
         let rows = 20_000;
-        let wave = |k: f64| (0..rows).map(|i| (k * f64::from(i)).sin()).collect::<Vec<f64>>();
+        let wave = |k: f64| {
+            (0..rows)
+                .map(|i| (k * f64::from(i)).sin())
+                .collect::<Vec<f64>>()
+        };
         let (a, b, noise) = (wave(0.011), wave(0.0231), wave(1.7));
-        let target: Vec<f64> = a.iter().zip(&noise).map(|(a, n)| 3.0 * a + 0.1 * n).collect();
+        let target: Vec<f64> = a
+            .iter()
+            .zip(&noise)
+            .map(|(a, n)| 3.0 * a + 0.1 * n)
+            .collect();
         let mask = vec![true; rows as usize];
         let before = Blocks::new(&[&a], &target, &mask, 1.0e-3).cross_validate();
         let after = Blocks::new(&[&a, &b], &target, &mask, 1.0e-3).cross_validate();

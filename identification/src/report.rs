@@ -9,10 +9,12 @@ use crate::protocols::Protocol;
 pub struct Candidate {
     /// Effect.
     pub effect: String,
-    /// Error if this effect alone is added to the declared model, percent: of the force on the validation record, or, for effects judged on motor − load,
-    /// what is left of that difference on held-out blocks.
+    /// Error if this effect alone is added to the declared model, percent: of the force on the
+    /// validation record, or, for effects judged on motor − load, what is left of that difference
+    /// on held-out blocks.
     pub validation_error_percent: Option<f64>,
-    /// Evidence: mean over standard error of its gain on held-out blocks, in the round in which it stood best.
+    /// Evidence: mean over standard error of its gain on held-out blocks, in the round in which it
+    /// stood best.
     pub evidence: f64,
     /// Share of the held-out error that it removes.
     pub share: f64,
@@ -31,7 +33,8 @@ pub struct Errors {
     pub force_error_before_percent: f64,
     /// Force error of the extended model.
     pub force_error_after_percent: f64,
-    /// Rms of the force that is not explained about reversals and rests, declared; in the unit of the effort.
+    /// Rms of the force that is not explained about reversals and rests, declared; in the unit of
+    /// the effort.
     pub reversal_error_before: f64,
     /// The same, extended.
     pub reversal_error_after: f64,
@@ -50,7 +53,8 @@ pub struct FreeRunErrors {
     pub position_error_um_before: f64,
     /// The same, extended.
     pub position_error_um_after: f64,
-    /// The declared model's error over the rms of setpoint − position, percent, where there is a setpoint.
+    /// The declared model's error over the rms of setpoint − position, percent, where there is a
+    /// setpoint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tracking_error_percent_before: Option<f64>,
     /// The same, extended.
@@ -110,8 +114,9 @@ pub struct RippleOrder {
 /// Free-run simulation with output-error fits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FreeRun {
-    /// `known`: the controller of the dataset gives the recorded effort. `followed`: it is not known; the recorded effort was applied and a soft
-    /// controller of our own kept the simulation near the record, so that the errors compare models but are no free run.
+    /// `known`: the controller of the dataset gives the recorded effort. `followed`: it is not
+    /// known; the recorded effort was applied and a soft controller of our own kept the simulation
+    /// near the record, so that the errors compare models but are no free run.
     pub controller: &'static str,
     /// What the known controller leaves of the recorded effort, percent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -169,7 +174,8 @@ pub struct Report {
     pub train: Errors,
     /// Errors on the validation record.
     pub validate: Errors,
-    /// Errors on the whole file, where validation is its last part: the declared and the extended structure fitted to all of it.
+    /// Errors on the whole file, where validation is its last part: the declared and the extended
+    /// structure fitted to all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub whole: Option<Errors>,
     /// The force error by the protocols that papers use.
@@ -182,7 +188,8 @@ pub struct Report {
     /// Ripple about reversals, where the axis is never slow for long.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slow_ripple: Option<SlowRipple>,
-    /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of the sample rate, but 20 Hz where the clock jittered.
+    /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of
+    /// the sample rate, but 20 Hz where the clock jittered.
     pub cutoff_hz: f64,
     /// Where that is not the defined one: errors with the defined low-pass.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -217,13 +224,15 @@ pub struct Curves {
     pub free_run: Vec<[f64; 3]>,
     /// Validation record: time, s.
     pub time_s: Vec<f64>,
-    /// Recorded effort; where a known lag stands between the recorded and the acting effort, the acting one, which is what the predictions are of.
+    /// Recorded effort; where a known lag stands between the recorded and the acting effort, the
+    /// acting one, which is what the predictions are of.
     pub effort: Vec<f64>,
     /// Prediction of the declared model, not low-passed.
     pub declared: Vec<f64>,
     /// Prediction of the extended model, not low-passed.
     pub extended: Vec<f64>,
-    /// Moving samples of the validation record: velocity, position, residual declared, residual extended.
+    /// Moving samples of the validation record: velocity, position, residual declared, residual
+    /// extended.
     pub moving: Vec<[f64; 4]>,
 }
 

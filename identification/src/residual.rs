@@ -1,8 +1,9 @@
 //! How much structure is left in a residual.
 //!
-//! Rows are correlated, so no row-wise whiteness test is honest. Judged instead by the share of the residual's variance that general features
-//! (velocity by direction, position, time: piecewise linear) explain on held-out blocks, and by the share of the best single
-//! candidate; the larger of the two counts. General features alone miss ripple and delay, and over-fit into negative shares.
+//! Rows are correlated, so no row-wise whiteness test is honest. Judged instead by the share of the
+//! residual's variance that general features (velocity by direction, position, time: piecewise
+//! linear) explain on held-out blocks, and by the share of the best single candidate; the larger of
+//! the two counts. General features alone miss ripple and delay, and over-fit into negative shares.
 
 use crate::kinematics::Kinematics;
 use crate::regression::Blocks;
@@ -29,43 +30,71 @@ pub fn structures(motion: &Kinematics, residual: &[f64]) -> Vec<Structure> {
     let forwards = split(&motion.velocity_lp, 1.0);
     let backwards = split(&motion.velocity_lp, -1.0);
     let kinds: [(&'static str, Vec<Vec<f64>>); 3] = [
-        ("velocity by direction", [hats(&forwards, motion, 8), hats(&backwards, motion, 8)].concat()),
+        (
+            "velocity by direction",
+            [hats(&forwards, motion, 8), hats(&backwards, motion, 8)].concat(),
+        ),
         ("position", hats(&motion.position_lp, motion, 12)),
         ("time", hats(&motion.time_s, motion, 8)),
     ];
-    let mut shares: Vec<Structure> =
-        kinds.into_iter().map(|(over, columns)| Structure { over, share: share(motion, residual, &columns) }).collect();
+    let mut shares: Vec<Structure> = kinds
+        .into_iter()
+        .map(|(over, columns)| Structure {
+            over,
+            share: share(motion, residual, &columns),
+        })
+        .collect();
     shares.sort_by(|a, b| b.share.total_cmp(&a.share));
     shares
 }
 
 fn split(values: &[f64], sign: f64) -> Vec<f64> {
-    values.iter().map(|v| if v * sign > 0.0 { *v } else { f64::NAN }).collect()
+    values
+        .iter()
+        .map(|v| if v * sign > 0.0 { *v } else { f64::NAN })
+        .collect()
 }
 
 /// Piecewise linear features with knots at quantiles of the moving samples; `NaN` stands outside.
 fn hats(values: &[f64], motion: &Kinematics, count: usize) -> Vec<Vec<f64>> {
-    let moving = values.iter().zip(&motion.moving).filter(|(v, moving)| **moving && v.is_finite());
+    let moving = values
+        .iter()
+        .zip(&motion.moving)
+        .filter(|(v, moving)| **moving && v.is_finite());
     let mut sorted: Vec<f64> = moving.map(|(v, _)| *v).collect();
     sorted.sort_by(f64::total_cmp);
     if sorted.len() < 100 {
         return Vec::new();
     }
-    let mut knots: Vec<f64> = (0..count).map(|i| sorted[i * (sorted.len() - 1) / (count - 1)]).collect();
+    let mut knots: Vec<f64> = (0..count)
+        .map(|i| sorted[i * (sorted.len() - 1) / (count - 1)])
+        .collect();
     knots.dedup_by(|a, b| (*a - *b).abs() <= 1.0e-12);
-    (0..knots.len()).map(|at| values.iter().map(|v| hat(&knots, at, *v)).collect()).collect()
+    (0..knots.len())
+        .map(|at| values.iter().map(|v| hat(&knots, at, *v)).collect())
+        .collect()
 }
 
 fn hat(knots: &[f64], at: usize, value: f64) -> f64 {
     if !value.is_finite() {
         return 0.0;
     }
-    let rise = at.checked_sub(1).map_or(if value <= knots[at] { 1.0 } else { f64::INFINITY }, |left| {
-        (value - knots[left]) / (knots[at] - knots[left])
-    });
-    let fall = knots
-        .get(at + 1)
-        .map_or(if value >= knots[at] { 1.0 } else { f64::INFINITY }, |right| (right - value) / (right - knots[at]));
+    let rise = at.checked_sub(1).map_or(
+        if value <= knots[at] {
+            1.0
+        } else {
+            f64::INFINITY
+        },
+        |left| (value - knots[left]) / (knots[at] - knots[left]),
+    );
+    let fall = knots.get(at + 1).map_or(
+        if value >= knots[at] {
+            1.0
+        } else {
+            f64::INFINITY
+        },
+        |right| (right - value) / (right - knots[at]),
+    );
     rise.min(fall).clamp(0.0, 1.0)
 }
 

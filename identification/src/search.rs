@@ -3,7 +3,11 @@
 /// The value of least error.
 #[must_use]
 pub fn smallest(values: Vec<f64>, sse: &dyn Fn(f64) -> f64) -> Option<f64> {
-    values.into_iter().map(|value| (sse(value), value)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value)
+    values
+        .into_iter()
+        .map(|value| (sse(value), value))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, value)| value)
 }
 
 /// Steps of one size that a descent may take before it halves them.
@@ -18,9 +22,13 @@ pub fn descend(start: f64, step: f64, (low, high): (f64, f64), sse: &dyn Fn(f64)
     let (mut best, mut at, mut step) = (sse(start), start, step);
     for _ in 0..6 {
         for _ in 0..STEPS {
-            let tries = [at - step, at + step].into_iter().filter(|value| *value >= low && *value <= high);
+            let tries = [at - step, at + step]
+                .into_iter()
+                .filter(|value| *value >= low && *value <= high);
             let tries = tries.map(|value| (sse(value), value));
-            let better = tries.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(sse, _)| *sse < best);
+            let better = tries
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(sse, _)| *sse < best);
             match better {
                 Some((sse, value)) => (best, at) = (sse, value),
                 None => break,
@@ -37,7 +45,11 @@ pub fn golden(mut low: f64, mut high: f64, error: &dyn Fn(f64) -> f64) -> f64 {
     const RATIO: f64 = 0.618_033_988_749_894_9;
     for _ in 0..12 {
         let (a, b) = (high - RATIO * (high - low), low + RATIO * (high - low));
-        if error(a) < error(b) { high = b } else { low = a }
+        if error(a) < error(b) {
+            high = b
+        } else {
+            low = a
+        }
     }
     0.5 * (low + high)
 }

@@ -1,8 +1,10 @@
 //! Torque ripple of an axis that passes its reversals fast.
 //!
-//! At speed, ripple of a high order lies above the low-pass; it shows only about the reversals, which the margins about slow samples leave out. Where an
-//! axis never dwells there is no stiction to protect the fit from, and those samples are judged on their own: the declared model and one integer order
-//! per revolution after the other, on held-out blocks, with the thresholds of the selection.
+//! At speed, ripple of a high order lies above the low-pass; it shows only about the reversals,
+//! which the margins about slow samples leave out. Where an axis never dwells there is no stiction
+//! to protect the fit from, and those samples are judged on their own: the declared model and one
+//! integer order per revolution after the other, on held-out blocks, with the thresholds of the
+//! selection.
 
 use std::f64::consts::TAU;
 
@@ -34,7 +36,8 @@ const LARGEST_DISAGREEMENT: f64 = 0.6;
 /// An amplitude must be so many half widths.
 const WIDTHS: f64 = 1.5;
 
-/// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing was found.
+/// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing
+/// was found.
 #[must_use]
 pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics, declared: &Model) -> Option<SlowRipple> {
     let per_rev = match dataset.kind {
@@ -42,7 +45,11 @@ pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics, declared: &Model) -> 
         AxisKind::Linear => dataset.lead_m_per_rev?,
     };
     let limit = dataset.kind.moving_velocity();
-    let dwelling = moving.velocity_lp.iter().filter(|v| v.abs() <= limit).count() as f64;
+    let dwelling = moving
+        .velocity_lp
+        .iter()
+        .filter(|v| v.abs() <= limit)
+        .count() as f64;
     let turns = reversals(moving);
     if turns < FEWEST_REVERSALS || dwelling >= DWELL_ROWS * turns as f64 {
         return None;
@@ -60,16 +67,22 @@ pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics, declared: &Model) -> 
         return None;
     }
     let half_widths = bench.blocks(&bench.design(&model)).half_widths();
-    let pairs = found.iter().zip(after.coefficients[before.coefficients.len()..].chunks(2));
+    let pairs = found
+        .iter()
+        .zip(after.coefficients[before.coefficients.len()..].chunks(2));
     let widths = half_widths[before.coefficients.len()..].chunks(2);
-    let orders = pairs.zip(widths).map(|(((per_rev, gain), own), half)| RippleOrder {
-        per_rev: *per_rev,
-        amplitude: own[0].hypot(own[1]),
-        half_width: half[0].hypot(half[1]),
-        share: gain.share,
-        evidence: gain.t,
-    });
-    let orders: Vec<RippleOrder> = orders.filter(|order| order.amplitude >= WIDTHS * order.half_width).collect();
+    let orders = pairs
+        .zip(widths)
+        .map(|(((per_rev, gain), own), half)| RippleOrder {
+            per_rev: *per_rev,
+            amplitude: own[0].hypot(own[1]),
+            half_width: half[0].hypot(half[1]),
+            share: gain.share,
+            evidence: gain.t,
+        });
+    let orders: Vec<RippleOrder> = orders
+        .filter(|order| order.amplitude >= WIDTHS * order.half_width)
+        .collect();
     let error = |motion: &Kinematics, model: &Model, fit: &Fit| {
         Bench::new(dataset, motion).force_error_percent(model, &fit.coefficients)
     };
@@ -86,7 +99,11 @@ pub fn slow_ripple(dataset: &Dataset, moving: &Kinematics, declared: &Model) -> 
 }
 
 fn median_speed(motion: &Kinematics) -> f64 {
-    let moving = motion.velocity_lp.iter().zip(&motion.moving).filter(|(_, moving)| **moving);
+    let moving = motion
+        .velocity_lp
+        .iter()
+        .zip(&motion.moving)
+        .filter(|(_, moving)| **moving);
     let mut speeds: Vec<f64> = moving.map(|(v, _)| v.abs()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.get(speeds.len() / 2).copied().unwrap_or(0.0)
@@ -96,9 +113,16 @@ fn median_speed(motion: &Kinematics) -> f64 {
 fn slow_motion(dataset: &Dataset, record: &Record, fastest: f64) -> Option<Kinematics> {
     let motion = Kinematics::with_cutoff(dataset, record, CUTOFF_HZ)?;
     let rows = motion.len();
-    let slow = |row: usize| row >= TRIM && row + TRIM < rows && motion.velocity_lp[row].abs() <= fastest;
-    let mask: Vec<bool> = (0..rows).map(|row| slow(row) && !record.interpolated[row]).collect();
-    Some(Kinematics { moving: mask.clone(), fitted: mask, ..motion })
+    let slow =
+        |row: usize| row >= TRIM && row + TRIM < rows && motion.velocity_lp[row].abs() <= fastest;
+    let mask: Vec<bool> = (0..rows)
+        .map(|row| slow(row) && !record.interpolated[row])
+        .collect();
+    Some(Kinematics {
+        moving: mask.clone(),
+        fitted: mask,
+        ..motion
+    })
 }
 
 /// The two halves of the samples, each on its own.
@@ -113,31 +137,54 @@ fn halves(motion: &Kinematics) -> [Kinematics; 2] {
             *slow && 2 * seen <= count
         })
         .collect();
-    let second = motion.fitted.iter().zip(&first).map(|(slow, first)| *slow && !first).collect();
-    [first, second].map(|fitted| Kinematics { fitted, ..motion.clone() })
+    let second = motion
+        .fitted
+        .iter()
+        .zip(&first)
+        .map(|(slow, first)| *slow && !first)
+        .collect();
+    [first, second].map(|fitted| Kinematics {
+        fitted,
+        ..motion.clone()
+    })
 }
 
-/// One order after the other, each the best of its round that both halves of the record agree about.
-fn add_orders(bench: &Bench<'_>, start: Model, fit: Fit, per_rev: f64) -> (Model, Fit, Vec<(u32, Gain)>) {
+/// One order after the other, each the best of its round that both halves of the record agree
+/// about.
+fn add_orders(
+    bench: &Bench<'_>,
+    start: Model,
+    fit: Fit,
+    per_rev: f64,
+) -> (Model, Fit, Vec<(u32, Gain)>) {
     let halves = halves(bench.motion);
     let (mut model, mut fit, mut found) = (start, fit, Vec::<(u32, Gain)>::new());
     while found.len() < MOST {
         let design = bench.design(&model);
-        let term = |order: u32| Term { effect: &TorqueRipple, parameter: f64::from(order) / per_rev };
-        let open = (1..=HIGHEST_ORDER).filter(|order| found.iter().all(|(known, _)| known != order));
+        let term = |order: u32| Term {
+            effect: &TorqueRipple,
+            parameter: f64::from(order) / per_rev,
+        };
+        let open =
+            (1..=HIGHEST_ORDER).filter(|order| found.iter().all(|(known, _)| known != order));
         let judged = open.map(|order| {
-            let fit_with = bench.blocks(&bench.extended_once(&design, &term(order))).cross_validate();
+            let fit_with = bench
+                .blocks(&bench.extended_once(&design, &term(order)))
+                .cross_validate();
             (Gain::of(&fit, &fit_with), order, fit_with)
         });
-        let mut judged: Vec<(Gain, u32, Fit)> =
-            judged.filter(|(gain, ..)| gain.share >= selection::SHARE && selection::is_enough(gain)).collect();
+        let mut judged: Vec<(Gain, u32, Fit)> = judged
+            .filter(|(gain, ..)| gain.share >= selection::SHARE && selection::is_enough(gain))
+            .collect();
         judged.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
         let agreed = judged.into_iter().find(|(_, order, _)| {
             let mut model = model.clone();
             model.terms.push(term(*order));
             agree(bench.dataset, &halves, &model)
         });
-        let Some((gain, order, better)) = agreed else { break };
+        let Some((gain, order, better)) = agreed else {
+            break;
+        };
         model.terms.push(term(order));
         fit = better;
         found.push((order, gain));
@@ -149,7 +196,10 @@ fn add_orders(bench: &Bench<'_>, start: Model, fit: Fit, per_rev: f64) -> (Model
 fn agree(dataset: &Dataset, halves: &[Kinematics; 2], model: &Model) -> bool {
     let [one, other] = halves.each_ref().map(|motion| {
         let coefficients = Bench::new(dataset, motion).fit(model).coefficients;
-        [coefficients[coefficients.len() - 2], coefficients[coefficients.len() - 1]]
+        [
+            coefficients[coefficients.len() - 2],
+            coefficients[coefficients.len() - 1],
+        ]
     });
     let apart = f64::hypot(one[0] - other[0], one[1] - other[1]);
     let mean = 0.5 * f64::hypot(one[0] + other[0], one[1] + other[1]);

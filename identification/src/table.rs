@@ -46,7 +46,12 @@ impl Source {
     /// The long form.
     pub(crate) fn form(&self) -> SourceForm {
         match self {
-            Self::Name(name) => SourceForm { name: name.clone(), scale: 1.0, offset: 0.0, wraps_at: None },
+            Self::Name(name) => SourceForm {
+                name: name.clone(),
+                scale: 1.0,
+                offset: 0.0,
+                wraps_at: None,
+            },
             Self::Form(form) => form.clone(),
         }
     }
@@ -66,10 +71,19 @@ pub(crate) struct Table {
 impl Table {
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
         let shown = path.display().to_string();
-        let failed =
-            |error: csv::Error| IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"));
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(failed)?;
-        let header: Vec<String> = reader.headers().map_err(failed)?.iter().map(String::from).collect();
+        let failed = |error: csv::Error| {
+            IdentificationError::new(format!("{shown}: {error}; a record is CSV with a header"))
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_path(path)
+            .map_err(failed)?;
+        let header: Vec<String> = reader
+            .headers()
+            .map_err(failed)?
+            .iter()
+            .map(String::from)
+            .collect();
         let mut columns = vec![Vec::new(); header.len()];
         for row in reader.records() {
             let row = row.map_err(failed)?;
@@ -83,7 +97,11 @@ impl Table {
                 })?);
             }
         }
-        Ok(Self { path: shown, header, columns })
+        Ok(Self {
+            path: shown,
+            header,
+            columns,
+        })
     }
 
     pub(crate) fn column(&self, name: &str) -> Option<Vec<f64>> {
@@ -105,7 +123,11 @@ impl Table {
     pub(crate) fn mapped(mut self, mapping: &Mapping) -> Outcome<Self> {
         for (name, source) in mapping {
             let form = source.form();
-            let values = self.required(&form.name)?.into_iter().map(|value| form.scale * value + form.offset).collect();
+            let values = self
+                .required(&form.name)?
+                .into_iter()
+                .map(|value| form.scale * value + form.offset)
+                .collect();
             match self.header.iter().position(|known| known == name) {
                 Some(place) => self.columns[place] = values,
                 None => {

@@ -1,4 +1,5 @@
-//! The reader of records takes anything without a panic: an error that names the file, or a dataset.
+//! The reader of records takes anything without a panic: an error that names the file, or a
+//! dataset.
 
 use std::path::Path;
 
@@ -30,14 +31,16 @@ fn nearly_csv() -> impl Strategy<Value = String> {
         1 => Just("time_s,position_m,force_n,current_a".to_owned()),
         1 => "[a-z_,]{0,30}",
     ];
-    (header, prop::collection::vec(row, 0..40)).prop_map(|(header, rows)| format!("{header}\n{}", rows.join("\n")))
+    (header, prop::collection::vec(row, 0..40))
+        .prop_map(|(header, rows)| format!("{header}\n{}", rows.join("\n")))
 }
 
 /// Text that is nearly a log.
 fn nearly_log() -> impl Strategy<Value = String> {
     let line = (any::<f64>(), "[0-9A-F]{0,9}", "[#0-9A-FR]{0,20}")
         .prop_map(|(time, id, data)| format!("({time}) can0 {id}#{data}"));
-    prop::collection::vec(prop_oneof![4 => line, 1 => "[ -~]{0,40}"], 0..60).prop_map(|lines| lines.join("\n"))
+    prop::collection::vec(prop_oneof![4 => line, 1 => "[ -~]{0,40}"], 0..60)
+        .prop_map(|lines| lines.join("\n"))
 }
 
 const BUS: &str = "sample_period_s = 0.001\n[bus]\ndbc = \"a.dbc\"\n[columns]\nposition_m = { name = \"F.X\", wraps_at = 16.0 }\nforce_n = \"F.Y\"\n";

@@ -12,14 +12,17 @@ use crate::friction::{Friction, Law, Sliding};
 use crate::mechanics::{Drive, Mechanics, Motion};
 use crate::stops::Stops;
 
-/// Sub-step of the integration: halving it changes a free run of 8 mm by less than 10⁻⁵ of it (`tests/mechanics.rs`).
+/// Sub-step of the integration: halving it changes a free run of 8 mm by less than 10⁻⁵ of it
+/// (`tests/mechanics.rs`).
 pub const SUB_STEP_S: f64 = 1.0e-3 / 16.0;
 
-/// How an axis is mounted: what pulls at it, what holds it, where it ends and where it stands when it is switched on.
+/// How an axis is mounted: what pulls at it, what holds it, where it ends and where it stands when
+/// it is switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mounting {
-    /// Force of gravity on the table towards positive position, N: −2500 where positive is up. Identification finds it
-    /// as an `offset` of the opposite sign, because an offset is counted against positive motion.
+    /// Force of gravity on the table towards positive position, N: −2500 where positive is up.
+    /// Identification finds it as an `offset` of the opposite sign, because an offset is counted
+    /// against positive motion.
     pub gravity_n: f64,
     /// Brake on the motor.
     pub brake: Option<BrakeParameters>,
@@ -38,8 +41,16 @@ impl Mounting {
     #[must_use]
     pub fn start(&self, mechanics: &Mechanics) -> Motion {
         let hang_m = -self.gravity_n / mechanics.screw_stiffness_n_per_m;
-        let gap_m = if self.gravity_n == 0.0 { 0.0 } else { -0.5 * mechanics.backlash_m * self.gravity_n.signum() };
-        Motion { motor_m: self.start_m + gap_m + hang_m, table_m: self.start_m, ..Motion::default() }
+        let gap_m = if self.gravity_n == 0.0 {
+            0.0
+        } else {
+            -0.5 * mechanics.backlash_m * self.gravity_n.signum()
+        };
+        Motion {
+            motor_m: self.start_m + gap_m + hang_m,
+            table_m: self.start_m,
+            ..Motion::default()
+        }
     }
 }
 
@@ -157,7 +168,9 @@ impl Axis {
     /// Where the brake stands.
     #[must_use]
     pub fn brake(&self) -> BrakeState {
-        self.brake.as_ref().map_or(BrakeState::NotFitted, Brake::state)
+        self.brake
+            .as_ref()
+            .map_or(BrakeState::NotFitted, Brake::state)
     }
 
     /// Force that the motor delivers at present, N.
@@ -176,10 +189,11 @@ impl Axis {
     #[must_use]
     pub fn read(&self) -> Reading {
         let parameters = &self.parameters;
-        let counts_per_m = f64::from(parameters.motor_encoder_counts_per_rev) / parameters.lead_m_per_rev;
+        let counts_per_m =
+            f64::from(parameters.motor_encoder_counts_per_rev) / parameters.lead_m_per_rev;
         let mounting = &parameters.mounting;
-        let scale_m =
-            self.motion.table_m + parameters.effects.scale_error_m(self.motion.table_m) - mounting.load_zero_m;
+        let scale_m = self.motion.table_m + parameters.effects.scale_error_m(self.motion.table_m)
+            - mounting.load_zero_m;
         let resolution = parameters.load_encoder_resolution_m;
         Reading {
             motor_increments: floor((self.motion.motor_m - mounting.motor_zero_m) * counts_per_m),
@@ -217,34 +231,54 @@ impl Axis {
         let effects = &self.parameters.effects;
         let middle = self.motion.motor_m + 0.5 * dt_s * self.motion.motor_m_per_s;
         let drive = Drive {
-            motor_n: mean_n + disturbance_n + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
+            motor_n: mean_n
+                + disturbance_n
+                + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
             table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) - effects.offset_n,
             friction_factor: effects.friction_factor(self.motion.table_m, self.time_s),
             brake_n: self.brake.as_mut().map_or(0.0, |brake| brake.pass(dt_s)),
         };
-        self.parameters.mechanics.advance(&mut self.motion, &mut self.friction, drive, dt_s);
+        self.parameters
+            .mechanics
+            .advance(&mut self.motion, &mut self.friction, drive, dt_s);
     }
 
     /// Force of an end stop on the table in the middle of a sub-step.
     fn stop_n(&self, dt_s: f64) -> f64 {
-        let Motion { table_m, table_m_per_s, .. } = self.motion;
-        let force = |stops: Stops| stops.force_n(table_m + 0.5 * dt_s * table_m_per_s, table_m_per_s);
+        let Motion {
+            table_m,
+            table_m_per_s,
+            ..
+        } = self.motion;
+        let force =
+            |stops: Stops| stops.force_n(table_m + 0.5 * dt_s * table_m_per_s, table_m_per_s);
         self.parameters.mounting.stops.map_or(0.0, force)
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "saturates at 2^63 counts, 10^11 m")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "saturates at 2^63 counts, 10^11 m"
+)]
 fn floor(value: f64) -> i64 {
     value.floor() as i64
 }
 
 /// Share of the way to its target that a first-order lag covers in `dt`.
 fn lag_share(dt_s: f64, time_constant_s: f64) -> f64 {
-    if time_constant_s > 0.0 { -(-dt_s / time_constant_s).exp_m1() } else { 1.0 }
+    if time_constant_s > 0.0 {
+        -(-dt_s / time_constant_s).exp_m1()
+    } else {
+        1.0
+    }
 }
 
-/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero where it falls at
-/// once.
+/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero
+/// where it falls at once.
 fn mean_share(lag: f64) -> f64 {
-    if lag >= 1.0 { 0.0 } else { lag / -(-lag).ln_1p() }
+    if lag >= 1.0 {
+        0.0
+    } else {
+        lag / -(-lag).ln_1p()
+    }
 }

@@ -1,18 +1,20 @@
 //! A spring-applied brake on the motor shaft: it holds without current and lets go under current.
 //!
 //! ```text
-//! told to open   ──▶ full strength for open_s, then none                (t2, disengagement)
-//! told to close  ──▶ none for close_s − rise_s, then linear to full     (t11, then t12; t1 = t11 + t12 = close_s)
+//! told to open   ──▶ full strength for open_s, then none             (t2, disengagement)
+//! told to close  ──▶ none for close_s − rise_s, then linear to full  (t11, then t12; sum t1)
 //! ```
 //!
-//! The times are those of a data sheet: t2 disengagement, t11 response delay, t12 rise, t1 engagement.
+//! The times are those of a data sheet: t2 disengagement, t11 response delay, t12 rise, t1
+//! engagement.
 //!
-//! While it holds it is dry friction: it takes any force up to its rated one and lets the shaft stand exactly still;
-//! above that it slips against the rated force. [`crate::mechanics`] solves for that together with the screw, so a held
-//! shaft does not chatter and a slipping one never reverses. All forces are at the table, in newtons.
+//! While it holds it is dry friction: it takes any force up to its rated one and lets the shaft
+//! stand exactly still; above that it slips against the rated force. [`crate::mechanics`] solves
+//! for that together with the screw, so a held shaft does not chatter and a slipping one never
+//! reverses. All forces are at the table, in newtons.
 //!
-//! `rise_s` is zero unless a data sheet says it: the brake then bites late and at once, which is the longest way that
-//! its times allow.
+//! `rise_s` is zero unless a data sheet says it: the brake then bites late and at once, which is
+//! the longest way that its times allow.
 
 use protocol::states::BrakeState;
 use serde::{Deserialize, Serialize};
@@ -62,18 +64,27 @@ impl Brake {
     /// A closed brake.
     #[must_use]
     pub const fn new(parameters: BrakeParameters) -> Self {
-        Self { parameters, released: false, strength: 1.0, left_s: 0.0 }
+        Self {
+            parameters,
+            released: false,
+            strength: 1.0,
+            left_s: 0.0,
+        }
     }
 
-    /// Tells it to open (`release`) or to close. A command that comes before the armature has left its place costs no
-    /// time.
+    /// Tells it to open (`release`) or to close. A command that comes before the armature has left
+    /// its place costs no time.
     pub fn command(&mut self, release: bool) {
         if release == self.released {
             return;
         }
         self.released = release;
         let target = if release { 0.0 } else { 1.0 };
-        let time_s = if release { self.parameters.open_s } else { self.parameters.close_s };
+        let time_s = if release {
+            self.parameters.open_s
+        } else {
+            self.parameters.close_s
+        };
         self.left_s = if self.strength == target { 0.0 } else { time_s };
         if self.left_s == 0.0 {
             self.strength = target;
@@ -112,7 +123,9 @@ impl Brake {
             self.left_s = 0.0;
             self.strength = if self.released { 0.0 } else { 1.0 };
         } else if !self.released && self.left_s < self.parameters.rise_s {
-            self.strength = self.strength.max(1.0 - self.left_s / self.parameters.rise_s);
+            self.strength = self
+                .strength
+                .max(1.0 - self.left_s / self.parameters.rise_s);
         }
     }
 }
@@ -124,7 +137,12 @@ mod tests {
     const DT_S: f64 = 1.0e-3 / 16.0;
 
     fn brake(open_s: f64, close_s: f64, rise_s: f64) -> Brake {
-        Brake::new(BrakeParameters { rated_force_n: 4000.0, open_s, close_s, rise_s })
+        Brake::new(BrakeParameters {
+            rated_force_n: 4000.0,
+            open_s,
+            close_s,
+            rise_s,
+        })
     }
 
     /// Sub-steps until the brake stands in a state, with the capacity in each.
@@ -141,10 +159,18 @@ mod tests {
         let mut brake = brake(0.030, 0.040, 0.0);
         brake.command(true);
         let opening = until(&mut brake, BrakeState::Open);
-        assert_eq!((opening.len(), opening.iter().all(|n| *n == 4000.0)), (480, true), "30 ms at full strength");
+        assert_eq!(
+            (opening.len(), opening.iter().all(|n| *n == 4000.0)),
+            (480, true),
+            "30 ms at full strength"
+        );
         brake.command(false);
         let closing = until(&mut brake, BrakeState::Closed);
-        assert_eq!((closing.len(), closing.iter().all(|n| *n == 0.0)), (640, true), "40 ms without any");
+        assert_eq!(
+            (closing.len(), closing.iter().all(|n| *n == 0.0)),
+            (640, true),
+            "40 ms without any"
+        );
         assert_eq!(brake.capacity_n(), 4000.0);
     }
 
@@ -154,8 +180,16 @@ mod tests {
         brake.command(true);
         brake.command(false);
         let closing = until(&mut brake, BrakeState::Closed);
-        assert!(closing[480] < 1.0e-6, "30 ms response delay: {} N", closing[480]);
-        assert!((closing[560] - 2000.0).abs() < 1.0, "half of the force after 35 ms: {} N", closing[560]);
+        assert!(
+            closing[480] < 1.0e-6,
+            "30 ms response delay: {} N",
+            closing[480]
+        );
+        assert!(
+            (closing[560] - 2000.0).abs() < 1.0,
+            "half of the force after 35 ms: {} N",
+            closing[560]
+        );
         assert!(closing.is_sorted());
     }
 
@@ -165,7 +199,10 @@ mod tests {
         brake.command(true);
         assert_eq!((brake.state(), brake.capacity_n()), (BrakeState::Open, 0.0));
         brake.command(false);
-        assert_eq!((brake.state(), brake.capacity_n()), (BrakeState::Closed, 4000.0));
+        assert_eq!(
+            (brake.state(), brake.capacity_n()),
+            (BrakeState::Closed, 4000.0)
+        );
     }
 
     #[test]
@@ -174,6 +211,9 @@ mod tests {
         brake.command(true);
         brake.pass(DT_S);
         brake.command(false);
-        assert_eq!((brake.state(), brake.capacity_n()), (BrakeState::Closed, 4000.0));
+        assert_eq!(
+            (brake.state(), brake.capacity_n()),
+            (BrakeState::Closed, 4000.0)
+        );
     }
 }

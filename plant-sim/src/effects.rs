@@ -1,4 +1,5 @@
-//! What real axes have besides mass, screw and friction: each effect one small struct, all off by default.
+//! What real axes have besides mass, screw and friction: each effect one small struct, all off by
+//! default.
 
 use serde::{Deserialize, Serialize};
 
@@ -62,22 +63,30 @@ impl Effects {
     /// Force on the motor side at a motor position.
     #[must_use]
     pub fn motor_force_n(&self, motor_m: f64, lead_m: f64) -> f64 {
-        let Some(ripple) = self.torque_ripple else { return 0.0 };
-        let angle = std::f64::consts::TAU * ripple.order_per_rev * motor_m / lead_m + ripple.phase_rad;
+        let Some(ripple) = self.torque_ripple else {
+            return 0.0;
+        };
+        let angle =
+            std::f64::consts::TAU * ripple.order_per_rev * motor_m / lead_m + ripple.phase_rad;
         -ripple.amplitude_n * angle.sin()
     }
 
     /// Factor on the friction level.
     #[must_use]
     pub fn friction_factor(&self, table_m: f64, time_s: f64) -> f64 {
-        let drift = self.friction_drift.map_or(0.0, |drift| drift.gain * (-time_s / drift.time_constant_s).exp());
-        ((1.0 + self.position_dependent_friction_per_m * table_m) * (1.0 + drift)).max(SMALLEST_FACTOR)
+        let drift = self.friction_drift.map_or(0.0, |drift| {
+            drift.gain * (-time_s / drift.time_constant_s).exp()
+        });
+        ((1.0 + self.position_dependent_friction_per_m * table_m) * (1.0 + drift))
+            .max(SMALLEST_FACTOR)
     }
 
     /// Error of the load scale at a table position.
     #[must_use]
     pub fn scale_error_m(&self, table_m: f64) -> f64 {
-        let periodic = |pitch: PitchError| pitch.amplitude_m * (std::f64::consts::TAU * table_m / pitch.period_m).sin();
+        let periodic = |pitch: PitchError| {
+            pitch.amplitude_m * (std::f64::consts::TAU * table_m / pitch.period_m).sin()
+        };
         self.pitch_error.map_or(0.0, periodic)
     }
 

@@ -1,17 +1,21 @@
 //! Friction at the table, as an exchangeable effect.
 //!
-//! Every law answers one question of the integrator: given the velocity that the table would have without friction, how large is the
-//! friction force over this sub-step? Laws with internal states advance them in the same call. Friction is positive against motion.
+//! Every law answers one question of the integrator: given the velocity that the table would have
+//! without friction, how large is the friction force over this sub-step? Laws with internal states
+//! advance them in the same call. Friction is positive against motion.
 //!
-//! - [`Coulomb`](Law::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands exactly still while the other
-//!   forces stay below the breakaway force (Moreau's time stepping: friction is solved for, not looked up).
-//! - [`LuGre`](Law::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż + Fv v` (Canudas de Wit, Olsson,
-//!   Åström, Lischinsky 1995, eq. 2 to 4).
-//! - [`MaxwellSlip`](Law::MaxwellSlip): parallel elasto-slide elements, for hysteresis with non-local memory (Iwan 1966).
+//! - [`Coulomb`](Law::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands
+//!   exactly still while the other forces stay below the breakaway force (Moreau's time stepping:
+//!   friction is solved for, not looked up).
+//! - [`LuGre`](Law::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż +
+//!   Fv v` (Canudas de Wit, Olsson, Åström, Lischinsky 1995, eq. 2 to 4).
+//! - [`MaxwellSlip`](Law::MaxwellSlip): parallel elasto-slide elements, for hysteresis with
+//!   non-local memory (Iwan 1966).
 
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v / vs)²)`, in newtons.
+/// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v / vs)²)`,
+/// in newtons.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sliding {
@@ -23,7 +27,8 @@ pub struct Sliding {
     pub stribeck_velocity_m_per_s: f64,
     /// Viscous friction Fv.
     pub viscous_n_s_per_m: f64,
-    /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and negative motion.
+    /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and negative
+    /// motion.
     #[serde(default)]
     pub coulomb_asymmetry: f64,
     /// Relative difference of viscous friction by direction.
@@ -50,7 +55,8 @@ impl Sliding {
     /// Viscous coefficient at a velocity, quadratic drag included as `q |v|`.
     #[must_use]
     pub fn viscous_n_s_per_m(&self, v: f64) -> f64 {
-        self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v)) + self.quadratic_drag_n_s2_per_m2 * v.abs()
+        self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v))
+            + self.quadratic_drag_n_s2_per_m2 * v.abs()
     }
 }
 
@@ -112,21 +118,36 @@ impl Friction {
             Law::LuGre { .. } => 1,
             Law::MaxwellSlip { share, .. } => share.len(),
         };
-        Self { sliding, law, deflection_m: vec![0.0; states] }
+        Self {
+            sliding,
+            law,
+            deflection_m: vec![0.0; states],
+        }
     }
 
     /// Velocity of the table at the end of the sub-step; advances the internal state.
     pub fn advance(&mut self, table: Table) -> f64 {
-        let Self { sliding, law, deflection_m } = self;
+        let Self {
+            sliding,
+            law,
+            deflection_m,
+        } = self;
         match law {
             Law::Coulomb => coulomb(sliding, table),
-            Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m } => {
-                let bristle = Bristle { stiffness: *bristle_stiffness_n_per_m, damping: *bristle_damping_n_s_per_m };
+            Law::LuGre {
+                bristle_stiffness_n_per_m,
+                bristle_damping_n_s_per_m,
+            } => {
+                let bristle = Bristle {
+                    stiffness: *bristle_stiffness_n_per_m,
+                    damping: *bristle_damping_n_s_per_m,
+                };
                 lugre(sliding, bristle, &mut deflection_m[0], table)
             }
-            Law::MaxwellSlip { stiffness_n_per_m, share } => {
-                maxwell(sliding, stiffness_n_per_m, share, deflection_m, table)
-            }
+            Law::MaxwellSlip {
+                stiffness_n_per_m,
+                share,
+            } => maxwell(sliding, stiffness_n_per_m, share, deflection_m, table),
         }
     }
 
@@ -148,12 +169,26 @@ impl Friction {
     }
 }
 
-/// Moreau: the friction that stops the table within the sub-step, if it is within the breakaway force; else the sliding level against
-/// motion, never past standstill.
+/// Moreau: the friction that stops the table within the sub-step, if it is within the breakaway
+/// force; else the sliding level against motion, never past standstill.
 fn coulomb(sliding: &Sliding, table: Table) -> f64 {
-    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
-    let direction = if velocity == 0.0 { free_velocity } else { velocity };
-    let level = sliding.level_n(if velocity == 0.0 { sign(direction) * f64::MIN_POSITIVE } else { velocity }) * factor;
+    let Table {
+        velocity,
+        free_velocity,
+        mass_kg,
+        dt_s,
+        factor,
+    } = table;
+    let direction = if velocity == 0.0 {
+        free_velocity
+    } else {
+        velocity
+    };
+    let level = sliding.level_n(if velocity == 0.0 {
+        sign(direction) * f64::MIN_POSITIVE
+    } else {
+        velocity
+    }) * factor;
     // Viscous part trapezoidal, so that the scheme stays second order while it slides.
     let half = 0.5 * sliding.viscous_n_s_per_m(direction) * dt_s / mass_kg;
     let free_velocity = free_velocity - half * velocity;
@@ -170,17 +205,25 @@ struct Bristle {
     damping: f64,
 }
 
-/// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the table with the part of the bristle force that is
-/// linear in its velocity taken implicitly, the other half of the bristle.
+/// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the table with
+/// the part of the bristle force that is linear in its velocity taken implicitly, the other half of
+/// the bristle.
 fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 {
-    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
+    let Table {
+        velocity,
+        free_velocity,
+        mass_kg,
+        dt_s,
+        factor,
+    } = table;
     let rate = |v: f64| bristle.stiffness * v.abs() / (sliding.level_n(v) * factor);
     *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
-    // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken trapezoidal.
+    // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
+    // trapezoidal.
     let level = sliding.level_n(velocity) * factor;
     let constant = bristle.stiffness * *z;
-    let linear =
-        bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level) + sliding.viscous_n_s_per_m(velocity);
+    let linear = bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level)
+        + sliding.viscous_n_s_per_m(velocity);
     let half = 0.5 * linear * dt_s / mass_kg;
     let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
     *z = relaxed(*z, next, rate(next), 0.5 * dt_s);
@@ -190,15 +233,35 @@ fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 
 /// Solution of `ż = v − r z` after `dt` at constant `v` and `r`.
 fn relaxed(z: f64, v: f64, rate: f64, dt: f64) -> f64 {
     let x = rate * dt;
-    let share = if x < 1e-6 { dt * (1.0 - 0.5 * x) } else { -(-x).exp_m1() / rate };
+    let share = if x < 1e-6 {
+        dt * (1.0 - 0.5 * x)
+    } else {
+        -(-x).exp_m1() / rate
+    };
     z + (v - rate * z) * share
 }
 
-fn maxwell(sliding: &Sliding, stiffness: &[f64], share: &[f64], deflection: &mut [f64], table: Table) -> f64 {
-    let Table { velocity, free_velocity, mass_kg, dt_s, factor } = table;
-    // An element slips at the level of the direction it is deflected in, whatever the table does at the moment.
+fn maxwell(
+    sliding: &Sliding,
+    stiffness: &[f64],
+    share: &[f64],
+    deflection: &mut [f64],
+    table: Table,
+) -> f64 {
+    let Table {
+        velocity,
+        free_velocity,
+        mass_kg,
+        dt_s,
+        factor,
+    } = table;
+    // An element slips at the level of the direction it is deflected in, whatever the table does at
+    // the moment.
     let slide = |deflection: &mut [f64], velocity: f64| {
-        let (forth, back) = (sliding.level_n(velocity.abs()) * factor, sliding.level_n(-velocity.abs()) * factor);
+        let (forth, back) = (
+            sliding.level_n(velocity.abs()) * factor,
+            sliding.level_n(-velocity.abs()) * factor,
+        );
         let mut force = 0.0;
         for ((k, share), z) in stiffness.iter().zip(share).zip(deflection) {
             *z = (*z + 0.5 * velocity * dt_s).clamp(-share * back / k, share * forth / k);

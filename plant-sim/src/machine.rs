@@ -1,7 +1,8 @@
 //! Machine files: TOML in SI units, actual and declared effects apart.
 //!
-//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and impossible values are errors
-//! that name key and line. An axis may say `like = "X"` and leave out everything else.
+//! `docs/machine-files.md` explains every key. Unknown keys, missing keys, wrong types and
+//! impossible values are errors that name key and line. An axis may say `like = "X"` and leave out
+//! everything else.
 
 use std::fmt;
 use std::ops::Range;
@@ -167,7 +168,8 @@ struct AxisForm {
     gains: Option<Gains>,
     actual: Option<ActualForm>,
     declared: Option<DeclaredForm>,
-    /// What an identification said, for people: with intervals and units. The simulator reads `actual`.
+    /// What an identification said, for people: with intervals and units. The simulator reads
+    /// `actual`.
     #[serde(rename = "identified")]
     _identified: Option<toml::Table>,
 }
@@ -285,13 +287,29 @@ impl Machine {
         let source = Source { file, text };
         let form: FileForm = toml::from_str(text).map_err(|error| source.syntax(&error))?;
         let everywhere = 0..text.len();
-        source.range(&everywhere, "period_s", form.timing.period_s, 1.0e-4, LONGEST_PERIOD_S)?;
+        source.range(
+            &everywhere,
+            "period_s",
+            form.timing.period_s,
+            1.0e-4,
+            LONGEST_PERIOD_S,
+        )?;
         if form.axis.is_empty() || form.axis.len() > 16 {
             return Err(source.error(&everywhere, "axis", "a machine has 1 to 16 [[axis]] tables"));
         }
-        let axes = form.axis.iter().map(|axis| source.axis(axis, &form.axis)).collect::<Result<_, _>>()?;
+        let axes = form
+            .axis
+            .iter()
+            .map(|axis| source.axis(axis, &form.axis))
+            .collect::<Result<_, _>>()?;
         source.bus(&everywhere, form.bus)?;
-        Ok(Self { name: form.name, seed: form.seed, bus: form.bus, period_s: form.timing.period_s, axes })
+        Ok(Self {
+            name: form.name,
+            seed: form.seed,
+            bus: form.bus,
+            period_s: form.timing.period_s,
+            axes,
+        })
     }
 
     /// Format and bit rates as the load computation wants them.
@@ -299,23 +317,38 @@ impl Machine {
     pub const fn bus_format(&self) -> protocol::load::BusFormat {
         match self.bus {
             Bus::Classic { bit_rate } => protocol::load::BusFormat::Classic { bit_rate },
-            Bus::Fd { nominal_rate, data_rate } => protocol::load::BusFormat::Fd { nominal_rate, data_rate },
+            Bus::Fd {
+                nominal_rate,
+                data_rate,
+            } => protocol::load::BusFormat::Fd {
+                nominal_rate,
+                data_rate,
+            },
         }
     }
 
-    /// Largest number of axes that share one bus; axes without `interface` have a bus of their own each.
+    /// Largest number of axes that share one bus; axes without `interface` have a bus of their own
+    /// each.
     #[must_use]
     pub fn axes_per_bus(&self) -> u8 {
         let shared = |axis: &MachineAxis| match &axis.interface {
             None => 1,
-            name => self.axes.iter().filter(|other| other.interface == *name).count(),
+            name => self
+                .axes
+                .iter()
+                .filter(|other| other.interface == *name)
+                .count(),
         };
         u8::try_from(self.axes.iter().map(shared).max().unwrap_or(1)).unwrap_or(u8::MAX)
     }
 
     /// Computed cyclic load of the fullest bus, per mille.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "period_s is within 0.1 to 20 ms")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "period_s is within 0.1 to 20 ms"
+    )]
     pub fn bus_load_per_mille(&self) -> u32 {
         let cycle_ns = (self.period_s * 1.0e9).round() as u64;
         protocol::load::cyclic_load_per_mille(self.bus_format(), self.axes_per_bus(), cycle_ns)
@@ -331,21 +364,47 @@ impl Source<'_> {
     fn syntax(&self, error: &toml::de::Error) -> MachineError {
         let line = error.span().map_or(0, |span| self.line(span.start));
         let text = error.message().replace('\n', ", ");
-        let shown = self.text.lines().nth(line.saturating_sub(1)).unwrap_or("").trim();
-        let at = if shown.is_empty() { String::new() } else { format!(" at `{shown}`") };
-        MachineError { file: self.file.into(), line, text: format!("{text}{at}; see docs/machine-files.md") }
+        let shown = self
+            .text
+            .lines()
+            .nth(line.saturating_sub(1))
+            .unwrap_or("")
+            .trim();
+        let at = if shown.is_empty() {
+            String::new()
+        } else {
+            format!(" at `{shown}`")
+        };
+        MachineError {
+            file: self.file.into(),
+            line,
+            text: format!("{text}{at}; see docs/machine-files.md"),
+        }
     }
 
     fn line(&self, offset: usize) -> usize {
-        self.text.get(..offset).map_or(0, |before| before.matches('\n').count() + 1)
+        self.text
+            .get(..offset)
+            .map_or(0, |before| before.matches('\n').count() + 1)
     }
 
     /// An error at the line of a key within a part of the file.
     fn error(&self, part: &Range<usize>, key: &str, text: impl Into<String>) -> MachineError {
-        let lines = self.text.get(part.clone()).unwrap_or("").lines().enumerate();
-        let starts =
-            |line: &str| line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
-        let within = lines.into_iter().find(|(_, line)| starts(line)).map_or(0, |(line, _)| line);
+        let lines = self
+            .text
+            .get(part.clone())
+            .unwrap_or("")
+            .lines()
+            .enumerate();
+        let starts = |line: &str| {
+            line.trim_start()
+                .strip_prefix(key)
+                .is_some_and(|rest| rest.trim_start().starts_with('='))
+        };
+        let within = lines
+            .into_iter()
+            .find(|(_, line)| starts(line))
+            .map_or(0, |(line, _)| line);
         MachineError {
             file: self.file.into(),
             line: self.line(part.start) + within,
@@ -353,23 +412,40 @@ impl Source<'_> {
         }
     }
 
-    fn range(&self, part: &Range<usize>, key: &str, value: f64, min: f64, max: f64) -> Result<(), MachineError> {
+    fn range(
+        &self,
+        part: &Range<usize>,
+        key: &str,
+        value: f64,
+        min: f64,
+        max: f64,
+    ) -> Result<(), MachineError> {
         if value >= min && value <= max {
             return Ok(());
         }
-        Err(self.error(part, key, format!("must be {min} to {max} in the unit of its name, got {value}")))
+        Err(self.error(
+            part,
+            key,
+            format!("must be {min} to {max} in the unit of its name, got {value}"),
+        ))
     }
 
     fn bus(&self, part: &Range<usize>, bus: Bus) -> Result<(), MachineError> {
         let rates = match bus {
             Bus::Classic { bit_rate } => vec![("bit_rate", bit_rate, 1_000_000)],
-            Bus::Fd { nominal_rate, data_rate } => {
-                vec![("nominal_rate", nominal_rate, 1_000_000), ("data_rate", data_rate, 8_000_000)]
+            Bus::Fd {
+                nominal_rate,
+                data_rate,
+            } => {
+                vec![
+                    ("nominal_rate", nominal_rate, 1_000_000),
+                    ("data_rate", data_rate, 8_000_000),
+                ]
             }
         };
-        rates
-            .into_iter()
-            .try_for_each(|(key, rate, max)| self.range(part, key, f64::from(rate), 10_000.0, f64::from(max)))
+        rates.into_iter().try_for_each(|(key, rate, max)| {
+            self.range(part, key, f64::from(rate), 10_000.0, f64::from(max))
+        })
     }
 
     fn axis(
@@ -384,11 +460,19 @@ impl Source<'_> {
             Some(like) => self.modelled(part, own, like, all)?,
         };
         let part = &self.span_of(own.like.as_ref(), part, all);
-        let missing = |key: &str| self.error(part, "name", format!("axis {} lacks [axis.{key}]", own.name));
+        let missing = |key: &str| {
+            self.error(
+                part,
+                "name",
+                format!("axis {} lacks [axis.{key}]", own.name),
+            )
+        };
         let mechanics = model.mechanics.ok_or_else(|| missing("mechanics"))?;
         let encoders = model.encoders.ok_or_else(|| missing("encoders"))?;
         let actuator = model.actuator.ok_or_else(|| missing("actuator"))?;
-        let actual = model.actual.ok_or_else(|| missing("actual.sliding] and [axis.actual.friction"))?;
+        let actual = model
+            .actual
+            .ok_or_else(|| missing("actual.sliding] and [axis.actual.friction"))?;
         let limits = model.limits.ok_or_else(|| missing("limits"))?;
         let gains = model.gains.ok_or_else(|| missing("gains"))?;
         let declared = model.declared.ok_or_else(|| missing("declared"))?;
@@ -397,7 +481,13 @@ impl Source<'_> {
         self.check_drive(part, &encoders, &actuator, &limits, &gains)?;
         self.check_sub_step(part, &mechanics, &actual.friction)?;
         self.check_increments(part, &mechanics, &encoders, &limits)?;
-        let mounting = self.mounting(part, &mechanics, &encoders, &limits, (model.brake, model.stops))?;
+        let mounting = self.mounting(
+            part,
+            &mechanics,
+            &encoders,
+            &limits,
+            (model.brake, model.stops),
+        )?;
         self.check_declared(part, &declared)?;
         Ok(MachineAxis {
             name: own.name.clone(),
@@ -417,9 +507,16 @@ impl Source<'_> {
         like: &str,
         all: &[toml::Spanned<AxisForm>],
     ) -> Result<AxisForm, MachineError> {
-        let model = all.iter().map(toml::Spanned::get_ref).find(|axis| axis.name == like && axis.like.is_none());
+        let model = all
+            .iter()
+            .map(toml::Spanned::get_ref)
+            .find(|axis| axis.name == like && axis.like.is_none());
         let Some(model) = model else {
-            return Err(self.error(part, "like", format!("there is no axis \"{like}\" with tables of its own")));
+            return Err(self.error(
+                part,
+                "like",
+                format!("there is no axis \"{like}\" with tables of its own"),
+            ));
         };
         let own = own.clone();
         Ok(AxisForm {
@@ -436,8 +533,14 @@ impl Source<'_> {
         })
     }
 
-    /// Part of the file in which to look for a key: from the axis (or its model) to the next `[[axis]]`.
-    fn span_of(&self, like: Option<&String>, own: &Range<usize>, all: &[toml::Spanned<AxisForm>]) -> Range<usize> {
+    /// Part of the file in which to look for a key: from the axis (or its model) to the next
+    /// `[[axis]]`.
+    fn span_of(
+        &self,
+        like: Option<&String>,
+        own: &Range<usize>,
+        all: &[toml::Spanned<AxisForm>],
+    ) -> Range<usize> {
         let model = all.iter().find(|axis| Some(&axis.get_ref().name) == like);
         let start = model.map_or(own.start, |axis| axis.span().start);
         let end = self
@@ -448,12 +551,34 @@ impl Source<'_> {
         start..end
     }
 
-    fn check_mechanics(&self, part: &Range<usize>, form: &MechanicsForm) -> Result<(), MachineError> {
+    fn check_mechanics(
+        &self,
+        part: &Range<usize>,
+        form: &MechanicsForm,
+    ) -> Result<(), MachineError> {
         self.range(part, "lead_m_per_rev", form.lead_m_per_rev, 1.0e-4, 1.0)?;
-        self.range(part, "motor_inertia_kg", form.motor_inertia_kg, 1.0e-3, 1.0e6)?;
+        self.range(
+            part,
+            "motor_inertia_kg",
+            form.motor_inertia_kg,
+            1.0e-3,
+            1.0e6,
+        )?;
         self.range(part, "table_mass_kg", form.table_mass_kg, 1.0e-3, 1.0e6)?;
-        self.range(part, "screw_stiffness_n_per_m", form.screw_stiffness_n_per_m, 1.0e4, 1.0e12)?;
-        self.range(part, "screw_damping_n_s_per_m", form.screw_damping_n_s_per_m, 0.0, 1.0e7)?;
+        self.range(
+            part,
+            "screw_stiffness_n_per_m",
+            form.screw_stiffness_n_per_m,
+            1.0e4,
+            1.0e12,
+        )?;
+        self.range(
+            part,
+            "screw_damping_n_s_per_m",
+            form.screw_damping_n_s_per_m,
+            0.0,
+            1.0e7,
+        )?;
         self.range(part, "backlash_m", form.backlash_m, 0.0, 0.01)
     }
 
@@ -461,27 +586,81 @@ impl Source<'_> {
         let sliding = &form.sliding;
         self.range(part, "coulomb_n", sliding.coulomb_n, 0.0, 1.0e6)?;
         self.range(part, "static_n", sliding.static_n, sliding.coulomb_n, 1.0e6)?;
-        self.range(part, "stribeck_velocity_m_per_s", sliding.stribeck_velocity_m_per_s, 1.0e-6, 1.0)?;
-        self.range(part, "viscous_n_s_per_m", sliding.viscous_n_s_per_m, 0.0, 1.0e7)?;
-        self.range(part, "coulomb_asymmetry", sliding.coulomb_asymmetry, -0.9, 0.9)?;
-        self.range(part, "viscous_asymmetry", sliding.viscous_asymmetry, -0.9, 0.9)?;
-        self.range(part, "quadratic_drag_n_s2_per_m2", sliding.quadratic_drag_n_s2_per_m2, 0.0, 1.0e7)?;
+        self.range(
+            part,
+            "stribeck_velocity_m_per_s",
+            sliding.stribeck_velocity_m_per_s,
+            1.0e-6,
+            1.0,
+        )?;
+        self.range(
+            part,
+            "viscous_n_s_per_m",
+            sliding.viscous_n_s_per_m,
+            0.0,
+            1.0e7,
+        )?;
+        self.range(
+            part,
+            "coulomb_asymmetry",
+            sliding.coulomb_asymmetry,
+            -0.9,
+            0.9,
+        )?;
+        self.range(
+            part,
+            "viscous_asymmetry",
+            sliding.viscous_asymmetry,
+            -0.9,
+            0.9,
+        )?;
+        self.range(
+            part,
+            "quadratic_drag_n_s2_per_m2",
+            sliding.quadratic_drag_n_s2_per_m2,
+            0.0,
+            1.0e7,
+        )?;
         self.check_effects(part, &form.effects)?;
         match &form.friction {
             Law::Coulomb => Ok(()),
-            Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m } => {
+            Law::LuGre {
+                bristle_stiffness_n_per_m,
+                bristle_damping_n_s_per_m,
+            } => {
                 self.range(part, "coulomb_n", sliding.coulomb_n, 1.0e-3, 1.0e6)?;
-                self.range(part, "bristle_stiffness_n_per_m", *bristle_stiffness_n_per_m, 1.0e3, 1.0e12)?;
-                self.range(part, "bristle_damping_n_s_per_m", *bristle_damping_n_s_per_m, 0.0, 1.0e7)
+                self.range(
+                    part,
+                    "bristle_stiffness_n_per_m",
+                    *bristle_stiffness_n_per_m,
+                    1.0e3,
+                    1.0e12,
+                )?;
+                self.range(
+                    part,
+                    "bristle_damping_n_s_per_m",
+                    *bristle_damping_n_s_per_m,
+                    0.0,
+                    1.0e7,
+                )
             }
-            Law::MaxwellSlip { stiffness_n_per_m, share } => self.check_maxwell(part, stiffness_n_per_m, share),
+            Law::MaxwellSlip {
+                stiffness_n_per_m,
+                share,
+            } => self.check_maxwell(part, stiffness_n_per_m, share),
         }
     }
 
     fn check_effects(&self, part: &Range<usize>, effects: &Effects) -> Result<(), MachineError> {
         self.range(part, "delay_s", effects.delay_s, 0.0, 1.0e-3)?;
         self.range(part, "offset_n", effects.offset_n, -1.0e6, 1.0e6)?;
-        self.range(part, "torque_saturation_per_n", effects.torque_saturation_per_n, 0.0, 1.0)?;
+        self.range(
+            part,
+            "torque_saturation_per_n",
+            effects.torque_saturation_per_n,
+            0.0,
+            1.0,
+        )?;
         self.range(
             part,
             "position_dependent_friction_per_m",
@@ -515,10 +694,16 @@ impl Source<'_> {
         let (m1, m2) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
         let bristles = match friction {
             Law::Coulomb => 0.0,
-            Law::LuGre { bristle_stiffness_n_per_m, .. } => *bristle_stiffness_n_per_m,
-            Law::MaxwellSlip { stiffness_n_per_m, .. } => stiffness_n_per_m.iter().sum(),
+            Law::LuGre {
+                bristle_stiffness_n_per_m,
+                ..
+            } => *bristle_stiffness_n_per_m,
+            Law::MaxwellSlip {
+                stiffness_n_per_m, ..
+            } => stiffness_n_per_m.iter().sum(),
         };
-        let stiffest = |mass: f64| 0.25 * mass / (crate::axis::SUB_STEP_S * crate::axis::SUB_STEP_S);
+        let stiffest =
+            |mass: f64| 0.25 * mass / (crate::axis::SUB_STEP_S * crate::axis::SUB_STEP_S);
         let screw = stiffest(m1 * m2 / (m1 + m2));
         if mechanics.screw_stiffness_n_per_m > screw {
             return Err(self.error(
@@ -540,8 +725,8 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// The feedback carries the low 32 bits of the increments and the drive unwraps them: one cycle at the velocity
-    /// limit, 20 ms at most, has to stay below half of that.
+    /// The feedback carries the low 32 bits of the increments and the drive unwraps them: one cycle
+    /// at the velocity limit, 20 ms at most, has to stay below half of that.
     fn check_increments(
         &self,
         part: &Range<usize>,
@@ -570,11 +755,19 @@ impl Source<'_> {
         (brake, stops): (Option<BrakeParameters>, Option<StopsForm>),
     ) -> Result<Mounting, MachineError> {
         self.range(part, "gravity_n", mechanics.gravity_n, -1.0e6, 1.0e6)?;
-        self.range(part, "start_m", mechanics.start_m, -limits.travel_m, limits.travel_m)?;
+        self.range(
+            part,
+            "start_m",
+            mechanics.start_m,
+            -limits.travel_m,
+            limits.travel_m,
+        )?;
         self.range(part, "motor_zero_m", encoders.motor_zero_m, -100.0, 100.0)?;
         self.range(part, "load_zero_m", encoders.load_zero_m, -100.0, 100.0)?;
         brake.map_or(Ok(()), |brake| self.check_brake(part, &brake))?;
-        stops.map_or(Ok(()), |stops| self.check_stops(part, &stops, mechanics, limits))?;
+        stops.map_or(Ok(()), |stops| {
+            self.check_stops(part, &stops, mechanics, limits)
+        })?;
         Ok(Mounting {
             gravity_n: mechanics.gravity_n,
             brake,
@@ -585,15 +778,19 @@ impl Source<'_> {
         })
     }
 
-    fn check_brake(&self, part: &Range<usize>, brake: &BrakeParameters) -> Result<(), MachineError> {
+    fn check_brake(
+        &self,
+        part: &Range<usize>,
+        brake: &BrakeParameters,
+    ) -> Result<(), MachineError> {
         self.range(part, "rated_force_n", brake.rated_force_n, 1.0e-3, 1.0e6)?;
         self.range(part, "open_s", brake.open_s, 0.0, 1.0)?;
         self.range(part, "close_s", brake.close_s, 0.0, 1.0)?;
         self.range(part, "rise_s", brake.rise_s, 0.0, brake.close_s)
     }
 
-    /// The sub-step has to resolve the stop as well: ω · dt below one half, and no more than half of the velocity
-    /// damped away in one.
+    /// The sub-step has to resolve the stop as well: ω · dt below one half, and no more than half
+    /// of the velocity damped away in one.
     fn check_stops(
         &self,
         part: &Range<usize>,
@@ -602,20 +799,51 @@ impl Source<'_> {
         limits: &Limits,
     ) -> Result<(), MachineError> {
         let (mass, dt_s) = (mechanics.table_mass_kg, crate::axis::SUB_STEP_S);
-        self.range(part, "stop_m", form.position_m(limits.travel_m), mechanics.start_m.abs(), 10.1)?;
+        self.range(
+            part,
+            "stop_m",
+            form.position_m(limits.travel_m),
+            mechanics.start_m.abs(),
+            10.1,
+        )?;
         let stiffest = 0.25 * mass / (dt_s * dt_s);
-        self.range(part, "stop_stiffness_n_per_m", form.stop_stiffness_n_per_m, 1.0e3, stiffest)?;
-        self.range(part, "stop_damping_n_s_per_m", form.stop_damping_n_s_per_m, 0.0, 0.5 * mass / dt_s)
+        self.range(
+            part,
+            "stop_stiffness_n_per_m",
+            form.stop_stiffness_n_per_m,
+            1.0e3,
+            stiffest,
+        )?;
+        self.range(
+            part,
+            "stop_damping_n_s_per_m",
+            form.stop_damping_n_s_per_m,
+            0.0,
+            0.5 * mass / dt_s,
+        )
     }
 
-    fn check_maxwell(&self, part: &Range<usize>, stiffness: &[f64], share: &[f64]) -> Result<(), MachineError> {
+    fn check_maxwell(
+        &self,
+        part: &Range<usize>,
+        stiffness: &[f64],
+        share: &[f64],
+    ) -> Result<(), MachineError> {
         if stiffness.is_empty() || stiffness.len() != share.len() {
-            return Err(self.error(part, "share", "must have as many elements as stiffness_n_per_m, at least one"));
+            return Err(self.error(
+                part,
+                "share",
+                "must have as many elements as stiffness_n_per_m, at least one",
+            ));
         }
-        if (share.iter().sum::<f64>() - 1.0).abs() > 1.0e-6 || share.iter().any(|share| *share <= 0.0) {
+        if (share.iter().sum::<f64>() - 1.0).abs() > 1.0e-6
+            || share.iter().any(|share| *share <= 0.0)
+        {
             return Err(self.error(part, "share", "the shares must be positive and add up to 1"));
         }
-        stiffness.iter().try_for_each(|k| self.range(part, "stiffness_n_per_m", *k, 1.0e3, 1.0e12))
+        stiffness
+            .iter()
+            .try_for_each(|k| self.range(part, "stiffness_n_per_m", *k, 1.0e3, 1.0e12))
     }
 
     fn check_drive(
@@ -626,27 +854,96 @@ impl Source<'_> {
         limits: &Limits,
         gains: &Gains,
     ) -> Result<(), MachineError> {
-        self.range(part, "motor_counts_per_rev", f64::from(encoders.motor_counts_per_rev), 100.0, 1.0e8)?;
-        self.range(part, "load_resolution_m", encoders.load_resolution_m, 1.0e-10, 1.0e-4)?;
-        self.range(part, "current_loop_time_constant_s", actuator.current_loop_time_constant_s, 0.0, 0.01)?;
+        self.range(
+            part,
+            "motor_counts_per_rev",
+            f64::from(encoders.motor_counts_per_rev),
+            100.0,
+            1.0e8,
+        )?;
+        self.range(
+            part,
+            "load_resolution_m",
+            encoders.load_resolution_m,
+            1.0e-10,
+            1.0e-4,
+        )?;
+        self.range(
+            part,
+            "current_loop_time_constant_s",
+            actuator.current_loop_time_constant_s,
+            0.0,
+            0.01,
+        )?;
         self.range(part, "force_limit_n", actuator.force_limit_n, 1.0e-3, 1.0e6)?;
-        self.range(part, "force_noise_n", actuator.force_noise_n, 0.0, actuator.force_limit_n)?;
-        self.range(part, "force_record_noise_n", actuator.force_record_noise_n, 0.0, actuator.force_limit_n)?;
-        self.range(part, "velocity_m_per_s", limits.velocity_m_per_s, 1.0e-4, 5.0)?;
-        self.range(part, "acceleration_m_per_s2", limits.acceleration_m_per_s2, 1.0e-3, 200.0)?;
+        self.range(
+            part,
+            "force_noise_n",
+            actuator.force_noise_n,
+            0.0,
+            actuator.force_limit_n,
+        )?;
+        self.range(
+            part,
+            "force_record_noise_n",
+            actuator.force_record_noise_n,
+            0.0,
+            actuator.force_limit_n,
+        )?;
+        self.range(
+            part,
+            "velocity_m_per_s",
+            limits.velocity_m_per_s,
+            1.0e-4,
+            5.0,
+        )?;
+        self.range(
+            part,
+            "acceleration_m_per_s2",
+            limits.acceleration_m_per_s2,
+            1.0e-3,
+            200.0,
+        )?;
         self.range(part, "travel_m", limits.travel_m, 1.0e-3, 10.0)?;
-        self.range(part, "position_gain_per_s", gains.position_gain_per_s, 0.0, 1000.0)?;
-        self.range(part, "velocity_bandwidth_hz", gains.velocity_bandwidth_hz, 0.1, 1000.0)?;
-        self.range(part, "velocity_integral_hz", gains.velocity_integral_hz, 0.0, 500.0)?;
+        self.range(
+            part,
+            "position_gain_per_s",
+            gains.position_gain_per_s,
+            0.0,
+            1000.0,
+        )?;
+        self.range(
+            part,
+            "velocity_bandwidth_hz",
+            gains.velocity_bandwidth_hz,
+            0.1,
+            1000.0,
+        )?;
+        self.range(
+            part,
+            "velocity_integral_hz",
+            gains.velocity_integral_hz,
+            0.0,
+            500.0,
+        )?;
         self.range(part, "velocity_filter", gains.velocity_filter, 0.01, 1.0)
     }
 
     fn check_declared(&self, part: &Range<usize>, form: &DeclaredForm) -> Result<(), MachineError> {
-        match form.effects.iter().find(|name| !DECLARABLE.contains(&name.as_str())) {
+        match form
+            .effects
+            .iter()
+            .find(|name| !DECLARABLE.contains(&name.as_str()))
+        {
             None => Ok(()),
-            Some(name) => {
-                Err(self.error(part, "effects", format!("unknown effect \"{name}\"; known: {}", DECLARABLE.join(", "))))
-            }
+            Some(name) => Err(self.error(
+                part,
+                "effects",
+                format!(
+                    "unknown effect \"{name}\"; known: {}",
+                    DECLARABLE.join(", ")
+                ),
+            )),
         }
     }
 }
@@ -686,7 +983,9 @@ mod tests {
     fn error_of(replace: &str, by: &str) -> String {
         let text = Machine::reference_text();
         assert!(text.contains(replace), "{replace}");
-        Machine::parse("m.toml", &text.replacen(replace, by, 1)).unwrap_err().to_string()
+        Machine::parse("m.toml", &text.replacen(replace, by, 1))
+            .unwrap_err()
+            .to_string()
     }
 
     #[test]
@@ -694,46 +993,107 @@ mod tests {
         let machine = Machine::reference();
         assert_eq!(machine.axes.len(), 2);
         assert_eq!(machine.axes[0].actual, machine.axes[1].actual);
-        assert_eq!((machine.axes_per_bus(), machine.bus_load_per_mille()), (1, 488));
+        assert_eq!(
+            (machine.axes_per_bus(), machine.bus_load_per_mille()),
+            (1, 488)
+        );
     }
 
     #[test]
     fn a_vertical_axis_says_so_in_its_file() {
         let text = Machine::reference_text()
-            .replacen("backlash_m = 0.0", "backlash_m = 0.0\ngravity_n = -2500.0\nstart_m = 0.1", 1)
-            .replacen("[axis.actuator]", "[axis.brake]\nrated_force_n = 4000.0\n[axis.stops]\n[axis.actuator]", 1);
+            .replacen(
+                "backlash_m = 0.0",
+                "backlash_m = 0.0\ngravity_n = -2500.0\nstart_m = 0.1",
+                1,
+            )
+            .replacen(
+                "[axis.actuator]",
+                "[axis.brake]\nrated_force_n = 4000.0\n[axis.stops]\n[axis.actuator]",
+                1,
+            );
         let machine = Machine::parse("m.toml", &text).unwrap();
         let mounting = machine.axes[0].actual.mounting;
-        let brake = BrakeParameters { rated_force_n: 4000.0, open_s: 0.030, close_s: 0.040, rise_s: 0.0 };
-        assert_eq!((mounting.gravity_n, mounting.start_m, mounting.brake), (-2500.0, 0.1, Some(brake)));
-        assert_eq!(mounting.stops.map(|stops| stops.position_m), Some(0.255), "5 mm behind the travel");
+        let brake = BrakeParameters {
+            rated_force_n: 4000.0,
+            open_s: 0.030,
+            close_s: 0.040,
+            rise_s: 0.0,
+        };
+        assert_eq!(
+            (mounting.gravity_n, mounting.start_m, mounting.brake),
+            (-2500.0, 0.1, Some(brake))
+        );
+        assert_eq!(
+            mounting.stops.map(|stops| stops.position_m),
+            Some(0.255),
+            "5 mm behind the travel"
+        );
         assert_eq!(machine.axes[1].actual.mounting, mounting, "Y is like X");
-        assert_eq!(Machine::reference().axes[0].actual.mounting, Mounting::default());
+        assert_eq!(
+            Machine::reference().axes[0].actual.mounting,
+            Mounting::default()
+        );
     }
 
     #[test]
     fn a_brake_or_a_stop_that_cannot_be_is_an_error_with_key_and_line() {
         let with = |lines: &str| error_of("[axis.actuator]", &format!("{lines}\n[axis.actuator]"));
-        let at = Machine::reference_text().lines().position(|line| line == "[axis.actuator]").unwrap() + 1;
+        let at = Machine::reference_text()
+            .lines()
+            .position(|line| line == "[axis.actuator]")
+            .unwrap()
+            + 1;
         let brake = with("[axis.brake]\nrated_force_n = 0.0");
-        assert!(brake.starts_with(&format!("m.toml:{}: rated_force_n: must be 0.001 to", at + 1)), "{brake}");
-        assert!(with("[axis.brake]\nrated_force_n = 1.0\nrise_s = 0.05").contains("rise_s: must be 0 to 0.04"));
-        assert!(with("[axis.brake]\nrated_force_n = 1.0\nopens_s = 0.05").contains("unknown field `opens_s`"));
+        assert!(
+            brake.starts_with(&format!(
+                "m.toml:{}: rated_force_n: must be 0.001 to",
+                at + 1
+            )),
+            "{brake}"
+        );
+        assert!(
+            with("[axis.brake]\nrated_force_n = 1.0\nrise_s = 0.05")
+                .contains("rise_s: must be 0 to 0.04")
+        );
+        assert!(
+            with("[axis.brake]\nrated_force_n = 1.0\nopens_s = 0.05")
+                .contains("unknown field `opens_s`")
+        );
         assert!(with("[axis.brake]").contains("missing field `rated_force_n`"));
-        assert!(with("[axis.stops]\nstop_stiffness_n_per_m = 1e12").contains(": stop_stiffness_n_per_m: must be 1000"));
-        assert!(error_of("backlash_m = 0.0", "backlash_m = 0.0\nstart_m = 0.3").contains("start_m: must be -0.25"));
-        assert!(error_of("backlash_m = 0.0", "backlash_m = 0.0\ngravity_n = 1e7").contains("gravity_n: must be"));
-        assert!(error_of("1048576", "1048576\nload_zero_m = 1e3").contains("load_zero_m: must be -100 to 100"));
+        assert!(
+            with("[axis.stops]\nstop_stiffness_n_per_m = 1e12")
+                .contains(": stop_stiffness_n_per_m: must be 1000")
+        );
+        assert!(
+            error_of("backlash_m = 0.0", "backlash_m = 0.0\nstart_m = 0.3")
+                .contains("start_m: must be -0.25")
+        );
+        assert!(
+            error_of("backlash_m = 0.0", "backlash_m = 0.0\ngravity_n = 1e7")
+                .contains("gravity_n: must be")
+        );
+        assert!(
+            error_of("1048576", "1048576\nload_zero_m = 1e3")
+                .contains("load_zero_m: must be -100 to 100")
+        );
     }
 
     #[test]
     fn errors_name_key_and_line() {
-        let line =
-            |needle: &str| Machine::reference_text().lines().position(|line| line.starts_with(needle)).unwrap() + 1;
+        let line = |needle: &str| {
+            Machine::reference_text()
+                .lines()
+                .position(|line| line.starts_with(needle))
+                .unwrap()
+                + 1
+        };
         let at = line("table_mass_kg");
         assert_eq!(
             error_of("table_mass_kg = 300.0", "table_mass_kg = -3.0"),
-            format!("m.toml:{at}: table_mass_kg: must be 0.001 to 1000000 in the unit of its name, got -3")
+            format!(
+                "m.toml:{at}: table_mass_kg: must be 0.001 to 1000000 in the unit of its name, got -3"
+            )
         );
         assert!(
             error_of("table_mass_kg = 300.0", "table_mass = 300.0")
@@ -741,6 +1101,8 @@ mod tests {
         );
         assert!(error_of("\"offset\"", "\"ofset\"").contains("unknown effect \"ofset\""));
         assert!(error_of("like = \"X\"", "like = \"Z\"").contains("there is no axis \"Z\""));
-        assert!(error_of("coulomb_n = 400.0", "coulomb_n = \"400\"").contains("coulomb_n = \"400\""));
+        assert!(
+            error_of("coulomb_n = 400.0", "coulomb_n = \"400\"").contains("coulomb_n = \"400\"")
+        );
     }
 }

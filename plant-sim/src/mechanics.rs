@@ -1,15 +1,16 @@
 //! Two masses on a ball screw, everything expressed at the table in SI units.
 //!
 //! ```text
-//! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; the brake is on the shaft
+//! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; brake on the shaft
 //! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table
-//! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: only pushing where there is a gap, and damping only in contact
+//! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: it only pushes where there is
+//!                                                     a gap, and damps in contact only
 //! ```
 //!
-//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the friction taken
-//! implicitly. The screw is integrated at second order, the bristles' coefficients lag by half a sub-step and make the
-//! whole first order: 6·10⁻⁵ of the way at the sub-step that is used (`tests/mechanics.rs`, against a high-accuracy
-//! integration).
+//! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the
+//! friction taken implicitly. The screw is integrated at second order, the bristles' coefficients
+//! lag by half a sub-step and make the whole first order: 6·10⁻⁵ of the way at the sub-step that is
+//! used (`tests/mechanics.rs`, against a high-accuracy integration).
 
 use crate::friction::{Friction, Table};
 
@@ -75,14 +76,18 @@ impl Mechanics {
     fn kick(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, dt_s: f64) {
         let deflection = self.deflection_m(motion);
         let in_contact = self.backlash_m == 0.0 || deflection != 0.0;
-        let damping = if in_contact { self.screw_damping_n_s_per_m } else { 0.0 };
+        let damping = if in_contact {
+            self.screw_damping_n_s_per_m
+        } else {
+            0.0
+        };
         let before = *motion;
         let can_separate = self.backlash_m > 0.0 && in_contact;
         let bristles = can_separate.then(|| friction.state());
         self.solve(motion, friction, drive, deflection, damping, dt_s);
         if let Some(bristles) = bristles {
-            let relative =
-                mean(before.motor_m_per_s, motion.motor_m_per_s) - mean(before.table_m_per_s, motion.table_m_per_s);
+            let relative = mean(before.motor_m_per_s, motion.motor_m_per_s)
+                - mean(before.table_m_per_s, motion.table_m_per_s);
             let force = self.screw_stiffness_n_per_m * deflection + damping * relative;
             if force * deflection < 0.0 {
                 // A gap cannot pull: separate without force.
@@ -93,7 +98,8 @@ impl Mechanics {
         }
     }
 
-    /// Velocities after the kick: damping trapezoidal, friction as its law says, the brake as [`Kick::braked`] does.
+    /// Velocities after the kick: damping trapezoidal, friction as its law says, the brake as
+    /// [`Kick::braked`] does.
     fn solve(
         &self,
         motion: &mut Motion,
@@ -110,7 +116,15 @@ impl Mechanics {
         // m1 v1' = p1 − half (v1' − v2'),  m2 v2' = p2 + half (v1' − v2') − friction
         let p1 = m1 * motion.motor_m_per_s + dt_s * (drive.motor_n - spring) - half * relative;
         let p2 = m2 * motion.table_m_per_s + dt_s * (spring + drive.table_n) + half * relative;
-        let kick = Kick { m1, m2, p1, p2, half, factor: drive.friction_factor, dt_s };
+        let kick = Kick {
+            m1,
+            m2,
+            p1,
+            p2,
+            half,
+            factor: drive.friction_factor,
+            dt_s,
+        };
         if drive.brake_n == 0.0 {
             kick.free(motion, friction);
         } else {
@@ -119,7 +133,8 @@ impl Mechanics {
     }
 }
 
-/// One sub-step's equations for the two velocities: masses, momenta with everything explicit in them, implicit damping.
+/// One sub-step's equations for the two velocities: masses, momenta with everything explicit in
+/// them, implicit damping.
 #[derive(Clone, Copy)]
 struct Kick {
     m1: f64,
@@ -132,17 +147,26 @@ struct Kick {
 }
 
 impl Kick {
-    /// Eliminating the motor leaves one equation for the table with an effective mass and a free velocity.
+    /// Eliminating the motor leaves one equation for the table with an effective mass and a free
+    /// velocity.
     fn free(self, motion: &mut Motion, friction: &mut Friction) {
-        let Self { m1, m2, p1, p2, half, .. } = self;
+        let Self {
+            m1,
+            m2,
+            p1,
+            p2,
+            half,
+            ..
+        } = self;
         let mass = m2 + half * m1 / (m1 + half);
         let free = (p2 + half * p1 / (m1 + half)) / mass;
         motion.table_m_per_s = friction.advance(self.table(motion.table_m_per_s, free, mass));
         motion.motor_m_per_s = (p1 + half * motion.table_m_per_s) / (m1 + half);
     }
 
-    /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its force; else it slips
-    /// against that force. The motor's velocity grows with its momentum, so a slipping shaft keeps its direction.
+    /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its
+    /// force; else it slips against that force. The motor's velocity grows with its momentum, so a
+    /// slipping shaft keeps its direction.
     fn braked(self, motion: &mut Motion, friction: &mut Friction, brake_n: f64) {
         let bristles = friction.state();
         let mass = self.m2 + self.half;
@@ -155,11 +179,21 @@ impl Kick {
             return;
         }
         friction.restore(bristles);
-        Self { p1: self.p1 - most * stopping.signum(), ..self }.free(motion, friction);
+        Self {
+            p1: self.p1 - most * stopping.signum(),
+            ..self
+        }
+        .free(motion, friction);
     }
 
     fn table(&self, velocity: f64, free_velocity: f64, mass_kg: f64) -> Table {
-        Table { velocity, free_velocity, mass_kg, dt_s: self.dt_s, factor: self.factor }
+        Table {
+            velocity,
+            free_velocity,
+            mass_kg,
+            dt_s: self.dt_s,
+            factor: self.factor,
+        }
     }
 }
 

@@ -1,25 +1,28 @@
 //! The plant as a CAN node, sans-I/O: a CiA 402 torque drive with encoders and a brake.
 //!
-//! SYNC k: integrate one period with the torque that is due; torque k − 1 becomes active; read the encoders, send
-//! feedback k. Torque k comes in during the cycle and becomes active with SYNC k + 1; that is the one cycle of
-//! transport delay of the loop.
+//! SYNC k: integrate one period with the torque that is due; torque k − 1 becomes active; read the
+//! encoders, send feedback k. Torque k comes in during the cycle and becomes active with SYNC k +
+//! 1; that is the one cycle of transport delay of the loop.
 //!
 //! A frame comes or does not:
 //!
-//! - SYNC k + 1 does not come: the node's own timer begins the cycle ([`bus_time`]), or a torque frame with counter k +
-//!   1, which shows that it is on. The axis moves on and feedback k + 1 is sent.
-//! - Torque k does not come: the last one is held, for [`TORQUE_MISSES_ALLOWED`] cycles in a row ([`torque`]); then
-//!   torque zero, brake, and a fault: `TorqueMissing`, or `SyncMissing` where SYNC is gone as well. While SYNC alone is
-//!   gone, torque goes on to act as long as the servo sends it: it is ramping down.
+//! - SYNC k + 1 does not come: the node's own timer begins the cycle ([`bus_time`]), or a torque
+//!   frame with counter k + 1, which shows that it is on. The axis moves on and feedback k + 1 is
+//!   sent.
+//! - Torque k does not come: the last one is held, for [`TORQUE_MISSES_ALLOWED`] cycles in a row
+//!   ([`torque`]); then torque zero, brake, and a fault: `TorqueMissing`, or `SyncMissing` where
+//!   SYNC is gone as well. While SYNC alone is gone, torque goes on to act as long as the servo
+//!   sends it: it is ramping down.
 //! - Nobody commands torque, SYNC is gone and the axis stands: the timer stops until the next SYNC.
 //!
-//! The states of the power stage are in [`stage`]. What a control word changes (torque zero, brake) counts from the
-//! begin of the cycle in which it came.
+//! The states of the power stage are in [`stage`]. What a control word changes (torque zero, brake)
+//! counts from the begin of the cycle in which it came.
 //!
-//! NMT stop, pre-operational and reset wait until torque no longer acts. A reset is the node's, not the machine's: an
-//! axis that moves goes on moving, its encoders counting and its noise going on, and so does one whose reset had to
-//! wait. Only an axis that stands without torque when the reset comes starts over from its start position, with its
-//! noise from the beginning, so that a run that begins with a reset is the same run every time.
+//! NMT stop, pre-operational and reset wait until torque no longer acts. A reset is the node's, not
+//! the machine's: an axis that moves goes on moving, its encoders counting and its noise going on,
+//! and so does one whose reset had to wait. Only an axis that stands without torque when the reset
+//! comes starts over from its start position, with its noise from the beginning, so that a run that
+//! begins with a reset is the same run every time.
 
 use protocol::cob::{AxisIds, FrameKind};
 use protocol::counter::SYNC_OVERFLOW;
@@ -44,17 +47,18 @@ use bus_time::BusTime;
 use stage::PowerStage;
 use torque::TorqueInput;
 
-/// An axis slower than this counts as standing, m/s: where a record counts a sample as moving, and a way of 1 µm for
-/// the reference axis to come to rest.
+/// An axis slower than this counts as standing, m/s: where a record counts a sample as moving, and
+/// a way of 1 µm for the reference axis to come to rest.
 const STANDING_M_PER_S: f64 = 1.0e-3;
-/// … for this long, so that a table which rings on its screw is not caught at its turning point: a period of 50 Hz,
-/// below the resonance of any screw drive.
+/// … for this long, so that a table which rings on its screw is not caught at its turning point: a
+/// period of 50 Hz, below the resonance of any screw drive.
 const STANDING_S: f64 = 0.020;
 
 /// Where a node puts its frames.
 type Send<'a> = &'a mut dyn FnMut(CanFrame);
 
-/// Motion of one cycle as it truly was, for instruments that look at the machine from outside (a ballbar).
+/// Motion of one cycle as it truly was, for instruments that look at the machine from outside (a
+/// ballbar).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
     /// Position of the table, m.
@@ -101,7 +105,11 @@ impl PlantNode {
     /// A plant at rest.
     #[must_use]
     pub fn new(ids: AxisIds, parameters: AxisParameters, period_s: f64, seed: u64) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0.1 to 20 ms")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "0.1 to 20 ms"
+        )]
         let period_us = (period_s * 1.0e6).round() as u64;
         Self {
             ids,
@@ -194,7 +202,8 @@ impl PlantNode {
         self.stage.refuse_enable(refuses);
     }
 
-    /// For tests: the power stage loses its supply. Torque is gone at once; the fault is reported with the next cycle.
+    /// For tests: the power stage loses its supply. Torque is gone at once; the fault is reported
+    /// with the next cycle.
     pub fn drop_out(&mut self) {
         self.stage.supply(false);
         self.torque.zero();
@@ -216,14 +225,22 @@ impl PlantNode {
     }
 
     fn is_fast(&self) -> bool {
-        let Motion { motor_m_per_s, table_m_per_s, .. } = *self.axis.motion();
+        let Motion {
+            motor_m_per_s,
+            table_m_per_s,
+            ..
+        } = *self.axis.motion();
         motor_m_per_s.abs().max(table_m_per_s.abs()) > STANDING_M_PER_S
     }
 
     /// The machine goes on for one period.
     fn advance(&mut self) {
         self.axis.advance(self.torque.due_n(), self.period_s);
-        self.slow_s = if self.is_fast() { 0.0 } else { self.slow_s + self.period_s };
+        self.slow_s = if self.is_fast() {
+            0.0
+        } else {
+            self.slow_s + self.period_s
+        };
     }
 }
 
@@ -259,7 +276,10 @@ impl Station for PlantNode {
 
     fn wake_at_us(&self) -> Option<u64> {
         let heartbeat = self.time.heartbeat_due_us();
-        Some(self.timer_us().map_or(heartbeat, |timer| timer.min(heartbeat)))
+        Some(
+            self.timer_us()
+                .map_or(heartbeat, |timer| timer.min(heartbeat)),
+        )
     }
 
     fn sync_due_us(&self) -> Option<u64> {
@@ -269,9 +289,14 @@ impl Station for PlantNode {
 
 /// Cycles and time.
 impl PlantNode {
-    /// When the own timer begins a cycle: in NMT operational always, else only as long as the machine moves.
+    /// When the own timer begins a cycle: in NMT operational always, else only as long as the
+    /// machine moves.
     fn timer_us(&self) -> Option<u64> {
-        if self.is_operational() || self.moves() { self.time.timer_us() } else { None }
+        if self.is_operational() || self.moves() {
+            self.time.timer_us()
+        } else {
+            None
+        }
     }
 
     fn begin_by_timer(&mut self, now_us: u64, send: Send<'_>) {
@@ -301,7 +326,13 @@ impl PlantNode {
         }
     }
 
-    fn begin_by_sync(&mut self, before: Option<SyncCounter>, counter: SyncCounter, now_us: u64, send: Send<'_>) {
+    fn begin_by_sync(
+        &mut self,
+        before: Option<SyncCounter>,
+        counter: SyncCounter,
+        now_us: u64,
+        send: Send<'_>,
+    ) {
         self.time.begin(now_us);
         if before.is_none() {
             self.torque.forget();
@@ -317,13 +348,24 @@ impl PlantNode {
     }
 
     /// A cycle begins: the cycles before it are over, encoders are read and reported.
-    fn begin(&mut self, counter: Option<SyncCounter>, cycles_over: u8, now_us: u64, send: Send<'_>) {
+    fn begin(
+        &mut self,
+        counter: Option<SyncCounter>,
+        cycles_over: u8,
+        now_us: u64,
+        send: Send<'_>,
+    ) {
         for _ in 0..cycles_over {
             self.integrate(send);
         }
-        let Some(counter) = counter.filter(|_| self.is_operational()) else { return };
+        let Some(counter) = counter.filter(|_| self.is_operational()) else {
+            return;
+        };
         send(Message::Feedback(self.feedback(counter)).encode(self.ids));
-        if self.cycle.is_multiple_of(u32::from(PLANT_STATUS_EVERY_CYCLES)) {
+        if self
+            .cycle
+            .is_multiple_of(u32::from(PLANT_STATUS_EVERY_CYCLES))
+        {
             self.reported = None;
         }
         self.cycle = self.cycle.wrapping_add(1);
@@ -341,7 +383,14 @@ impl PlantNode {
         self.advance();
         if self.torque.close(self.stage.is_enabled()) {
             let gone = self.time.sync_is_gone();
-            self.latch(if gone { Fault::SyncMissing } else { Fault::TorqueMissing }, send);
+            self.latch(
+                if gone {
+                    Fault::SyncMissing
+                } else {
+                    Fault::TorqueMissing
+                },
+                send,
+            );
         }
         self.notice_dropout(send);
     }
@@ -367,7 +416,11 @@ impl PlantNode {
 
     /// Sends the plant status where it says something new.
     fn report(&mut self, send: Send<'_>) {
-        let now = (self.stage.status_word(self.is_operational()), self.axis.brake(), self.stage.fault());
+        let now = (
+            self.stage.status_word(self.is_operational()),
+            self.axis.brake(),
+            self.stage.fault(),
+        );
         if !self.is_operational() || self.reported == Some(now) {
             return;
         }
@@ -375,7 +428,15 @@ impl PlantNode {
         let (status, brake, fault) = now;
         #[expect(clippy::cast_possible_truncation, reason = "saturates at ±2147 N·m")]
         let torque = TorqueMicroNm((self.axis.force_n() / self.newton_per_micro_nm).round() as i32);
-        send(Message::PlantStatus(PlantStatus { status, brake, fault, torque }).encode(self.ids));
+        send(
+            Message::PlantStatus(PlantStatus {
+                status,
+                brake,
+                fault,
+                torque,
+            })
+            .encode(self.ids),
+        );
     }
 }
 

@@ -4,9 +4,9 @@
 //! F = −(K·depth + C·ẋ), never pulling            at ±position, on the table
 //! ```
 //!
-//! Units: m, N. The stop is a stiff spring with damping on one side only, taken explicitly in the middle of the drift
-//! of [`crate::mechanics`], so it takes energy out as long as the sub-step resolves it; the machine file's ranges see
-//! to that.
+//! Units: m, N. The stop is a stiff spring with damping on one side only, taken explicitly in the
+//! middle of the drift of [`crate::mechanics`], so it takes energy out as long as the sub-step
+//! resolves it; the machine file's ranges see to that.
 
 use serde::{Deserialize, Serialize};
 
@@ -87,10 +87,18 @@ mod tests {
 
     #[test]
     fn a_stop_pushes_back_and_never_pulls() {
-        let stops = Stops { position_m: 0.1, stiffness_n_per_m: 1.0e7, damping_n_s_per_m: 1.0e5 };
+        let stops = Stops {
+            position_m: 0.1,
+            stiffness_n_per_m: 1.0e7,
+            damping_n_s_per_m: 1.0e5,
+        };
         assert_eq!(stops.force_n(0.1, 0.4), 0.0);
         assert!((stops.force_n(0.101, 0.0) + 10_000.0).abs() < 1.0e-6);
         assert!((stops.force_n(-0.101, -0.1) - 20_000.0).abs() < 1.0e-6);
-        assert_eq!(stops.force_n(0.101, -0.4), 0.0, "the table leaves it faster than its spring follows");
+        assert_eq!(
+            stops.force_n(0.101, -0.4),
+            0.0,
+            "the table leaves it faster than its spring follows"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The mechanics against something independent: closed forms, and a high-accuracy integration of the same equations.
+//! The mechanics against something independent: closed forms, and a high-accuracy integration of
+//! the same equations.
 
 use std::f64::consts::TAU;
 
@@ -36,8 +37,12 @@ fn push(
 ) {
     let steps = (seconds / dt_s).round() as usize;
     for step in 0..steps {
-        let drive =
-            Drive { motor_n: force((step as f64 + 0.5) * dt_s), table_n: 0.0, friction_factor: 1.0, brake_n: 0.0 };
+        let drive = Drive {
+            motor_n: force((step as f64 + 0.5) * dt_s),
+            table_n: 0.0,
+            friction_factor: 1.0,
+            brake_n: 0.0,
+        };
         m.advance(motion, friction, drive, dt_s);
     }
 }
@@ -55,8 +60,14 @@ fn a_free_mass_accelerates_as_newton_says() {
 
 #[test]
 fn the_two_masses_ring_at_their_resonance() {
-    let m = Mechanics { screw_damping_n_s_per_m: 0.0, ..mechanics() };
-    let mut motion = Motion { motor_m: 1.0e-5, ..Motion::default() };
+    let m = Mechanics {
+        screw_damping_n_s_per_m: 0.0,
+        ..mechanics()
+    };
+    let mut motion = Motion {
+        motor_m: 1.0e-5,
+        ..Motion::default()
+    };
     let mut friction = Friction::new(dry(0.0), Law::Coulomb);
     let (m1, m2) = (m.motor_inertia_kg, m.table_mass_kg);
     let hz = (m.screw_stiffness_n_per_m * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
@@ -71,18 +82,31 @@ fn the_two_masses_ring_at_their_resonance() {
         before = wind_up;
     }
     let measured = (crossings.len() - 1) as f64 / (crossings[crossings.len() - 1] - crossings[0]);
-    assert!((measured / hz - 1.0).abs() < 5.0e-4, "{measured} Hz, {hz} Hz");
+    assert!(
+        (measured / hz - 1.0).abs() < 5.0e-4,
+        "{measured} Hz, {hz} Hz"
+    );
 }
 
 #[test]
 fn a_dry_table_sticks_until_the_screw_pulls_harder_than_breakaway() {
     let m = mechanics();
-    let sliding = Sliding { static_n: 520.0, ..dry(400.0) };
+    let sliding = Sliding {
+        static_n: 520.0,
+        ..dry(400.0)
+    };
     let (mut friction, mut motion) = (Friction::new(sliding, Law::Coulomb), Motion::default());
     // A slow ramp of the motor force; the table is exactly still before breakaway.
     let mut at_n = 0.0;
     while motion.table_m_per_s == 0.0 && at_n < 1000.0 {
-        push(&m, &mut friction, &mut motion, |_| at_n, SUB_STEP_S, SUB_STEP_S);
+        push(
+            &m,
+            &mut friction,
+            &mut motion,
+            |_| at_n,
+            SUB_STEP_S,
+            SUB_STEP_S,
+        );
         at_n += 200.0 * SUB_STEP_S;
         assert!(motion.table_m_per_s != 0.0 || motion.table_m == 0.0);
     }
@@ -94,11 +118,19 @@ fn sliding_comes_to_rest_within_the_way_that_friction_allows_and_stays() {
     let m = mechanics();
     let mut friction = Friction::new(dry(400.0), Law::Coulomb);
     let v = 0.1;
-    let mut motion = Motion { motor_m_per_s: v, table_m_per_s: v, ..Motion::default() };
+    let mut motion = Motion {
+        motor_m_per_s: v,
+        table_m_per_s: v,
+        ..Motion::default()
+    };
     push(&m, &mut friction, &mut motion, |_| 0.0, 2.0, SUB_STEP_S);
     let mass = m.motor_inertia_kg + m.table_mass_kg;
     let way = 0.5 * mass * v * v / 400.0;
-    assert!((motion.table_m / way - 1.0).abs() < 0.01, "{} of {way}", motion.table_m);
+    assert!(
+        (motion.table_m / way - 1.0).abs() < 0.01,
+        "{} of {way}",
+        motion.table_m
+    );
     let rest = motion.table_m;
     push(&m, &mut friction, &mut motion, |_| 0.0, 0.5, SUB_STEP_S);
     assert_eq!(motion.table_m, rest, "it does not creep");
@@ -106,34 +138,64 @@ fn sliding_comes_to_rest_within_the_way_that_friction_allows_and_stays() {
 
 #[test]
 fn the_motor_crosses_the_gap_in_the_time_of_its_free_flight() {
-    let m = Mechanics { backlash_m: 1.0e-4, ..mechanics() };
+    let m = Mechanics {
+        backlash_m: 1.0e-4,
+        ..mechanics()
+    };
     let mut friction = Friction::new(dry(400.0), Law::Coulomb);
     // At the back end of the gap.
-    let mut motion = Motion { motor_m: -0.5e-4, ..Motion::default() };
+    let mut motion = Motion {
+        motor_m: -0.5e-4,
+        ..Motion::default()
+    };
     let mut seconds = 0.0;
     while motion.table_m_per_s == 0.0 && seconds < 1.0 {
-        push(&m, &mut friction, &mut motion, |_| 300.0, SUB_STEP_S, SUB_STEP_S);
+        push(
+            &m,
+            &mut friction,
+            &mut motion,
+            |_| 300.0,
+            SUB_STEP_S,
+            SUB_STEP_S,
+        );
         seconds += SUB_STEP_S;
     }
     // Free flight over the gap, then the few µm until the screw pulls 400 N.
     let flight = (2.0 * 1.0e-4 * m.motor_inertia_kg / 300.0).sqrt();
     let speed = 300.0 / m.motor_inertia_kg * flight;
     let contact = 400.0 / m.screw_stiffness_n_per_m / speed;
-    assert!((seconds - flight - contact).abs() < 2.0e-4, "{seconds} s, {flight} + {contact} s");
+    assert!(
+        (seconds - flight - contact).abs() < 2.0e-4,
+        "{seconds} s, {flight} + {contact} s"
+    );
 }
 
 #[test]
 fn maxwell_slip_remembers_its_reversal_points() {
     let stiffness = [2.0e7, 1.0e7, 5.0e6];
-    let law = Law::MaxwellSlip { stiffness_n_per_m: stiffness.to_vec(), share: vec![0.4, 0.35, 0.25] };
+    let law = Law::MaxwellSlip {
+        stiffness_n_per_m: stiffness.to_vec(),
+        share: vec![0.4, 0.35, 0.25],
+    };
     let mut friction = Friction::new(dry(400.0), law);
     // A very heavy table goes where it is told.
     let go = |friction: &mut Friction, velocity: f64, way: f64| {
         let dt_s = 1.0e-5;
         for _ in 0..(way / velocity.abs() / dt_s).round() as usize {
-            friction.advance(Table { velocity, free_velocity: velocity, mass_kg: 1.0e12, dt_s, factor: 1.0 });
+            friction.advance(Table {
+                velocity,
+                free_velocity: velocity,
+                mass_kg: 1.0e12,
+                dt_s,
+                factor: 1.0,
+            });
         }
-        friction.state().iter().zip(stiffness).map(|(z, k)| z * k).sum::<f64>()
+        friction
+            .state()
+            .iter()
+            .zip(stiffness)
+            .map(|(z, k)| z * k)
+            .sum::<f64>()
     };
     let slipping = go(&mut friction, 1.0e-3, 1.0e-4);
     assert!((slipping - 400.0).abs() < 1.0);
@@ -153,7 +215,13 @@ fn steady_sliding_with_bristles_costs_exactly_the_sliding_level() {
         let mut next = 0.1;
         // Held at 0.1 m/s: what friction takes off in a sub-step is its force.
         for _ in 0..2000 {
-            next = friction.advance(Table { velocity: 0.1, free_velocity: 0.1, mass_kg: 1.0e9, dt_s, factor: 1.0 });
+            next = friction.advance(Table {
+                velocity: 0.1,
+                free_velocity: 0.1,
+                mass_kg: 1.0e9,
+                dt_s,
+                factor: 1.0,
+            });
         }
         let force = (0.1 - next) / dt_s * 1.0e9;
         assert!((force - 400.0).abs() < 0.01, "1/{n} ms: {force} N");
@@ -180,7 +248,8 @@ impl System<f64, Vector> for Equations {
         let m = &self.mechanics;
         let screw = m.screw_stiffness_n_per_m * (x1 - x2) + m.screw_damping_n_s_per_m * (v1 - v2);
         let fall = (-(v2 / self.sliding.stribeck_velocity_m_per_s).powi(2)).exp();
-        let level = self.sliding.coulomb_n + (self.sliding.static_n - self.sliding.coulomb_n) * fall;
+        let level =
+            self.sliding.coulomb_n + (self.sliding.static_n - self.sliding.coulomb_n) * fall;
         let dz = v2 - self.stiffness * v2.abs() / level * z;
         let friction = self.stiffness * z + self.damping * dz + self.sliding.viscous_n_s_per_m * v2;
         dy[0] = v1;
@@ -197,7 +266,14 @@ fn ours(dt_s: f64) -> f64 {
     let actual = &machine.axes[0].actual;
     let mut friction = Friction::new(actual.sliding, actual.law.clone());
     let mut motion = Motion::default();
-    push(&actual.mechanics, &mut friction, &mut motion, force, 0.4, dt_s);
+    push(
+        &actual.mechanics,
+        &mut friction,
+        &mut motion,
+        force,
+        0.4,
+        dt_s,
+    );
     motion.table_m
 }
 
@@ -205,7 +281,11 @@ fn ours(dt_s: f64) -> f64 {
 fn the_scheme_converges_to_a_high_accuracy_integration() {
     let machine = Machine::reference();
     let actual = &machine.axes[0].actual;
-    let Law::LuGre { bristle_stiffness_n_per_m, bristle_damping_n_s_per_m } = actual.law else {
+    let Law::LuGre {
+        bristle_stiffness_n_per_m,
+        bristle_damping_n_s_per_m,
+    } = actual.law
+    else {
         panic!("LuGre expected")
     };
     let equations = Equations {
@@ -236,8 +316,12 @@ fn the_scheme_converges_to_a_high_accuracy_integration() {
     solver.integrate().unwrap();
     let exact = solver.y_out().last().unwrap()[2];
     let errors = [4.0, 8.0, 16.0, 32.0, 64.0].map(|n| 1.0e9 * (ours(1.0e-3 / n) - exact).abs());
-    println!("table after 0.4 s: {:.6} mm; error at 1/4, 1/8, 1/16, 1/32, 1/64 ms: {errors:.3?} nm", 1.0e3 * exact);
-    // At the sub-step that is used: a ten-thousandth of the way; and it goes on converging, at least at first order.
+    println!(
+        "table after 0.4 s: {:.6} mm; error at 1/4, 1/8, 1/16, 1/32, 1/64 ms: {errors:.3?} nm",
+        1.0e3 * exact
+    );
+    // At the sub-step that is used: a ten-thousandth of the way; and it goes on converging, at
+    // least at first order.
     assert!(errors[2] < 1.0e5 * exact.abs(), "{errors:?} nm");
     let order = (errors[2] / errors[4]).log2() / 2.0;
     assert!((0.8..2.6).contains(&order), "order {order}, {errors:?} nm");
@@ -247,12 +331,18 @@ fn the_scheme_converges_to_a_high_accuracy_integration() {
 fn the_sub_step_is_where_halving_it_no_longer_matters() {
     // A free axis under a force that reverses it, without a loop that would correct anything.
     let run = |sub_step_s: f64| {
-        let parameters = AxisParameters { force_noise_n: 0.0, ..Machine::reference().axes[0].actual.clone() };
+        let parameters = AxisParameters {
+            force_noise_n: 0.0,
+            ..Machine::reference().axes[0].actual.clone()
+        };
         let mut axis = Axis::new(parameters, 1).with_sub_step(sub_step_s);
         let (mut low, mut high) = (0.0_f64, 0.0_f64);
         for cycle in 0..1000 {
             axis.advance(900.0 * (TAU * 2.0e-3 * f64::from(cycle)).sin(), 1.0e-3);
-            (low, high) = (low.min(axis.motion().table_m), high.max(axis.motion().table_m));
+            (low, high) = (
+                low.min(axis.motion().table_m),
+                high.max(axis.motion().table_m),
+            );
         }
         (axis.motion().table_m, high - low)
     };
@@ -263,18 +353,25 @@ fn the_sub_step_is_where_halving_it_no_longer_matters() {
         "difference to 1/256 ms after 1 s and a travel of {:.3} mm: {coarse:.1e} of it at 1/4 ms, {used:.1e} at the sub-step, {fine:.1e} at 1/64 ms",
         1.0e3 * travel
     );
-    assert!(used < 1.0e-4 && used < coarse && fine < used, "{coarse:e} {used:e} {fine:e}");
+    assert!(
+        used < 1.0e-4 && used < coarse && fine < used,
+        "{coarse:e} {used:e} {fine:e}"
+    );
 }
 
 #[test]
 fn a_current_loop_without_lag_delivers_the_whole_impulse() {
-    let mut parameters = AxisParameters { force_noise_n: 0.0, ..Machine::reference().axes[0].actual.clone() };
+    let mut parameters = AxisParameters {
+        force_noise_n: 0.0,
+        ..Machine::reference().axes[0].actual.clone()
+    };
     parameters.sliding = dry(0.0);
     parameters.law = Law::Coulomb;
     parameters.current_loop_time_constant_s = 0.0;
     let mut axis = Axis::new(parameters.clone(), 1);
     axis.advance(1000.0, 1.0e-3);
     let (m, motion) = (parameters.mechanics, axis.motion());
-    let momentum = m.motor_inertia_kg * motion.motor_m_per_s + m.table_mass_kg * motion.table_m_per_s;
+    let momentum =
+        m.motor_inertia_kg * motion.motor_m_per_s + m.table_mass_kg * motion.table_m_per_s;
     assert!((momentum - 1.0).abs() < 1.0e-9, "{momentum} N s");
 }

@@ -1,4 +1,5 @@
-//! The plant node at the bench: SYNC and torque in, frames out, time passing. Cycle k begins at k ms.
+//! The plant node at the bench: SYNC and torque in, frames out, time passing. Cycle k begins at k
+//! ms.
 
 use embedded_can::Frame;
 use plant_sim::axis::Mounting;
@@ -16,7 +17,12 @@ const PERIOD_US: u64 = 1000;
 /// When in its cycle the servo answers.
 const ANSWER_US: u64 = 400;
 const RUN: ControlWord = ControlWord::ENABLE_OPERATION;
-const BRAKE: BrakeParameters = BrakeParameters { rated_force_n: 4000.0, open_s: 0.030, close_s: 0.040, rise_s: 0.0 };
+const BRAKE: BrakeParameters = BrakeParameters {
+    rated_force_n: 4000.0,
+    open_s: 0.030,
+    close_s: 0.040,
+    rise_s: 0.0,
+};
 
 struct Bench {
     node: PlantNode,
@@ -30,12 +36,23 @@ struct Bench {
 impl Bench {
     fn new(mounting: Mounting, noise_n: f64) -> Self {
         let reference = Machine::reference().axes[0].actual.clone();
-        let parameters = AxisParameters { force_noise_n: noise_n, mounting, ..reference };
+        let parameters = AxisParameters {
+            force_noise_n: noise_n,
+            mounting,
+            ..reference
+        };
         let ids = AxisIds::of_axis(0).unwrap();
         let newton_per_micro_nm = parameters.newton_per_micro_nm();
         let node = PlantNode::new(ids, parameters, 1.0e-3, 7);
         let counter = SyncCounter::new(240).unwrap();
-        Self { node, ids, now_us: 0, counter, newton_per_micro_nm, sent: Vec::new() }
+        Self {
+            node,
+            ids,
+            now_us: 0,
+            counter,
+            newton_per_micro_nm,
+            sent: Vec::new(),
+        }
     }
 
     /// In NMT operational, its power stage enabled by cycle 2.
@@ -51,16 +68,32 @@ impl Bench {
     }
 
     fn take(&mut self, frame: CanFrame) {
-        let Self { node, ids, now_us, sent, .. } = self;
-        node.take(&frame, *now_us, &mut |frame| sent.push((*now_us, message(*ids, &frame))));
+        let Self {
+            node,
+            ids,
+            now_us,
+            sent,
+            ..
+        } = self;
+        node.take(&frame, *now_us, &mut |frame| {
+            sent.push((*now_us, message(*ids, &frame)))
+        });
     }
 
     /// Time passes; the node is called when it wants to be.
     fn pass_to(&mut self, until_us: u64) {
         while let Some(wake) = self.node.wake_at_us().filter(|wake| *wake <= until_us) {
             self.now_us = self.now_us.max(wake);
-            let Self { node, ids, now_us, sent, .. } = self;
-            node.time(*now_us, &mut |frame| sent.push((*now_us, message(*ids, &frame))));
+            let Self {
+                node,
+                ids,
+                now_us,
+                sent,
+                ..
+            } = self;
+            node.time(*now_us, &mut |frame| {
+                sent.push((*now_us, message(*ids, &frame)))
+            });
         }
         self.now_us = until_us;
     }
@@ -90,7 +123,14 @@ impl Bench {
     fn torque(&mut self, force_n: f64, control: ControlWord, counter: SyncCounter) {
         self.pass_to(self.now_us / PERIOD_US * PERIOD_US + ANSWER_US);
         let torque = TorqueMicroNm((force_n / self.newton_per_micro_nm).round() as i32);
-        self.take(Message::Torque(Torque { torque, control, counter }).encode(self.ids));
+        self.take(
+            Message::Torque(Torque {
+                torque,
+                control,
+                counter,
+            })
+            .encode(self.ids),
+        );
     }
 
     fn cycle(&mut self, force_n: f64, control: ControlWord) {
@@ -164,10 +204,17 @@ fn without_losses_every_cycle_is_computed_and_none_begins_by_the_timer() {
     let mut bench = Bench::enabled(Mounting::default());
     (0..1000).for_each(|_| bench.cycle(300.0, RUN));
     let counters = bench.node.counters();
-    assert_eq!((counters.cycles, counters.computed, counters.by_deadline), (1002, 1002, 0), "cycle 1003 is still on");
+    assert_eq!(
+        (counters.cycles, counters.computed, counters.by_deadline),
+        (1002, 1002, 0),
+        "cycle 1003 is still on"
+    );
     assert_eq!((counters.bridged, counters.refused), (0, 0));
     assert_eq!(bench.feedbacks().len(), 1000);
-    assert!(bench.feedbacks().iter().all(|(at, _)| at % PERIOD_US == 0), "each with its SYNC");
+    assert!(
+        bench.feedbacks().iter().all(|(at, _)| at % PERIOD_US == 0),
+        "each with its SYNC"
+    );
 }
 
 #[test]
@@ -190,7 +237,13 @@ fn where_sync_is_lost_feedback_comes_by_the_timer_and_the_phase_stays() {
     // Cycles 4 to 8; the timer is 300 µs late, the servo's torque comes at 400 µs.
     let wanted = [(4000, 4), (5300, 5), (6300, 6), (7000, 7), (8000, 8)];
     assert_eq!(bench.feedbacks(), wanted);
-    assert_eq!((bench.node.counters().by_deadline, bench.node.counters().computed), (2, 7));
+    assert_eq!(
+        (
+            bench.node.counters().by_deadline,
+            bench.node.counters().computed
+        ),
+        (2, 7)
+    );
 }
 
 #[test]
@@ -205,7 +258,10 @@ fn an_axis_moves_the_same_way_whether_its_syncs_come_or_not() {
         bench.sync();
         (bench.truth(), bench.last_feedback())
     };
-    assert_eq!(run(&|_| false), run(&|cycle| cycle % 7 == 3 || cycle % 50 == 4));
+    assert_eq!(
+        run(&|_| false),
+        run(&|cycle| cycle % 7 == 3 || cycle % 50 == 4)
+    );
 }
 
 #[test]
@@ -215,8 +271,19 @@ fn a_torque_frame_one_ahead_shows_that_the_next_cycle_is_on() {
     // In lock-step no time passes where SYNC is lost.
     let next = bench.counter.next();
     bench.torque(400.0, RUN, next);
-    assert_eq!(bench.feedbacks().iter().map(|(_, counter)| *counter).collect::<Vec<_>>(), [4, 5]);
-    assert_eq!(bench.node.sync_due_us(), Some(6000), "cycle 5 counts from when its SYNC was due");
+    assert_eq!(
+        bench
+            .feedbacks()
+            .iter()
+            .map(|(_, counter)| *counter)
+            .collect::<Vec<_>>(),
+        [4, 5]
+    );
+    assert_eq!(
+        bench.node.sync_due_us(),
+        Some(6000),
+        "cycle 5 counts from when its SYNC was due"
+    );
     bench.sync_lost();
     bench.sync();
     assert!((bench.node.commanded_n() - 400.0).abs() < 1.0e-3);
@@ -231,12 +298,24 @@ fn a_late_sync_begins_nothing_and_sets_the_phase_anew() {
     let counter = bench.counter;
     bench.sync_frame(counter);
     assert_eq!(bench.feedbacks(), [(4300, 4)]);
-    assert_eq!(bench.node.sync_due_us(), Some(5450), "450 µs are less than half a period");
+    assert_eq!(
+        bench.node.sync_due_us(),
+        Some(5450),
+        "450 µs are less than half a period"
+    );
     bench.sync_frame(counter);
-    assert_eq!((bench.feedbacks().len(), bench.node.sync_due_us()), (1, Some(5450)), "a double does not");
+    assert_eq!(
+        (bench.feedbacks().len(), bench.node.sync_due_us()),
+        (1, Some(5450)),
+        "a double does not"
+    );
     bench.torque(300.0, RUN, counter);
     bench.sync();
-    assert_eq!(bench.feedbacks(), [(4300, 4), (5000, 5)], "a master that is in time again is followed at once");
+    assert_eq!(
+        bench.feedbacks(),
+        [(4300, 4), (5000, 5)],
+        "a master that is in time again is followed at once"
+    );
 }
 
 #[test]
@@ -248,16 +327,25 @@ fn a_stale_torque_is_refused_and_the_last_one_is_held() {
     bench.torque(9000.0, RUN, stale);
     bench.sync();
     assert!((bench.node.commanded_n() - 300.0).abs() < 1.0e-3);
-    assert_eq!((bench.node.counters().refused, bench.node.bridged()), (1, 1));
+    assert_eq!(
+        (bench.node.counters().refused, bench.node.bridged()),
+        (1, 1)
+    );
     let short = CanFrame::of(bench.ids.identifier(protocol::FrameKind::Torque), [1, 2, 3]);
     bench.take(short);
     bench.sync();
-    assert_eq!((bench.node.counters().refused, bench.node.bridged()), (2, 2));
+    assert_eq!(
+        (bench.node.counters().refused, bench.node.bridged()),
+        (2, 2)
+    );
 }
 
 #[test]
 fn three_torques_in_a_row_are_bridged_and_the_fourth_ends_torque_and_closes_the_brake() {
-    let mut bench = Bench::enabled(Mounting { brake: Some(BRAKE), ..Mounting::default() });
+    let mut bench = Bench::enabled(Mounting {
+        brake: Some(BRAKE),
+        ..Mounting::default()
+    });
     (0..40).for_each(|_| bench.cycle(300.0, RUN.with(ControlWord::RELEASE_BRAKE)));
     assert_eq!(bench.truth().brake, BrakeState::Open);
     let last_good_us = bench.now_us;
@@ -267,9 +355,15 @@ fn three_torques_in_a_row_are_bridged_and_the_fourth_ends_torque_and_closes_the_
         assert!((bench.node.commanded_n() - 300.0).abs() < 1.0e-3);
     }
     bench.sync();
-    assert_eq!((bench.node.commanded_n(), bench.node.fault()), (0.0, Some(Fault::TorqueMissing)));
+    assert_eq!(
+        (bench.node.commanded_n(), bench.node.fault()),
+        (0.0, Some(Fault::TorqueMissing))
+    );
     assert!(bench.now_us - last_good_us <= 5 * PERIOD_US);
-    assert_eq!((bench.truth().brake, bench.emergencies()), (BrakeState::Moving, vec![0x8250]));
+    assert_eq!(
+        (bench.truth().brake, bench.emergencies()),
+        (BrakeState::Moving, vec![0x8250])
+    );
     let (at, status) = *bench.statuses().last().unwrap();
     assert_eq!(
         (at, status.status.state(), status.fault),
@@ -279,9 +373,21 @@ fn three_torques_in_a_row_are_bridged_and_the_fourth_ends_torque_and_closes_the_
 
 #[test]
 fn a_vertical_axis_whose_servo_dies_drops_no_farther_than_its_brake_makes_it() {
-    for (open_s, close_s, most_m) in [(0.0, 0.0, 1.0e-6), (0.008, 0.010, 0.3e-3), (0.030, 0.040, 4.0e-3)] {
-        let brake = BrakeParameters { open_s, close_s, ..BRAKE };
-        let mut bench = Bench::enabled(Mounting { gravity_n: -2500.0, brake: Some(brake), ..Mounting::default() });
+    for (open_s, close_s, most_m) in [
+        (0.0, 0.0, 1.0e-6),
+        (0.008, 0.010, 0.3e-3),
+        (0.030, 0.040, 4.0e-3),
+    ] {
+        let brake = BrakeParameters {
+            open_s,
+            close_s,
+            ..BRAKE
+        };
+        let mut bench = Bench::enabled(Mounting {
+            gravity_n: -2500.0,
+            brake: Some(brake),
+            ..Mounting::default()
+        });
         (0..60).for_each(|_| bench.cycle(2500.0, RUN.with(ControlWord::RELEASE_BRAKE)));
         while bench.node.fault().is_none() {
             bench.sync();
@@ -292,12 +398,18 @@ fn a_vertical_axis_whose_servo_dies_drops_no_farther_than_its_brake_makes_it() {
         bench.pass_to(bench.now_us + 300_400);
         (0..300).for_each(|_| alone.advance(0.0, 1.0e-3));
         // The timer stops once the axis is slower than 1 mm/s: its last ringing is below 1.3 µm.
-        let (drop, wanted) = (before - bench.truth().table_m, before - alone.motion().table_m);
+        let (drop, wanted) = (
+            before - bench.truth().table_m,
+            before - alone.motion().table_m,
+        );
         assert!(
             (drop - wanted).abs() < 1.3e-6,
             "brake of {close_s} s: {drop} m, {wanted} m with torque zero and brake at once"
         );
-        assert!(drop < most_m && drop >= 0.3 * most_m - 1.0e-6, "brake of {close_s} s: {drop} m");
+        assert!(
+            drop < most_m && drop >= 0.3 * most_m - 1.0e-6,
+            "brake of {close_s} s: {drop} m"
+        );
     }
 }
 
@@ -309,15 +421,24 @@ fn while_sync_alone_is_gone_the_servo_may_ramp_down() {
         let counter = bench.counter;
         bench.torque(-3000.0, RUN, counter);
     }
-    assert_eq!((bench.node.drive(), bench.feedbacks().len()), (TorqueDrive::OperationEnabled, 80));
+    assert_eq!(
+        (bench.node.drive(), bench.feedbacks().len()),
+        (TorqueDrive::OperationEnabled, 80)
+    );
     // The servo's ramp is over. The axis coasts; when it stands, the timer stops.
     bench.sync_lost();
     let counter = bench.counter;
     bench.torque(0.0, ControlWord::DISABLE_VOLTAGE, counter);
     bench.pass_to(10_000_000);
-    assert_eq!((bench.node.drive(), bench.node.fault()), (TorqueDrive::SwitchOnDisabled, None));
+    assert_eq!(
+        (bench.node.drive(), bench.node.fault()),
+        (TorqueDrive::SwitchOnDisabled, None)
+    );
     let feedbacks = bench.feedbacks().len();
-    assert!((100..1000).contains(&feedbacks), "{feedbacks} feedbacks while it coasts");
+    assert!(
+        (100..1000).contains(&feedbacks),
+        "{feedbacks} feedbacks while it coasts"
+    );
     assert!(bench.truth().motor_m_per_s.abs() < 1.1e-3);
     // The master is back, with a counter of its own.
     bench.sync_frame(count(200));
@@ -335,16 +456,26 @@ fn where_sync_and_torque_are_gone_torque_ends_within_five_periods_and_sync_is_na
         bench.pass_to(held_us);
     }
     assert_eq!(bench.node.fault(), Some(Fault::SyncMissing));
-    assert_eq!((held_us, bench.node.sync_due_us()), (9300, Some(10_000)), "noticed by the timer, as of 9 ms");
+    assert_eq!(
+        (held_us, bench.node.sync_due_us()),
+        (9300, Some(10_000)),
+        "noticed by the timer, as of 9 ms"
+    );
     assert_eq!(bench.emergencies(), [0x8700]);
 }
 
 #[test]
 fn nmt_stop_waits_until_the_servo_has_let_go() {
-    let commands = [NmtCommand::StopRemoteNode, NmtCommand::EnterPreOperational, NmtCommand::ResetNode];
-    for (command, after) in
-        commands.into_iter().zip([NmtState::Stopped, NmtState::PreOperational, NmtState::PreOperational])
-    {
+    let commands = [
+        NmtCommand::StopRemoteNode,
+        NmtCommand::EnterPreOperational,
+        NmtCommand::ResetNode,
+    ];
+    for (command, after) in commands.into_iter().zip([
+        NmtState::Stopped,
+        NmtState::PreOperational,
+        NmtState::PreOperational,
+    ]) {
         let mut bench = Bench::enabled(Mounting::default());
         bench.cycle(300.0, RUN);
         bench.nmt(command);
@@ -353,10 +484,18 @@ fn nmt_stop_waits_until_the_servo_has_let_go() {
             assert!((bench.node.commanded_n() - 300.0).abs() < 1.0e-3);
         }
         bench.cycle(0.0, ControlWord::DISABLE_VOLTAGE);
-        assert_eq!((bench.node.nmt(), bench.node.drive()), (after, TorqueDrive::SwitchOnDisabled), "{command:?}");
+        assert_eq!(
+            (bench.node.nmt(), bench.node.drive()),
+            (after, TorqueDrive::SwitchOnDisabled),
+            "{command:?}"
+        );
         let feedbacks = bench.feedbacks().len();
         bench.cycle(300.0, RUN);
-        assert_eq!(bench.feedbacks().len(), feedbacks, "no process data any more");
+        assert_eq!(
+            bench.feedbacks().len(),
+            feedbacks,
+            "no process data any more"
+        );
     }
 }
 
@@ -373,35 +512,70 @@ fn a_start_takes_a_waiting_stop_back_and_another_node_is_not_meant() {
 
 #[test]
 fn a_reset_in_motion_resets_the_node_and_not_the_machine() {
-    let mut bench = Bench::enabled(Mounting { brake: Some(BRAKE), ..Mounting::default() });
+    let mut bench = Bench::enabled(Mounting {
+        brake: Some(BRAKE),
+        ..Mounting::default()
+    });
     (0..40).for_each(|_| bench.cycle(0.0, RUN.with(ControlWord::RELEASE_BRAKE)));
     let m_per_s = 0.4;
-    bench.node.place(Motion { motor_m: 0.1, table_m: 0.1, motor_m_per_s: m_per_s, table_m_per_s: m_per_s });
+    bench.node.place(Motion {
+        motor_m: 0.1,
+        table_m: 0.1,
+        motor_m_per_s: m_per_s,
+        table_m_per_s: m_per_s,
+    });
     bench.nmt(NmtCommand::ResetNode);
     bench.cycle(0.0, RUN.with(ControlWord::RELEASE_BRAKE));
-    assert_eq!(bench.node.nmt(), NmtState::Operational, "as long as torque acts");
+    assert_eq!(
+        bench.node.nmt(),
+        NmtState::Operational,
+        "as long as torque acts"
+    );
     bench.cycle(0.0, ControlWord::DISABLE_VOLTAGE);
-    assert_eq!((bench.node.nmt(), bench.truth().brake), (NmtState::PreOperational, BrakeState::Moving));
+    assert_eq!(
+        (bench.node.nmt(), bench.truth().brake),
+        (NmtState::PreOperational, BrakeState::Moving)
+    );
     // 40 ms until the brake bites, and ½·m·v² over brake and friction; nobody sends SYNC.
     bench.pass_to(bench.now_us + 300_000);
     let way = bench.truth().table_m - 0.1;
     assert!((0.025..0.040).contains(&way), "{way} m");
-    assert_eq!((bench.truth().motor_m_per_s, bench.truth().brake), (0.0, BrakeState::Closed));
+    assert_eq!(
+        (bench.truth().motor_m_per_s, bench.truth().brake),
+        (0.0, BrakeState::Closed)
+    );
     bench.nmt(NmtCommand::StartRemoteNode);
     bench.sync();
     let increments = f64::from(bench.last_feedback().motor.0);
-    assert!((increments / 1_048_576.0 * 0.010 - bench.truth().motor_m).abs() < 1.0e-8, "encoders went on");
+    assert!(
+        (increments / 1_048_576.0 * 0.010 - bench.truth().motor_m).abs() < 1.0e-8,
+        "encoders went on"
+    );
 }
 
 #[test]
 fn a_reset_that_waited_for_the_servo_leaves_the_axis_where_it_stopped() {
-    let mut bench = Bench::enabled(Mounting { load_zero_m: 0.02, ..Mounting::default() });
-    bench.node.place(Motion { motor_m: 0.1, table_m: 0.1, ..Motion::default() });
+    let mut bench = Bench::enabled(Mounting {
+        load_zero_m: 0.02,
+        ..Mounting::default()
+    });
+    bench.node.place(Motion {
+        motor_m: 0.1,
+        table_m: 0.1,
+        ..Motion::default()
+    });
     bench.nmt(NmtCommand::ResetNode);
     bench.cycle(0.0, ControlWord::SHUTDOWN);
-    assert_eq!((bench.node.nmt(), bench.truth().table_m), (NmtState::PreOperational, 0.1));
+    assert_eq!(
+        (bench.node.nmt(), bench.truth().table_m),
+        (NmtState::PreOperational, 0.1)
+    );
     bench.nmt(NmtCommand::ResetNode);
-    assert_eq!(bench.truth().table_m, 0.0, "the next one finds it standing without torque and starts over");
+    assert_eq!(
+        bench.truth().table_m,
+        0.0,
+        "the next one finds it standing without torque and starts over"
+    );
 }
 
 #[test]
@@ -420,10 +594,18 @@ fn a_run_that_begins_with_a_reset_at_rest_is_the_same_run_every_time() {
         bench.torque(0.0, ControlWord::DISABLE_VOLTAGE, bench.counter);
         (0..300).for_each(|_| bench.cycle(0.0, ControlWord::DISABLE_VOLTAGE));
         bench.counter = count(240);
-        bench.sent.iter().map(|(_, message)| *message).collect::<Vec<_>>()
+        bench
+            .sent
+            .iter()
+            .map(|(_, message)| *message)
+            .collect::<Vec<_>>()
     };
     let first = run(0);
-    assert_eq!(first.len(), 453 + 46 + 5 + 4, "feedback, status, heartbeats, changes of state");
+    assert_eq!(
+        first.len(),
+        453 + 46 + 5 + 4,
+        "feedback, status, heartbeats, changes of state"
+    );
     for pause_us in [1_000_000, 123_456] {
         assert!(run(pause_us) == first, "after a pause of {pause_us} µs");
     }
@@ -431,22 +613,49 @@ fn a_run_that_begins_with_a_reset_at_rest_is_the_same_run_every_time() {
 
 #[test]
 fn the_brake_opens_only_with_torque_and_closes_with_it() {
-    let mut bench = Bench::enabled(Mounting { brake: Some(BRAKE), gravity_n: -2500.0, ..Mounting::default() });
+    let mut bench = Bench::enabled(Mounting {
+        brake: Some(BRAKE),
+        gravity_n: -2500.0,
+        ..Mounting::default()
+    });
     let start = bench.truth().table_m;
     (0..30).for_each(|_| bench.cycle(2500.0, RUN));
-    assert_eq!(bench.truth().brake, BrakeState::Closed, "nobody released it");
+    assert_eq!(
+        bench.truth().brake,
+        BrakeState::Closed,
+        "nobody released it"
+    );
     bench.cycle(2500.0, RUN.with(ControlWord::RELEASE_BRAKE));
     let told_us = bench.now_us;
     (0..60).for_each(|_| bench.cycle(2500.0, RUN.with(ControlWord::RELEASE_BRAKE)));
-    let open = *bench.statuses().iter().find(|(_, status)| status.brake == BrakeState::Open).unwrap();
-    assert!((29 * PERIOD_US..=31 * PERIOD_US).contains(&(open.0 - told_us)), "open after {} µs", open.0 - told_us);
-    assert!((bench.truth().table_m - start).abs() < 2.0e-6, "the motor carries it");
+    let open = *bench
+        .statuses()
+        .iter()
+        .find(|(_, status)| status.brake == BrakeState::Open)
+        .unwrap();
+    assert!(
+        (29 * PERIOD_US..=31 * PERIOD_US).contains(&(open.0 - told_us)),
+        "open after {} µs",
+        open.0 - told_us
+    );
+    assert!(
+        (bench.truth().table_m - start).abs() < 2.0e-6,
+        "the motor carries it"
+    );
     bench.cycle(2500.0, RUN);
     (0..45).for_each(|_| bench.cycle(2500.0, RUN));
-    assert_eq!(bench.truth().brake, BrakeState::Closed, "told by the bit alone, while torque holds");
+    assert_eq!(
+        bench.truth().brake,
+        BrakeState::Closed,
+        "told by the bit alone, while torque holds"
+    );
     bench.cycle(0.0, ControlWord::SHUTDOWN);
     (0..45).for_each(|_| bench.cycle(0.0, ControlWord::SHUTDOWN));
-    assert!((bench.truth().table_m - start).abs() < 2.0e-6, "{}", bench.truth().table_m - start);
+    assert!(
+        (bench.truth().table_m - start).abs() < 2.0e-6,
+        "{}",
+        bench.truth().table_m - start
+    );
 }
 
 #[test]
@@ -457,7 +666,11 @@ fn the_plant_status_comes_on_change_and_every_tenth_cycle() {
         bench.cycle(0.0, control);
     }
     (0..40).for_each(|_| bench.cycle(0.0, RUN));
-    let told: Vec<_> = bench.statuses().iter().map(|(at, status)| (*at, status.status.state().unwrap())).collect();
+    let told: Vec<_> = bench
+        .statuses()
+        .iter()
+        .map(|(at, status)| (*at, status.status.state().unwrap()))
+        .collect();
     let wanted = [
         (0, DriveState::SwitchOnDisabled),
         (1000, DriveState::SwitchOnDisabled),
@@ -469,7 +682,12 @@ fn the_plant_status_comes_on_change_and_every_tenth_cycle() {
         (41_000, DriveState::OperationEnabled),
     ];
     assert_eq!(told, wanted);
-    assert!(bench.statuses().iter().all(|(_, status)| status.brake == BrakeState::NotFitted));
+    assert!(
+        bench
+            .statuses()
+            .iter()
+            .all(|(_, status)| status.brake == BrakeState::NotFitted)
+    );
 }
 
 #[test]
@@ -480,7 +698,10 @@ fn a_power_stage_that_refuses_stays_switched_on_and_gives_no_torque() {
     bench.cycle(0.0, ControlWord::SHUTDOWN);
     for _ in 0..10 {
         bench.cycle(3000.0, RUN);
-        assert_eq!((bench.node.commanded_n(), bench.node.drive()), (0.0, TorqueDrive::SwitchedOn));
+        assert_eq!(
+            (bench.node.commanded_n(), bench.node.drive()),
+            (0.0, TorqueDrive::SwitchedOn)
+        );
     }
     bench.node.refuse_enable(false);
     bench.cycle(3000.0, RUN);
@@ -494,13 +715,25 @@ fn a_power_stage_that_drops_out_says_so_within_a_cycle_and_needs_a_reset() {
     bench.node.drop_out();
     assert_eq!(bench.node.commanded_n(), 0.0);
     bench.cycle(3000.0, RUN);
-    assert_eq!((bench.node.fault(), bench.emergencies()), (Some(Fault::StageLost), vec![0x5410]));
-    assert_eq!(bench.statuses().last().unwrap().1.status.state(), Some(DriveState::Fault));
+    assert_eq!(
+        (bench.node.fault(), bench.emergencies()),
+        (Some(Fault::StageLost), vec![0x5410])
+    );
+    assert_eq!(
+        bench.statuses().last().unwrap().1.status.state(),
+        Some(DriveState::Fault)
+    );
     bench.node.restore_supply();
     bench.cycle(3000.0, RUN);
-    assert_eq!((bench.node.fault(), bench.node.commanded_n()), (Some(Fault::StageLost), 0.0));
+    assert_eq!(
+        (bench.node.fault(), bench.node.commanded_n()),
+        (Some(Fault::StageLost), 0.0)
+    );
     bench.cycle(0.0, ControlWord::FAULT_RESET);
-    assert_eq!((bench.node.drive(), bench.emergencies()), (TorqueDrive::SwitchOnDisabled, vec![0x5410, 0]));
+    assert_eq!(
+        (bench.node.drive(), bench.emergencies()),
+        (TorqueDrive::SwitchOnDisabled, vec![0x5410, 0])
+    );
 }
 
 #[test]
@@ -511,10 +744,17 @@ fn heartbeats_come_in_every_nmt_state() {
     bench.pass_to(350_000);
     bench.nmt(NmtCommand::StartRemoteNode);
     bench.pass_to(550_000);
-    let states =
-        [(0, NmtState::PreOperational), (100_000, NmtState::PreOperational), (200_000, NmtState::PreOperational)];
+    let states = [
+        (0, NmtState::PreOperational),
+        (100_000, NmtState::PreOperational),
+        (200_000, NmtState::PreOperational),
+    ];
     assert_eq!(bench.heartbeats()[..3], states);
-    let later = [(300_000, NmtState::Stopped), (400_000, NmtState::Operational), (500_000, NmtState::Operational)];
+    let later = [
+        (300_000, NmtState::Stopped),
+        (400_000, NmtState::Operational),
+        (500_000, NmtState::Operational),
+    ];
     assert_eq!(bench.heartbeats()[3..], later);
 }
 
@@ -524,7 +764,9 @@ fn computed_bridged_and_refused_are_all_cycles_whatever_the_bus_does() {
     // A linear congruential generator (Knuth, MMIX) is random enough to lose frames.
     let mut state = 1_u64;
     let mut chance = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         state >> 58
     };
     let cycles = 20_000;
@@ -534,7 +776,11 @@ fn computed_bridged_and_refused_are_all_cycles_whatever_the_bus_does() {
         let counter = bench.counter;
         match torque {
             0..4 => {}
-            4..6 => bench.torque(300.0, RUN, count(u8::try_from((u16::from(counter.get()) + 230) % 240 + 1).unwrap())),
+            4..6 => bench.torque(
+                300.0,
+                RUN,
+                count(u8::try_from((u16::from(counter.get()) + 230) % 240 + 1).unwrap()),
+            ),
             6..8 => (0..2).for_each(|_| bench.torque(300.0, RUN, counter)),
             _ => bench.torque(300.0, RUN, counter),
         }
@@ -544,7 +790,10 @@ fn computed_bridged_and_refused_are_all_cycles_whatever_the_bus_does() {
     }
     bench.sync();
     let counters = bench.node.counters();
-    assert_eq!(counters.computed + counters.bridged + counters.refused, counters.cycles);
+    assert_eq!(
+        counters.computed + counters.bridged + counters.refused,
+        counters.cycles
+    );
     assert_eq!(counters.cycles, cycles + 3, "{counters:?}");
     for share in [counters.bridged, counters.refused, counters.by_deadline] {
         assert!((400..2000).contains(&share), "{counters:?}");
@@ -555,7 +804,12 @@ fn computed_bridged_and_refused_are_all_cycles_whatever_the_bus_does() {
 fn the_feedback_wraps_at_32_bits_and_goes_on() {
     let mut bench = Bench::enabled(Mounting::default());
     let m_per_s = 0.4;
-    bench.node.place(Motion { motor_m: 20.479, table_m: 20.479, motor_m_per_s: m_per_s, table_m_per_s: m_per_s });
+    bench.node.place(Motion {
+        motor_m: 20.479,
+        table_m: 20.479,
+        motor_m_per_s: m_per_s,
+        table_m_per_s: m_per_s,
+    });
     let (mut before, mut way) = (None, 0_i64);
     for _ in 0..20 {
         bench.cycle(1200.0, RUN);
@@ -564,17 +818,28 @@ fn the_feedback_wraps_at_32_bits_and_goes_on() {
     }
     let wraps = bench.sent.windows(2).count() > 0 && before.unwrap() < 0;
     assert!(wraps, "2048 revolutions of 2^20 increments are 2^31");
-    assert!((way as f64 / 1_048_576.0 * 0.010 - 19.0 * 0.4e-3).abs() < 2.0e-4, "{way} increments");
+    assert!(
+        (way as f64 / 1_048_576.0 * 0.010 - 19.0 * 0.4e-3).abs() < 2.0e-4,
+        "{way} increments"
+    );
 }
 
 /// What a bad bus and a bad master may do in a cycle.
 #[derive(Clone, Copy, Debug)]
 enum Event {
-    Sync { lost: bool },
+    Sync {
+        lost: bool,
+    },
     Stray(u8),
-    Torque { force_n: f64, control: u16, behind: u8 },
+    Torque {
+        force_n: f64,
+        control: u16,
+        behind: u8,
+    },
     Nmt(NmtCommand),
-    Pause { us: u64 },
+    Pause {
+        us: u64,
+    },
     DropOut,
     Restore,
 }
@@ -614,8 +879,14 @@ fn happen(bench: &mut Bench, event: Event) {
     match event {
         Event::Sync { lost } => bench.sync_unless(lost),
         Event::Stray(counter) => bench.sync_frame(count(counter)),
-        Event::Torque { force_n, control, behind } => {
-            let counter = u8::try_from((u16::from(bench.counter.get()) + 239 - u16::from(behind)) % 240 + 1).unwrap();
+        Event::Torque {
+            force_n,
+            control,
+            behind,
+        } => {
+            let counter =
+                u8::try_from((u16::from(bench.counter.get()) + 239 - u16::from(behind)) % 240 + 1)
+                    .unwrap();
             bench.torque(force_n, ControlWord(control), count(counter));
         }
         Event::Nmt(command) => bench.nmt(command),

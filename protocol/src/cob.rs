@@ -1,8 +1,9 @@
-//! Communication object identifiers (COB-ID) after CANopen's predefined connection set, CiA 301 §7.3.5.
+//! Communication object identifiers (COB-ID) after CANopen's predefined connection set, CiA 301
+//! §7.3.5.
 //!
-//! Every role has its own node id: axis `a` has its servo at `0x01 + a` and its plant at `0x11 + a`. A node
-//! therefore has to know both ids of its axis to tell a setpoint (`0x200 + servo`) from a torque command
-//! (`0x200 + plant`); [`AxisIds::classify`] is that one place.
+//! Every role has its own node id: axis `a` has its servo at `0x01 + a` and its plant at `0x11 +
+//! a`. A node therefore has to know both ids of its axis to tell a setpoint (`0x200 + servo`) from
+//! a torque command (`0x200 + plant`); [`AxisIds::classify`] is that one place.
 
 use embedded_can::StandardId;
 
@@ -14,7 +15,11 @@ impl NodeId {
     /// A node id, or `None` outside 1…127.
     #[must_use]
     pub const fn new(id: u8) -> Option<Self> {
-        if id >= 1 && id <= 127 { Some(Self(id)) } else { None }
+        if id >= 1 && id <= 127 {
+            Some(Self(id))
+        } else {
+            None
+        }
     }
 
     /// The id as it stands on the bus.
@@ -68,9 +73,13 @@ impl FunctionCode {
         self.with_low_bits(0)
     }
 
-    #[expect(clippy::as_conversions, reason = "repr(u16) code and u8 to u16: both lossless; From is not const")]
+    #[expect(
+        clippy::as_conversions,
+        reason = "repr(u16) code and u8 to u16: both lossless; From is not const"
+    )]
     const fn with_low_bits(self, low: u8) -> StandardId {
-        // The largest code is 0x700 and `low` is below 0x80, so the value always fits 11 bits; `MAX` is never taken.
+        // The largest code is 0x700 and `low` is below 0x80, so the value always fits 11 bits;
+        // `MAX` is never taken.
         match StandardId::new(self as u16 | (low & 0x7F) as u16) {
             Some(id) => id,
             None => StandardId::MAX,
@@ -138,13 +147,17 @@ pub struct AxisIds {
 }
 
 impl AxisIds {
-    /// The default ids of axis `index`: servo at `0x01 + index`, plant at `0x11 + index`; `None` beyond 16 axes.
+    /// The default ids of axis `index`: servo at `0x01 + index`, plant at `0x11 + index`; `None`
+    /// beyond 16 axes.
     #[must_use]
     pub const fn of_axis(index: u8) -> Option<Self> {
         if index > 15 {
             return None;
         }
-        match (NodeId::new(index.saturating_add(0x01)), NodeId::new(index.saturating_add(0x11))) {
+        match (
+            NodeId::new(index.saturating_add(0x01)),
+            NodeId::new(index.saturating_add(0x11)),
+        ) {
             (Some(servo), Some(plant)) => Some(Self { servo, plant }),
             _ => None,
         }
@@ -200,7 +213,10 @@ const FUNCTION_BITS: u16 = 0x780;
 /// The seven that tell the node.
 const NODE_BITS: u16 = 0x07F;
 
-#[expect(clippy::as_conversions, reason = "u8 to u16 is lossless; From is not const")]
+#[expect(
+    clippy::as_conversions,
+    reason = "u8 to u16 is lossless; From is not const"
+)]
 const fn node_bits(node: NodeId) -> u16 {
     node.0 as u16
 }
@@ -230,7 +246,9 @@ mod tests {
             let ids = AxisIds::of_axis(index).unwrap();
             for raw in 0..=0x7FF {
                 let id = StandardId::new(raw).unwrap();
-                let wanted = FrameKind::ALL.into_iter().find(|kind| ids.identifier(*kind) == id);
+                let wanted = FrameKind::ALL
+                    .into_iter()
+                    .find(|kind| ids.identifier(*kind) == id);
                 assert_eq!(ids.classify(id), wanted, "{raw:#05x} on axis {index}");
             }
         }

@@ -14,7 +14,11 @@ impl SyncCounter {
     /// A counter, or `None` outside 1…240.
     #[must_use]
     pub const fn new(value: u8) -> Option<Self> {
-        if value >= 1 && value <= SYNC_OVERFLOW { Some(Self(value)) } else { None }
+        if value >= 1 && value <= SYNC_OVERFLOW {
+            Some(Self(value))
+        } else {
+            None
+        }
     }
 
     /// The value on the wire.
@@ -26,7 +30,11 @@ impl SyncCounter {
     /// The counter of the cycle after this one.
     #[must_use]
     pub const fn next(self) -> Self {
-        if self.0 >= SYNC_OVERFLOW { Self(1) } else { Self(self.0.saturating_add(1)) }
+        if self.0 >= SYNC_OVERFLOW {
+            Self(1)
+        } else {
+            Self(self.0.saturating_add(1))
+        }
     }
 
     /// Cycles from `earlier` to `self`, modulo 240: 0…239.
@@ -41,7 +49,9 @@ impl SyncCounter {
         if self.0 >= earlier.0 {
             self.0.saturating_sub(earlier.0)
         } else {
-            SYNC_OVERFLOW.saturating_sub(earlier.0).saturating_add(self.0)
+            SYNC_OVERFLOW
+                .saturating_sub(earlier.0)
+                .saturating_add(self.0)
         }
     }
 }

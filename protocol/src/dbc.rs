@@ -1,6 +1,7 @@
 //! `quadrant.dbc` from the frame table, for the node ids of a machine.
 //!
-//! With one axis the messages have the names of the table; with more, each carries the axis index (`Feedback_0`).
+//! With one axis the messages have the names of the table; with more, each carries the axis index
+//! (`Feedback_0`).
 
 use core::fmt::{self, Write};
 
@@ -16,12 +17,18 @@ use crate::table::{FRAMES, FrameSpec, Sender, Signal};
 pub fn write(out: &mut impl Write, axes: &[AxisIds]) -> fmt::Result {
     head(out, axes)?;
     for (index, ids) in axes.iter().enumerate() {
-        for frame in FRAMES.iter().filter(|frame| index == 0 || !is_broadcast(frame.kind)) {
+        for frame in FRAMES
+            .iter()
+            .filter(|frame| index == 0 || !is_broadcast(frame.kind))
+        {
             message(out, *ids, axis_suffix(axes, index, frame.kind), frame)?;
         }
     }
     for (index, ids) in axes.iter().enumerate() {
-        for frame in FRAMES.iter().filter(|frame| index == 0 || !is_broadcast(frame.kind)) {
+        for frame in FRAMES
+            .iter()
+            .filter(|frame| index == 0 || !is_broadcast(frame.kind))
+        {
             comments(out, *ids, frame)?;
         }
     }
@@ -44,7 +51,12 @@ fn head(out: &mut impl Write, axes: &[AxisIds]) -> fmt::Result {
     write!(out, "\n\n")
 }
 
-fn message(out: &mut impl Write, ids: AxisIds, suffix: Option<usize>, frame: &FrameSpec) -> fmt::Result {
+fn message(
+    out: &mut impl Write,
+    ids: AxisIds,
+    suffix: Option<usize>,
+    frame: &FrameSpec,
+) -> fmt::Result {
     write!(out, "BO_ {} {}", raw(ids, frame.kind), frame.name)?;
     if let Some(index) = suffix {
         write!(out, "_{index}")?;
@@ -60,8 +72,18 @@ fn message(out: &mut impl Write, ids: AxisIds, suffix: Option<usize>, frame: &Fr
 
 fn signal(out: &mut impl Write, ids: AxisIds, sender: Sender, signal: &Signal) -> fmt::Result {
     let sign = if signal.signed { '-' } else { '+' };
-    let Signal { name, start, length, weight, .. } = signal;
-    write!(out, " SG_ {name} : {start}|{length}@1{sign} ({weight},0) [0|0] \"{}\" ", weight.unit)?;
+    let Signal {
+        name,
+        start,
+        length,
+        weight,
+        ..
+    } = signal;
+    write!(
+        out,
+        " SG_ {name} : {start}|{length}@1{sign} ({weight},0) [0|0] \"{}\" ",
+        weight.unit
+    )?;
     match sender {
         Sender::Workbench => write!(out, "Servo_{},Plant_{}", ids.servo.get(), ids.plant.get())?,
         Sender::Servo => write!(out, "Workbench,Plant_{}", ids.plant.get())?,
@@ -80,7 +102,13 @@ fn node(out: &mut impl Write, ids: AxisIds, sender: Sender) -> fmt::Result {
 
 fn comments(out: &mut impl Write, ids: AxisIds, frame: &FrameSpec) -> fmt::Result {
     for signal in frame.signals {
-        writeln!(out, "CM_ SG_ {} {} \"{}\";", raw(ids, frame.kind), signal.name, signal.text)?;
+        writeln!(
+            out,
+            "CM_ SG_ {} {} \"{}\";",
+            raw(ids, frame.kind),
+            signal.name,
+            signal.text
+        )?;
     }
     Ok(())
 }

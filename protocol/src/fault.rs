@@ -1,6 +1,7 @@
 //! Faults that a node can latch, with their EMCY error codes (CiA 301 table 26, CiA 402-2 §A.3).
 //!
-//! One table makes the enum, its list, its codes and its texts, so that a fault cannot be forgotten in one of them.
+//! One table makes the enum, its list, its codes and its texts, so that a fault cannot be forgotten
+//! in one of them.
 
 macro_rules! faults {
     ($($(#[$doc:meta])* $name:ident = $code:literal, $emergency:literal, $text:literal;)*) => {

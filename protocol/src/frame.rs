@@ -15,7 +15,12 @@ impl CanFrame {
     /// A data frame with all 8 bytes.
     #[must_use]
     pub fn full(id: impl Into<Id>, data: [u8; 8]) -> Self {
-        Self { id: id.into(), remote: false, len: 8, data }
+        Self {
+            id: id.into(),
+            remote: false,
+            len: 8,
+            data,
+        }
     }
 
     /// A data frame of the first `LEN` bytes; `LEN` is checked when the program is compiled.
@@ -26,15 +31,28 @@ impl CanFrame {
         for (to, from) in data.iter_mut().zip(payload) {
             *to = from;
         }
-        #[expect(clippy::as_conversions, clippy::cast_possible_truncation, reason = "LEN is at most 8, asserted above")]
+        #[expect(
+            clippy::as_conversions,
+            clippy::cast_possible_truncation,
+            reason = "LEN is at most 8, asserted above"
+        )]
         let len = LEN as u8;
-        Self { id: id.into(), remote: false, len, data }
+        Self {
+            id: id.into(),
+            remote: false,
+            len,
+            data,
+        }
     }
 
     /// The data bytes; empty for a remote frame.
     #[must_use]
     pub fn payload(&self) -> &[u8] {
-        if self.remote { &[] } else { self.data.get(..usize::from(self.len)).unwrap_or(&[]) }
+        if self.remote {
+            &[]
+        } else {
+            self.data.get(..usize::from(self.len)).unwrap_or(&[])
+        }
     }
 }
 
@@ -42,12 +60,22 @@ impl Frame for CanFrame {
     fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
         let mut bytes = [0; 8];
         bytes.get_mut(..data.len())?.copy_from_slice(data);
-        Some(Self { id: id.into(), remote: false, len: u8::try_from(data.len()).ok()?, data: bytes })
+        Some(Self {
+            id: id.into(),
+            remote: false,
+            len: u8::try_from(data.len()).ok()?,
+            data: bytes,
+        })
     }
 
     fn new_remote(id: impl Into<Id>, dlc: usize) -> Option<Self> {
         let len = u8::try_from(dlc).ok().filter(|len| *len <= 8)?;
-        Some(Self { id: id.into(), remote: true, len, data: [0; 8] })
+        Some(Self {
+            id: id.into(),
+            remote: true,
+            len,
+            data: [0; 8],
+        })
     }
 
     fn is_extended(&self) -> bool {

@@ -1,11 +1,12 @@
 //! The interface control document of Quadrant, in code.
 //!
-//! Servo, plant and workbench meet only in the frames that this crate defines: identifiers after CANopen's
-//! predefined connection set ([`cob`]), raw frames ([`frame`]), LSB weights in types ([`weight`]), typed messages with a
-//! total decoder ([`message`]), the table from which bus load, DBC and docs are made ([`table`], [`load`], [`dbc`]).
+//! Servo, plant and workbench meet only in the frames that this crate defines: identifiers after
+//! CANopen's predefined connection set ([`cob`]), raw frames ([`frame`]), LSB weights in types
+//! ([`weight`]), typed messages with a total decoder ([`message`]), the table from which bus load,
+//! DBC and docs are made ([`table`], [`load`], [`dbc`]).
 //!
-//! No float, no allocation, no panic path: a frame that is not one of ours is an error value that names the
-//! field, what was wanted and what came.
+//! No float, no allocation, no panic path: a frame that is not one of ours is an error value that
+//! names the field, what was wanted and what came.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(
@@ -17,7 +18,15 @@
     clippy::arithmetic_side_effects,
     clippy::as_conversions
 )]
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, clippy::arithmetic_side_effects, clippy::indexing_slicing))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::panic,
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing
+    )
+)]
 
 pub mod cob;
 pub mod counter;

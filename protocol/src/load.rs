@@ -1,11 +1,11 @@
 //! Bus load from the frame table, with worst-case bit stuffing.
 //!
-//! Classic frame, 11-bit identifier, `n` data bytes: `47 + 8n` bits with the interframe space, and one stuff bit for
-//! every four of the `34 + 8n` bits that are stuffed (Davis, Burns, Bril, Lukkien, "Controller Area Network
-//! schedulability analysis: refuted, revisited and revised", 2007, eq. 1).
-//! CAN FD (ISO 11898-1:2015): 17 arbitration bits up to BRS with 4 stuff bits, 12 bits from ACK to the interframe space
-//! at the nominal rate; ESI, DLC and data with one stuff bit in four, stuff count 4, CRC 17 with 6 fixed stuff bits and
-//! the CRC delimiter at the data rate.
+//! Classic frame, 11-bit identifier, `n` data bytes: `47 + 8n` bits with the interframe space, and
+//! one stuff bit for every four of the `34 + 8n` bits that are stuffed (Davis, Burns, Bril,
+//! Lukkien, "Controller Area Network schedulability analysis: refuted, revisited and revised",
+//! 2007, eq. 1). CAN FD (ISO 11898-1:2015): 17 arbitration bits up to BRS with 4 stuff bits, 12
+//! bits from ACK to the interframe space at the nominal rate; ESI, DLC and data with one stuff bit
+//! in four, stuff count 4, CRC 17 with 6 fixed stuff bits and the CRC delimiter at the data rate.
 
 use crate::table::{FRAMES, FrameSpec, Rate, Sender};
 
@@ -36,9 +36,11 @@ impl BusFormat {
         let length = u64::from(length.min(8));
         match self {
             Self::Classic { bit_rate } => bits_ns(classic_bits(length), bit_rate),
-            Self::Fd { nominal_rate, data_rate } => {
-                bits_ns(FD_NOMINAL_BITS, nominal_rate).saturating_add(bits_ns(fd_data_bits(length), data_rate))
-            }
+            Self::Fd {
+                nominal_rate,
+                data_rate,
+            } => bits_ns(FD_NOMINAL_BITS, nominal_rate)
+                .saturating_add(bits_ns(fd_data_bits(length), data_rate)),
         }
     }
 }
@@ -46,13 +48,21 @@ impl BusFormat {
 const FD_NOMINAL_BITS: u64 = 17 + 4 + 12;
 
 const fn classic_bits(length: u64) -> u64 {
-    let stuffed = length.saturating_mul(8).saturating_add(33).saturating_div(4);
-    length.saturating_mul(8).saturating_add(47).saturating_add(stuffed)
+    let stuffed = length
+        .saturating_mul(8)
+        .saturating_add(33)
+        .saturating_div(4);
+    length
+        .saturating_mul(8)
+        .saturating_add(47)
+        .saturating_add(stuffed)
 }
 
 const fn fd_data_bits(length: u64) -> u64 {
     let plain = length.saturating_mul(8).saturating_add(5);
-    plain.saturating_add(plain.saturating_div(4)).saturating_add(4 + 17 + 6 + 1)
+    plain
+        .saturating_add(plain.saturating_div(4))
+        .saturating_add(4 + 17 + 6 + 1)
 }
 
 const fn bits_ns(bits: u64, rate: u32) -> u64 {
@@ -60,24 +70,38 @@ const fn bits_ns(bits: u64, rate: u32) -> u64 {
     bits.saturating_mul(1_000_000_000).div_ceil(widen(rate))
 }
 
-#[expect(clippy::as_conversions, reason = "u32 to u64 is lossless; From is not const")]
+#[expect(
+    clippy::as_conversions,
+    reason = "u32 to u64 is lossless; From is not const"
+)]
 const fn widen(value: u32) -> u64 {
     value as u64
 }
 
 /// Cyclic load of a bus in per mille of its capacity.
 ///
-/// `axes` on this bus, `cycle_ns` the SYNC period. SYNC is counted once, all other cyclic frames once per axis.
+/// `axes` on this bus, `cycle_ns` the SYNC period. SYNC is counted once, all other cyclic frames
+/// once per axis.
 #[must_use]
 pub fn cyclic_load_per_mille(format: BusFormat, axes: u8, cycle_ns: u64) -> u32 {
-    let busy_ns = FRAMES.iter().fold(0_u64, |sum, frame| sum.saturating_add(share_ns(format, frame, axes)));
+    let busy_ns = FRAMES.iter().fold(0_u64, |sum, frame| {
+        sum.saturating_add(share_ns(format, frame, axes))
+    });
     let per_mille = busy_ns.saturating_mul(1000).checked_div(cycle_ns);
-    per_mille.and_then(|load| u32::try_from(load).ok()).unwrap_or(u32::MAX)
+    per_mille
+        .and_then(|load| u32::try_from(load).ok())
+        .unwrap_or(u32::MAX)
 }
 
 fn share_ns(format: BusFormat, frame: &FrameSpec, axes: u8) -> u64 {
-    let Rate::EveryCycles(cycles) = frame.rate else { return 0 };
-    let times = if frame.sender == Sender::Workbench && frame.length == 1 { 1 } else { u64::from(axes) };
+    let Rate::EveryCycles(cycles) = frame.rate else {
+        return 0;
+    };
+    let times = if frame.sender == Sender::Workbench && frame.length == 1 {
+        1
+    } else {
+        u64::from(axes)
+    };
     let each_time = format.frame_time_ns(frame.length).saturating_mul(times);
     each_time.checked_div(u64::from(cycles)).unwrap_or(u64::MAX)
 }
@@ -86,8 +110,13 @@ fn share_ns(format: BusFormat, frame: &FrameSpec, axes: u8) -> u64 {
 mod tests {
     use super::*;
 
-    const MEGABIT: BusFormat = BusFormat::Classic { bit_rate: 1_000_000 };
-    const FD: BusFormat = BusFormat::Fd { nominal_rate: 1_000_000, data_rate: 5_000_000 };
+    const MEGABIT: BusFormat = BusFormat::Classic {
+        bit_rate: 1_000_000,
+    };
+    const FD: BusFormat = BusFormat::Fd {
+        nominal_rate: 1_000_000,
+        data_rate: 5_000_000,
+    };
 
     #[test]
     fn the_longest_classic_frame_has_135_bits() {
@@ -98,7 +127,8 @@ mod tests {
 
     #[test]
     fn loads_of_the_usual_layouts() {
-        // Per mille, with status and plant status in every tenth cycle: one axis at 1 kHz stays below 65 %.
+        // Per mille, with status and plant status in every tenth cycle: one axis at 1 kHz stays
+        // below 65 %.
         assert_eq!(cyclic_load_per_mille(MEGABIT, 1, 1_000_000), 488);
         assert_eq!(cyclic_load_per_mille(MEGABIT, 2, 2_000_000), 455);
         assert_eq!(cyclic_load_per_mille(MEGABIT, 2, 1_000_000), 911);

@@ -1,8 +1,8 @@
 //! Typed messages and their total codec.
 //!
-//! [`decode`] takes any frame of an axis and gives a value or an error that names the field; [`Message::encode`] cannot
-//! fail, because an illegal message cannot be built. The byte layout is that of [`crate::table`], and a test holds the two
-//! together bit by bit.
+//! [`decode`] takes any frame of an axis and gives a value or an error that names the field;
+//! [`Message::encode`] cannot fail, because an illegal message cannot be built. The byte layout is
+//! that of [`crate::table`], and a test holds the two together bit by bit.
 
 use core::fmt;
 
@@ -17,7 +17,10 @@ use crate::fault::Fault;
 use crate::frame::CanFrame;
 use crate::sdo;
 use crate::states::{BrakeState, ControlWord, StatusWord};
-use crate::weight::{FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm, TorquePerMille};
+use crate::weight::{
+    FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm,
+    TorquePerMille,
+};
 
 /// Encoder positions of one cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,7 +127,11 @@ pub struct DecodeError {
 
 impl fmt::Display for DecodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} frame: {} must be {}, got {}", self.kind, self.field, self.wanted, self.got)
+        write!(
+            f,
+            "{:?} frame: {} must be {}, got {}",
+            self.kind, self.field, self.wanted, self.got
+        )
     }
 }
 
@@ -144,7 +151,9 @@ pub enum Decoded {
 /// # Errors
 /// [`DecodeError`] where the identifier is ours and the content is not.
 pub fn decode(ids: AxisIds, frame: &CanFrame) -> Result<Decoded, DecodeError> {
-    let Id::Standard(id) = frame.id() else { return Ok(Decoded::Foreign) };
+    let Id::Standard(id) = frame.id() else {
+        return Ok(Decoded::Foreign);
+    };
     match ids.classify(id) {
         None => Ok(Decoded::Foreign),
         Some(kind) => decode_as(kind, frame).map(Decoded::Message),
@@ -157,11 +166,18 @@ pub fn decode(ids: AxisIds, frame: &CanFrame) -> Result<Decoded, DecodeError> {
 /// [`DecodeError`] with the first field that is wrong.
 pub fn decode_as(kind: FrameKind, frame: &CanFrame) -> Result<Message, DecodeError> {
     if frame.is_remote_frame() {
-        return Err(DecodeError { kind, field: "RTR", wanted: "a data frame", got: 1 });
+        return Err(DecodeError {
+            kind,
+            field: "RTR",
+            wanted: "a data frame",
+            got: 1,
+        });
     }
     match kind {
         FrameKind::Nmt => nmt(bytes(kind, frame, "2 bytes")?),
-        FrameKind::Sync => bytes(kind, frame, "1 byte").and_then(|[c]| Ok(Message::Sync(counter(kind, c)?))),
+        FrameKind::Sync => {
+            bytes(kind, frame, "1 byte").and_then(|[c]| Ok(Message::Sync(counter(kind, c)?)))
+        }
         FrameKind::Feedback => feedback(bytes(kind, frame, "8 bytes")?),
         FrameKind::Torque => torque(bytes(kind, frame, "7 bytes")?),
         FrameKind::Setpoint => setpoint(bytes(kind, frame, "8 bytes")?),
@@ -171,24 +187,48 @@ pub fn decode_as(kind: FrameKind, frame: &CanFrame) -> Result<Message, DecodeErr
         FrameKind::PlantHeartbeat => heartbeat(kind, frame).map(Message::PlantHeartbeat),
         FrameKind::ServoEmergency => emergency(kind, frame).map(Message::ServoEmergency),
         FrameKind::PlantEmergency => emergency(kind, frame).map(Message::PlantEmergency),
-        FrameKind::SdoRequest => bytes(kind, frame, "8 bytes").map(|b| Message::SdoRequest(sdo::Request::decode(b))),
-        FrameKind::SdoResponse => bytes(kind, frame, "8 bytes").map(|b| Message::SdoResponse(sdo::Response::decode(b))),
+        FrameKind::SdoRequest => {
+            bytes(kind, frame, "8 bytes").map(|b| Message::SdoRequest(sdo::Request::decode(b)))
+        }
+        FrameKind::SdoResponse => {
+            bytes(kind, frame, "8 bytes").map(|b| Message::SdoResponse(sdo::Response::decode(b)))
+        }
     }
 }
 
-fn bytes<const N: usize>(kind: FrameKind, frame: &CanFrame, wanted: &'static str) -> Result<[u8; N], DecodeError> {
+fn bytes<const N: usize>(
+    kind: FrameKind,
+    frame: &CanFrame,
+    wanted: &'static str,
+) -> Result<[u8; N], DecodeError> {
     let payload = frame.payload();
     let got = u32::try_from(payload.len()).unwrap_or(u32::MAX);
-    payload.try_into().map_err(|_| DecodeError { kind, field: "length", wanted, got })
+    payload.try_into().map_err(|_| DecodeError {
+        kind,
+        field: "length",
+        wanted,
+        got,
+    })
 }
 
 fn counter(kind: FrameKind, value: u8) -> Result<SyncCounter, DecodeError> {
-    SyncCounter::new(value).ok_or(DecodeError { kind, field: "counter", wanted: "1 to 240", got: u32::from(value) })
+    SyncCounter::new(value).ok_or(DecodeError {
+        kind,
+        field: "counter",
+        wanted: "1 to 240",
+        got: u32::from(value),
+    })
 }
 
 fn nmt([command, node]: [u8; 2]) -> Result<Message, DecodeError> {
-    let error = |field, wanted, got| DecodeError { kind: FrameKind::Nmt, field, wanted, got: u32::from(got) };
-    let known = NmtCommand::from_byte(command).map_err(|_| error("command", "1, 2, 128, 129 or 130", command))?;
+    let error = |field, wanted, got| DecodeError {
+        kind: FrameKind::Nmt,
+        field,
+        wanted,
+        got: u32::from(got),
+    };
+    let known = NmtCommand::from_byte(command)
+        .map_err(|_| error("command", "1, 2, 128, 129 or 130", command))?;
     if node > 127 {
         return Err(error("node", "0 to 127", node));
     }
@@ -221,18 +261,37 @@ fn setpoint([a, b, count, c, d, e, f, g]: [u8; 8]) -> Result<Message, DecodeErro
 
 fn status_word(kind: FrameKind, bytes: [u8; 2]) -> Result<StatusWord, DecodeError> {
     let word = StatusWord(u16::from_le_bytes(bytes));
-    let error = DecodeError { kind, field: "status word", wanted: "a CiA 402 state", got: u32::from(word.0) };
+    let error = DecodeError {
+        kind,
+        field: "status word",
+        wanted: "a CiA 402 state",
+        got: u32::from(word.0),
+    };
     word.state().map(|_| word).ok_or(error)
 }
 
 fn fault(kind: FrameKind, code: u8) -> Result<Option<Fault>, DecodeError> {
-    let error = DecodeError { kind, field: "fault", wanted: "a known fault code", got: u32::from(code) };
-    if code == 0 { Ok(None) } else { Fault::from_code(code).map(Some).ok_or(error) }
+    let error = DecodeError {
+        kind,
+        field: "fault",
+        wanted: "a known fault code",
+        got: u32::from(code),
+    };
+    if code == 0 {
+        Ok(None)
+    } else {
+        Fault::from_code(code).map(Some).ok_or(error)
+    }
 }
 
 fn plant_status([a, b, brake, code, c, d, e, f]: [u8; 8]) -> Result<Message, DecodeError> {
     let kind = FrameKind::PlantStatus;
-    let error = DecodeError { kind, field: "brake", wanted: "0 to 3", got: u32::from(brake) };
+    let error = DecodeError {
+        kind,
+        field: "brake",
+        wanted: "0 to 3",
+        got: u32::from(brake),
+    };
     Ok(Message::PlantStatus(PlantStatus {
         status: status_word(kind, [a, b])?,
         brake: BrakeState::from_code(brake).ok_or(error)?,
@@ -252,13 +311,23 @@ fn status([a, b, c, d, e, f, g, code]: [u8; 8]) -> Result<Message, DecodeError> 
 
 fn heartbeat(kind: FrameKind, frame: &CanFrame) -> Result<NmtState, DecodeError> {
     let [state] = bytes(kind, frame, "1 byte")?;
-    let error = DecodeError { kind, field: "NMT state", wanted: "0, 4, 5 or 127", got: u32::from(state) };
+    let error = DecodeError {
+        kind,
+        field: "NMT state",
+        wanted: "0, 4, 5 or 127",
+        got: u32::from(state),
+    };
     NmtState::from_wire(state).map_err(|_| error)
 }
 
 fn emergency(kind: FrameKind, frame: &CanFrame) -> Result<EmergencyMessage, DecodeError> {
     let payload: [u8; 8] = bytes(kind, frame, "8 bytes")?;
-    EmergencyMessage::decode(&payload).map_err(|_| DecodeError { kind, field: "length", wanted: "8 bytes", got: 8 })
+    EmergencyMessage::decode(&payload).map_err(|_| DecodeError {
+        kind,
+        field: "length",
+        wanted: "8 bytes",
+        got: 8,
+    })
 }
 
 impl Message {
@@ -287,7 +356,9 @@ impl Message {
     pub fn encode(&self, ids: AxisIds) -> CanFrame {
         let id = ids.identifier(self.kind());
         match *self {
-            Self::Nmt(command, node) => CanFrame::of(id, [nmt_code(command), node.map_or(0, NodeId::get)]),
+            Self::Nmt(command, node) => {
+                CanFrame::of(id, [nmt_code(command), node.map_or(0, NodeId::get)])
+            }
             Self::Sync(count) => CanFrame::of(id, [count.get()]),
             Self::Feedback(feedback) => CanFrame::full(id, feedback.bytes()),
             Self::Torque(torque) => CanFrame::of(id, torque.bytes()),
@@ -297,7 +368,9 @@ impl Message {
             Self::ServoHeartbeat(state) | Self::PlantHeartbeat(state) => {
                 CanFrame::of(id, canopen_rs::nmt::encode_heartbeat(state))
             }
-            Self::ServoEmergency(message) | Self::PlantEmergency(message) => CanFrame::full(id, message.encode()),
+            Self::ServoEmergency(message) | Self::PlantEmergency(message) => {
+                CanFrame::full(id, message.encode())
+            }
             Self::SdoRequest(request) => CanFrame::full(id, request.encode()),
             Self::SdoResponse(response) => CanFrame::full(id, response.encode()),
         }
@@ -342,7 +415,16 @@ impl PlantStatus {
     fn bytes(self) -> [u8; 8] {
         let [a, b] = self.status.0.to_le_bytes();
         let [c, d, e, f] = self.torque.0.to_le_bytes();
-        [a, b, self.brake.code(), self.fault.map_or(0, Fault::code), c, d, e, f]
+        [
+            a,
+            b,
+            self.brake.code(),
+            self.fault.map_or(0, Fault::code),
+            c,
+            d,
+            e,
+            f,
+        ]
     }
 }
 

@@ -1,7 +1,8 @@
 //! SDO, expedited transfers only (CiA 301 §7.2.4.3): requests and responses as values.
 //!
-//! `canopen-rs` serves for NMT and EMCY; its SDO side lacks a decoder of requests and the abort codes of range checks and device state, and its
-//! encoder keeps a panic path, so the expedited layout is here.
+//! `canopen-rs` serves for NMT and EMCY; its SDO side lacks a decoder of requests and the abort
+//! codes of range checks and device state, and its encoder keeps a panic path, so the expedited
+//! layout is here.
 
 /// Object index and subindex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,26 +38,38 @@ impl Expedited {
     /// One byte.
     #[must_use]
     pub const fn u8(value: u8) -> Self {
-        Self { bytes: [value, 0, 0, 0], len: 1 }
+        Self {
+            bytes: [value, 0, 0, 0],
+            len: 1,
+        }
     }
 
     /// Two bytes.
     #[must_use]
     pub const fn u16(value: u16) -> Self {
         let [a, b] = value.to_le_bytes();
-        Self { bytes: [a, b, 0, 0], len: 2 }
+        Self {
+            bytes: [a, b, 0, 0],
+            len: 2,
+        }
     }
 
     /// Four bytes.
     #[must_use]
     pub const fn u32(value: u32) -> Self {
-        Self { bytes: value.to_le_bytes(), len: 4 }
+        Self {
+            bytes: value.to_le_bytes(),
+            len: 4,
+        }
     }
 
     /// Four bytes, signed.
     #[must_use]
     pub const fn i32(value: i32) -> Self {
-        Self { bytes: value.to_le_bytes(), len: 4 }
+        Self {
+            bytes: value.to_le_bytes(),
+            len: 4,
+        }
     }
 
     /// The value as the 4 bytes say it; bytes beyond the length are zero.
@@ -79,12 +92,16 @@ impl Expedited {
 
     /// Length in bytes, 1…4.
     #[must_use]
-    #[expect(clippy::len_without_is_empty, reason = "an expedited transfer is never empty")]
+    #[expect(
+        clippy::len_without_is_empty,
+        reason = "an expedited transfer is never empty"
+    )]
     pub const fn len(self) -> u8 {
         self.len
     }
 
-    /// Command specifier of an expedited transfer with its size: bits 2 and 3 count the bytes without data.
+    /// Command specifier of an expedited transfer with its size: bits 2 and 3 count the bytes
+    /// without data.
     const fn command(self, request_or_response: u8) -> u8 {
         let unused = 4_u8.saturating_sub(self.len) & 3;
         request_or_response | unused.wrapping_shl(2) | 0x03
@@ -117,10 +134,34 @@ impl Request {
         match command {
             0x40 => Self::Upload(address),
             0x80 => Self::Abort(address),
-            0x22 | 0x23 => Self::Download(address, Expedited { bytes: [a, b, c, d], len: 4 }),
-            0x27 => Self::Download(address, Expedited { bytes: [a, b, c, 0], len: 3 }),
-            0x2B => Self::Download(address, Expedited { bytes: [a, b, 0, 0], len: 2 }),
-            0x2F => Self::Download(address, Expedited { bytes: [a, 0, 0, 0], len: 1 }),
+            0x22 | 0x23 => Self::Download(
+                address,
+                Expedited {
+                    bytes: [a, b, c, d],
+                    len: 4,
+                },
+            ),
+            0x27 => Self::Download(
+                address,
+                Expedited {
+                    bytes: [a, b, c, 0],
+                    len: 3,
+                },
+            ),
+            0x2B => Self::Download(
+                address,
+                Expedited {
+                    bytes: [a, b, 0, 0],
+                    len: 2,
+                },
+            ),
+            0x2F => Self::Download(
+                address,
+                Expedited {
+                    bytes: [a, 0, 0, 0],
+                    len: 1,
+                },
+            ),
             _ => Self::Unsupported(address),
         }
     }
@@ -131,7 +172,9 @@ impl Request {
         match self {
             Self::Upload(address) => address.transfer(0x40, [0; 4]),
             Self::Download(address, data) => address.transfer(data.command(0x20), data.bytes),
-            Self::Unsupported(address) | Self::Abort(address) => abort(address, AbortCode::GeneralError.value()),
+            Self::Unsupported(address) | Self::Abort(address) => {
+                abort(address, AbortCode::GeneralError.value())
+            }
         }
     }
 }
@@ -158,10 +201,34 @@ impl Response {
         match command {
             0x60 => Self::Downloaded(address),
             0x80 => Self::Aborted(address, u32::from_le_bytes([a, b, c, d])),
-            0x43 => Self::Uploaded(address, Expedited { bytes: [a, b, c, d], len: 4 }),
-            0x47 => Self::Uploaded(address, Expedited { bytes: [a, b, c, 0], len: 3 }),
-            0x4B => Self::Uploaded(address, Expedited { bytes: [a, b, 0, 0], len: 2 }),
-            0x4F => Self::Uploaded(address, Expedited { bytes: [a, 0, 0, 0], len: 1 }),
+            0x43 => Self::Uploaded(
+                address,
+                Expedited {
+                    bytes: [a, b, c, d],
+                    len: 4,
+                },
+            ),
+            0x47 => Self::Uploaded(
+                address,
+                Expedited {
+                    bytes: [a, b, c, 0],
+                    len: 3,
+                },
+            ),
+            0x4B => Self::Uploaded(
+                address,
+                Expedited {
+                    bytes: [a, b, 0, 0],
+                    len: 2,
+                },
+            ),
+            0x4F => Self::Uploaded(
+                address,
+                Expedited {
+                    bytes: [a, 0, 0, 0],
+                    len: 1,
+                },
+            ),
             _ => Self::Unknown,
         }
     }
@@ -234,7 +301,10 @@ impl AbortCode {
 
     /// The 32-bit code on the wire.
     #[must_use]
-    #[expect(clippy::as_conversions, reason = "repr(u32): the discriminant is the code")]
+    #[expect(
+        clippy::as_conversions,
+        reason = "repr(u32): the discriminant is the code"
+    )]
     pub const fn value(self) -> u32 {
         self as u32
     }
@@ -283,14 +353,26 @@ mod tests {
     #[test]
     fn expedited_transfers_have_the_bytes_of_cia_301() {
         let at = Address::new(0x6065, 0x02);
-        assert_eq!(Request::Upload(at).encode(), [0x40, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
-        assert_eq!(Request::Download(at, Expedited::u8(7)).encode(), [0x2F, 0x65, 0x60, 0x02, 7, 0, 0, 0]);
-        assert_eq!(Request::Download(at, Expedited::u16(0x1234)).encode(), [0x2B, 0x65, 0x60, 0x02, 0x34, 0x12, 0, 0]);
+        assert_eq!(
+            Request::Upload(at).encode(),
+            [0x40, 0x65, 0x60, 0x02, 0, 0, 0, 0]
+        );
+        assert_eq!(
+            Request::Download(at, Expedited::u8(7)).encode(),
+            [0x2F, 0x65, 0x60, 0x02, 7, 0, 0, 0]
+        );
+        assert_eq!(
+            Request::Download(at, Expedited::u16(0x1234)).encode(),
+            [0x2B, 0x65, 0x60, 0x02, 0x34, 0x12, 0, 0]
+        );
         assert_eq!(
             Response::Uploaded(at, Expedited::i32(-2)).encode(),
             [0x43, 0x65, 0x60, 0x02, 0xFE, 0xFF, 0xFF, 0xFF]
         );
-        assert_eq!(Response::Downloaded(at).encode(), [0x60, 0x65, 0x60, 0x02, 0, 0, 0, 0]);
+        assert_eq!(
+            Response::Downloaded(at).encode(),
+            [0x60, 0x65, 0x60, 0x02, 0, 0, 0, 0]
+        );
     }
 
     #[test]

@@ -80,7 +80,9 @@ impl StatusWord {
     /// The state that the word tells; `None` for a word outside CiA 402.
     #[must_use]
     pub fn state(self) -> Option<DriveState> {
-        DriveState::ALL.into_iter().find(|state| state.bits() == self.0 & Self::STATE_MASK)
+        DriveState::ALL
+            .into_iter()
+            .find(|state| state.bits() == self.0 & Self::STATE_MASK)
     }
 }
 
@@ -197,7 +199,8 @@ mod tests {
     #[test]
     fn every_state_is_told_apart_by_its_status_word() {
         for state in DriveState::ALL {
-            let noisy = StatusWord::of(state).with(StatusWord::WARNING | StatusWord::INTERNAL_LIMIT | 0x0200);
+            let noisy = StatusWord::of(state)
+                .with(StatusWord::WARNING | StatusWord::INTERNAL_LIMIT | 0x0200);
             assert_eq!(noisy.state(), Some(state));
         }
         assert_eq!(StatusWord(0x0001).state(), None);
@@ -207,9 +210,18 @@ mod tests {
     fn control_words_ask_what_cia_402_says() {
         assert_eq!(ControlWord::SHUTDOWN.command(), Some(Command::Shutdown));
         assert_eq!(ControlWord::SWITCH_ON.command(), Some(Command::SwitchOn));
-        assert_eq!(ControlWord::ENABLE_OPERATION.command(), Some(Command::EnableOperation));
-        assert_eq!(ControlWord::DISABLE_VOLTAGE.command(), Some(Command::DisableVoltage));
+        assert_eq!(
+            ControlWord::ENABLE_OPERATION.command(),
+            Some(Command::EnableOperation)
+        );
+        assert_eq!(
+            ControlWord::DISABLE_VOLTAGE.command(),
+            Some(Command::DisableVoltage)
+        );
         assert_eq!(ControlWord::QUICK_STOP.command(), Some(Command::QuickStop));
-        assert_eq!(ControlWord::FAULT_RESET.command(), Some(Command::FaultReset));
+        assert_eq!(
+            ControlWord::FAULT_RESET.command(),
+            Some(Command::FaultReset)
+        );
     }
 }

@@ -1,9 +1,10 @@
 //! Following SYNC by its counter, the same way in every node.
 //!
-//! A SYNC begins a cycle unless it is a double of the present one, or belongs to a cycle that the node has begun without it: by its own
-//! timer, or because another frame showed that the cycle is on. A stale counter begins the cycle that is due: the frame shows that
-//! a cycle began, whatever its content says. Three stale counters in sequence show that it is this node that is off (a master that paused,
-//! or started again); it follows them.
+//! A SYNC begins a cycle unless it is a double of the present one, or belongs to a cycle that the
+//! node has begun without it: by its own timer, or because another frame showed that the cycle is
+//! on. A stale counter begins the cycle that is due: the frame shows that a cycle began, whatever
+//! its content says. Three stale counters in sequence show that it is this node that is off (a
+//! master that paused, or started again); it follows them.
 
 use crate::counter::{SYNC_OVERFLOW, SyncCounter};
 
@@ -26,7 +27,8 @@ pub enum SyncEvent {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SyncTracker {
     now: Option<SyncCounter>,
-    /// Which of the last 16 cycles were begun without SYNC and still wait for it; bit 0 is the present one.
+    /// Which of the last 16 cycles were begun without SYNC and still wait for it; bit 0 is the
+    /// present one.
     without_sync: u16,
     suspect: Option<(SyncCounter, u8)>,
 }
@@ -43,7 +45,9 @@ impl SyncTracker {
 
     /// A SYNC frame came.
     pub fn take(&mut self, counter: SyncCounter) -> SyncEvent {
-        let Some(now) = self.now else { return self.begin(counter) };
+        let Some(now) = self.now else {
+            return self.begin(counter);
+        };
         let ahead = counter.cycles_since(now);
         if ahead == 0 {
             return self.present();
@@ -80,10 +84,15 @@ impl SyncTracker {
 
     fn present(&mut self) -> SyncEvent {
         self.suspect = None;
-        if self.was_begun_without(0) { SyncEvent::Confirmed } else { SyncEvent::Doubled }
+        if self.was_begun_without(0) {
+            SyncEvent::Confirmed
+        } else {
+            SyncEvent::Doubled
+        }
     }
 
-    /// Whether the cycle so many before the present one was begun without SYNC; its SYNC is then no longer waited for.
+    /// Whether the cycle so many before the present one was begun without SYNC; its SYNC is then no
+    /// longer waited for.
     fn was_begun_without(&mut self, cycles_ago: u8) -> bool {
         let bit = 1_u16.checked_shl(u32::from(cycles_ago)).unwrap_or(0);
         let waited = self.without_sync & bit != 0;
@@ -93,8 +102,15 @@ impl SyncTracker {
 
     fn begin(&mut self, counter: SyncCounter) -> SyncEvent {
         let cycles = self.now.map_or(16, |now| counter.cycles_since(now));
-        let without_sync = self.without_sync.checked_shl(u32::from(cycles)).unwrap_or(0);
-        *self = Self { now: Some(counter), without_sync, suspect: None };
+        let without_sync = self
+            .without_sync
+            .checked_shl(u32::from(cycles))
+            .unwrap_or(0);
+        *self = Self {
+            now: Some(counter),
+            without_sync,
+            suspect: None,
+        };
         SyncEvent::Begin(counter)
     }
 }
@@ -119,7 +135,11 @@ mod tests {
         assert_eq!(tracker.take(count(240)), SyncEvent::Begin(count(240)));
         assert_eq!(tracker.take(count(1)), SyncEvent::Begin(count(1)));
         assert_eq!(tracker.take(count(1)), SyncEvent::Doubled);
-        assert_eq!(tracker.take(count(4)), SyncEvent::Begin(count(4)), "two frames lost");
+        assert_eq!(
+            tracker.take(count(4)),
+            SyncEvent::Begin(count(4)),
+            "two frames lost"
+        );
     }
 
     #[test]
@@ -162,6 +182,9 @@ mod tests {
             tracker.begin_without_sync();
         }
         let events = [8, 9, 10, 11].map(|counter| tracker.take(count(counter)));
-        assert_eq!(events[2..], [SyncEvent::Begin(count(10)), SyncEvent::Begin(count(11))]);
+        assert_eq!(
+            events[2..],
+            [SyncEvent::Begin(count(10)), SyncEvent::Begin(count(11))]
+        );
     }
 }

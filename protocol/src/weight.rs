@@ -1,7 +1,8 @@
 //! LSB weights: what one count on the wire is worth.
 //!
-//! Each quantity on the wire is a type with its weight beside it, so that a count cannot be taken for another.
-//! Weights are decimal, `mantissa · 10^exponent`, because the cores carry no float and the DBC wants decimals.
+//! Each quantity on the wire is a type with its weight beside it, so that a count cannot be taken
+//! for another. Weights are decimal, `mantissa · 10^exponent`, because the cores carry no float and
+//! the DBC wants decimals.
 
 use core::fmt;
 
@@ -18,10 +19,18 @@ pub struct Weight {
 
 impl Weight {
     /// A count that is just a number.
-    pub const ONE: Self = Self { mantissa: 1, exponent: 0, unit: "" };
+    pub const ONE: Self = Self {
+        mantissa: 1,
+        exponent: 0,
+        unit: "",
+    };
 
     const fn new(mantissa: u32, exponent: i8, unit: &'static str) -> Self {
-        Self { mantissa, exponent, unit }
+        Self {
+            mantissa,
+            exponent,
+            unit,
+        }
     }
 }
 
@@ -36,7 +45,8 @@ impl fmt::Display for Weight {
     }
 }
 
-/// Motor position, in increments of the motor encoder (object 608Fh tells how many make a revolution).
+/// Motor position, in increments of the motor encoder (object 608Fh tells how many make a
+/// revolution).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct MotorIncrements(pub i32);
 
@@ -68,16 +78,22 @@ impl LoadIncrements24 {
         self.0
     }
 
-    /// The signed way from `self` to `later`, in 10 nm, right while the axis moves less than 84 mm between the two.
+    /// The signed way from `self` to `later`, in 10 nm, right while the axis moves less than 84 mm
+    /// between the two.
     #[must_use]
     pub const fn step_to(self, later: Self) -> i32 {
         let forward = later.0.wrapping_sub(self.0) & Self::MASK;
-        if forward >= Self::HALF { forward.cast_signed().wrapping_sub(0x0100_0000) } else { forward.cast_signed() }
+        if forward >= Self::HALF {
+            forward.cast_signed().wrapping_sub(0x0100_0000)
+        } else {
+            forward.cast_signed()
+        }
     }
 }
 
-/// Position setpoint, INTEGER40 in 10 nm / 256: fine enough that its second difference carries the acceleration of a
-/// slow circle (10 nm at 1 ms would resolve 10 mm/s²; R 100 mm at F 500 mm/min needs 0.7 mm/s²).
+/// Position setpoint, INTEGER40 in 10 nm / 256: fine enough that its second difference carries the
+/// acceleration of a slow circle (10 nm at 1 ms would resolve 10 mm/s²; R 100 mm at F 500 mm/min
+/// needs 0.7 mm/s²).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct SetpointFine(i64);
 
@@ -158,7 +174,12 @@ impl FollowingError24 {
     }
 
     pub(crate) const fn from_bytes([a, b, c]: [u8; 3]) -> Self {
-        Self(i32::from_le_bytes([a, b, c, if c & 0x80 == 0 { 0x00 } else { 0xFF }]))
+        Self(i32::from_le_bytes([
+            a,
+            b,
+            c,
+            if c & 0x80 == 0 { 0x00 } else { 0xFF },
+        ]))
     }
 }
 
@@ -199,7 +220,8 @@ mod tests {
 
     #[test]
     fn the_second_difference_of_the_setpoint_resolves_a_slow_circle() {
-        // R 100 mm at F 500 mm/min turns with 0.694 mm/s²; one count of second difference at 1 ms is 0.039 mm/s².
+        // R 100 mm at F 500 mm/min turns with 0.694 mm/s²; one count of second difference at 1 ms
+        // is 0.039 mm/s².
         let lsb_um_per_s2 = 390_625_u64 * 1_000_000 * 1_000_000 / 10_000_000_000_000_000;
         assert_eq!(lsb_um_per_s2, 39);
     }

@@ -4,13 +4,15 @@ use embedded_can::{Frame, StandardId};
 use proptest::prelude::*;
 use protocol::cob::{AxisIds, FrameKind, NodeId};
 use protocol::message::{
-    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, Status, Torque, decode, decode_as,
+    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, Status,
+    Torque, decode, decode_as,
 };
 use protocol::sdo;
 use protocol::states::{BrakeState, ControlWord, DriveState, StatusWord};
 use protocol::table::{FRAMES, Signal};
 use protocol::weight::{
-    FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm, TorquePerMille,
+    FollowingError24, LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm,
+    TorquePerMille,
 };
 use protocol::{CanFrame, Fault, Message, SyncCounter};
 
@@ -23,8 +25,13 @@ fn count(value: u8) -> SyncCounter {
 }
 
 fn hex(frame: &CanFrame) -> String {
-    let embedded_can::Id::Standard(id) = frame.id() else { panic!("extended") };
-    let data = frame.payload().iter().fold(String::new(), |text, byte| text + &format!("{byte:02X}"));
+    let embedded_can::Id::Standard(id) = frame.id() else {
+        panic!("extended")
+    };
+    let data = frame
+        .payload()
+        .iter()
+        .fold(String::new(), |text, byte| text + &format!("{byte:02X}"));
     format!("{:03X}#{data}", id.as_raw())
 }
 
@@ -35,7 +42,11 @@ fn golden() -> Vec<(Message, &'static str)> {
         load: LoadIncrements24::from_counts(-1_000_000),
         counter: count(240),
     };
-    let torque = Torque { torque: TorqueMicroNm(636_620), control: ControlWord::ENABLE_OPERATION, counter: count(1) };
+    let torque = Torque {
+        torque: TorqueMicroNm(636_620),
+        control: ControlWord::ENABLE_OPERATION,
+        counter: count(1),
+    };
     let setpoint = Setpoint {
         control: ControlWord::ENABLE_OPERATION,
         counter: count(2),
@@ -60,7 +71,10 @@ fn golden() -> Vec<(Message, &'static str)> {
     );
     vec![
         (Message::Nmt(NmtCommand::StartRemoteNode, None), "000#0100"),
-        (Message::Nmt(NmtCommand::ResetCommunication, NodeId::new(0x11)), "000#8211"),
+        (
+            Message::Nmt(NmtCommand::ResetCommunication, NodeId::new(0x11)),
+            "000#8211",
+        ),
         (Message::Sync(count(7)), "080#07"),
         (Message::Feedback(feedback), "191#0000F0FFC0BDF0F0"),
         (Message::Torque(torque), "211#CCB609000F0001"),
@@ -71,7 +85,10 @@ fn golden() -> Vec<(Message, &'static str)> {
         (Message::PlantHeartbeat(NmtState::Initialising), "711#00"),
         (Message::ServoEmergency(emergency), "081#1186210401020304"),
         (Message::PlantEmergency(emergency), "091#1186210401020304"),
-        (Message::SdoRequest(sdo::Request::Upload(sdo::Address::new(0x1000, 0))), "601#4000100000000000"),
+        (
+            Message::SdoRequest(sdo::Request::Upload(sdo::Address::new(0x1000, 0))),
+            "601#4000100000000000",
+        ),
         (
             Message::SdoResponse(sdo::Response::Aborted(
                 sdo::Address::new(0x2100, 3),
@@ -96,7 +113,11 @@ fn the_second_axis_does_not_take_the_frames_of_the_first() {
     for (message, _) in golden() {
         let frame = message.encode(axis(0));
         let broadcast = matches!(message.kind(), FrameKind::Nmt | FrameKind::Sync);
-        assert_eq!(decode(axis(1), &frame) == Ok(Decoded::Foreign), !broadcast, "{message:?}");
+        assert_eq!(
+            decode(axis(1), &frame) == Ok(Decoded::Foreign),
+            !broadcast,
+            "{message:?}"
+        );
     }
 }
 
@@ -105,12 +126,24 @@ fn extract(payload: &[u8], signal: &Signal) -> i64 {
     bytes[..payload.len()].copy_from_slice(payload);
     let raw = i128::from(u64::from_le_bytes(bytes)) >> signal.start & ((1 << signal.length) - 1);
     let sign = signal.signed && raw >> (signal.length - 1) == 1;
-    i64::try_from(if sign { raw - (1 << signal.length) } else { raw }).unwrap()
+    i64::try_from(if sign {
+        raw - (1 << signal.length)
+    } else {
+        raw
+    })
+    .unwrap()
 }
 
 fn signal_of(message: Message, name: &str) -> i64 {
-    let spec = FRAMES.iter().find(|spec| spec.kind == message.kind()).unwrap();
-    let signal = spec.signals.iter().find(|signal| signal.name == name).unwrap();
+    let spec = FRAMES
+        .iter()
+        .find(|spec| spec.kind == message.kind())
+        .unwrap();
+    let signal = spec
+        .signals
+        .iter()
+        .find(|signal| signal.name == name)
+        .unwrap();
     extract(message.encode(axis(0)).payload(), signal)
 }
 
@@ -160,7 +193,10 @@ proptest! {
 fn a_wrong_length_is_named() {
     let short = CanFrame::of(axis(0).identifier(FrameKind::Feedback), [1, 2, 3]);
     let error = decode_as(FrameKind::Feedback, &short).unwrap_err();
-    assert_eq!(error.to_string(), "Feedback frame: length must be 8 bytes, got 3");
+    assert_eq!(
+        error.to_string(),
+        "Feedback frame: length must be 8 bytes, got 3"
+    );
 }
 
 #[test]
@@ -194,7 +230,9 @@ fn the_dbc_at_the_crate_root_is_the_table() {
 fn an_extended_frame_with_the_same_low_bits_is_other_peoples_traffic() {
     for (message, _) in golden() {
         let frame = message.encode(axis(0));
-        let id = embedded_can::ExtendedId::new(u32::from(axis(0).identifier(message.kind()).as_raw())).unwrap();
+        let id =
+            embedded_can::ExtendedId::new(u32::from(axis(0).identifier(message.kind()).as_raw()))
+                .unwrap();
         let twin = CanFrame::new(id, frame.payload()).unwrap();
         assert_eq!(decode(axis(0), &twin), Ok(Decoded::Foreign), "{message:?}");
     }

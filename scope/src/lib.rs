@@ -1,6 +1,7 @@
 //! How much of a table a test runs, and the cores that run it.
 //!
-//! Three commands run the same tests over more or less of their tables (aliases in `.cargo/config.toml`):
+//! Three commands run the same tests over more or less of their tables (aliases in
+//! `.cargo/config.toml`):
 //!
 //! | command | scope | what runs |
 //! |---|---|---|
@@ -8,8 +9,9 @@
 //! | `cargo test` | [`Scope::Test`] | every claim, with at least one row, seed or machine of each |
 //! | `cargo certify` | [`Scope::Certify`] | everything: all rows, all seeds, millions of ticks |
 //!
-//! The alias sets `PROPTEST_CASES` (32 and 10 000 random cases; without it proptest takes its own 256) and `QUADRANT_SCOPE`. Tests ask
-//! [`Scope::now`] when they run, so nothing is compiled twice. A test says what each scope runs in one line:
+//! The alias sets `PROPTEST_CASES` (32 and 10 000 random cases; without it proptest takes its own
+//! 256) and `QUADRANT_SCOPE`. Tests ask [`Scope::now`] when they run, so nothing is compiled twice.
+//! A test says what each scope runs in one line:
 //!
 //! ```
 //! use scope::Scope;
@@ -20,8 +22,9 @@
 //! }
 //! ```
 //!
-//! Nothing is left out in silence: [`Scope::rows`] prints how many rows of how many run, and `certify` always gets them all.
-//! The crate depends on nothing, so that the cores can use it in their tests without a circle.
+//! Nothing is left out in silence: [`Scope::rows`] prints how many rows of how many run, and
+//! `certify` always gets them all. The crate depends on nothing, so that the cores can use it in
+//! their tests without a circle.
 
 mod cores;
 
@@ -45,9 +48,11 @@ impl Scope {
     /// The scope of the command that runs this test.
     ///
     /// # Panics
-    /// When `QUADRANT_SCOPE` is set to something that is not a scope: a typing error must not run less than was asked for.
+    /// When `QUADRANT_SCOPE` is set to something that is not a scope: a typing error must not run
+    /// less than was asked for.
     pub fn now() -> Self {
-        let value = std::env::var_os(Self::VARIABLE).map(|value| value.to_string_lossy().into_owned());
+        let value =
+            std::env::var_os(Self::VARIABLE).map(|value| value.to_string_lossy().into_owned());
         Self::named(value.as_deref()).unwrap_or_else(|wrong| panic!("{wrong}"))
     }
 
@@ -60,7 +65,10 @@ impl Scope {
             Some("quick") => Ok(Self::Quick),
             None | Some("test") => Ok(Self::Test),
             Some("certify") => Ok(Self::Certify),
-            Some(wrong) => Err(format!("{} is `{wrong}`: wanted quick, test or certify", Self::VARIABLE)),
+            Some(wrong) => Err(format!(
+                "{} is `{wrong}`: wanted quick, test or certify",
+                Self::VARIABLE
+            )),
         }
     }
 
@@ -80,9 +88,19 @@ impl Scope {
     /// # Panics
     /// When a scope would run no row, or more than there are: then the claim is not tested.
     pub fn rows<'a, T>(self, table: &str, rows: &'a [T], quick: usize, test: usize) -> &'a [T] {
-        let some = rows.get(..self.pick(quick, test, rows.len())).unwrap_or(&[]);
-        assert!(!some.is_empty(), "{table}: scope {self:?} runs none of {} rows", rows.len());
-        println!("{table}: {} of {} rows (scope {self:?})", some.len(), rows.len());
+        let some = rows
+            .get(..self.pick(quick, test, rows.len()))
+            .unwrap_or(&[]);
+        assert!(
+            !some.is_empty(),
+            "{table}: scope {self:?} runs none of {} rows",
+            rows.len()
+        );
+        println!(
+            "{table}: {} of {} rows (scope {self:?})",
+            some.len(),
+            rows.len()
+        );
         some
     }
 
@@ -92,11 +110,23 @@ impl Scope {
     ///
     /// # Panics
     /// When a scope would run no row, or more than there are.
-    pub fn spread<'a, T>(self, table: &str, rows: &'a [T], quick: usize, test: usize) -> Vec<&'a T> {
+    pub fn spread<'a, T>(
+        self,
+        table: &str,
+        rows: &'a [T],
+        quick: usize,
+        test: usize,
+    ) -> Vec<&'a T> {
         let wanted = self.pick(quick, test, rows.len());
-        assert!((1..=rows.len()).contains(&wanted), "{table}: scope {self:?} runs {wanted} of {} rows", rows.len());
+        assert!(
+            (1..=rows.len()).contains(&wanted),
+            "{table}: scope {self:?} runs {wanted} of {} rows",
+            rows.len()
+        );
         println!("{table}: {wanted} of {} rows (scope {self:?})", rows.len());
-        (0..wanted).filter_map(|place| rows.get(place * rows.len() / wanted)).collect()
+        (0..wanted)
+            .filter_map(|place| rows.get(place * rows.len() / wanted))
+            .collect()
     }
 
     /// Whether this is `quick` and another test has this table's row already; prints which.
@@ -120,9 +150,20 @@ mod tests {
     #[test]
     fn a_scope_runs_at_least_what_the_smaller_one_runs_and_certify_runs_everything() {
         let rows: Vec<u32> = (0..65).collect();
-        let count = |scope: Scope| (scope.rows("rows", &rows, 1, 9).len(), scope.spread("rows", &rows, 1, 9).len());
-        assert_eq!([Scope::Quick, Scope::Test, Scope::Certify].map(count), [(1, 1), (9, 9), (65, 65)]);
-        assert_eq!(Scope::Certify.spread("rows", &rows, 1, 9), rows.iter().collect::<Vec<_>>());
+        let count = |scope: Scope| {
+            (
+                scope.rows("rows", &rows, 1, 9).len(),
+                scope.spread("rows", &rows, 1, 9).len(),
+            )
+        };
+        assert_eq!(
+            [Scope::Quick, Scope::Test, Scope::Certify].map(count),
+            [(1, 1), (9, 9), (65, 65)]
+        );
+        assert_eq!(
+            Scope::Certify.spread("rows", &rows, 1, 9),
+            rows.iter().collect::<Vec<_>>()
+        );
         assert_eq!(Scope::Test.spread("rows", &rows, 1, 4), [&0, &16, &32, &48]);
     }
 

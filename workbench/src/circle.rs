@@ -29,7 +29,10 @@ pub fn machine(arguments: &MachineArguments) -> Outcome<(Machine, Place)> {
         None => Machine::reference(),
     };
     let pace = arguments.pace.chosen();
-    let place = arguments.can.clone().map_or(Place::InProcess, |names| Place::Can { names, pace });
+    let place = arguments
+        .can
+        .clone()
+        .map_or(Place::InProcess, |names| Place::Can { names, pace });
     if arguments.can.is_some() {
         refuse_overload(&machine, pace)?;
     }
@@ -41,12 +44,22 @@ pub fn machine(arguments: &MachineArguments) -> Outcome<(Machine, Place)> {
 /// # Errors
 /// Where a value is not positive.
 pub fn circle(radius_mm: f64, feed_mm_min: f64) -> Outcome<Circle> {
-    for (option, value, unit) in [("--radius-mm", radius_mm, "mm"), ("--feed-mm-min", feed_mm_min, "mm/min")] {
+    for (option, value, unit) in [
+        ("--radius-mm", radius_mm, "mm"),
+        ("--feed-mm-min", feed_mm_min, "mm/min"),
+    ] {
         if !(value.is_finite() && value > 0.0) {
-            return Err(Failure::new(format!("{option}: must be above zero {unit}, got {value}")));
+            return Err(Failure::new(format!(
+                "{option}: must be above zero {unit}, got {value}"
+            )));
         }
     }
-    Ok(Circle { radius_m: 1.0e-3 * radius_mm, feed_m_per_s: feed_mm_min / 6.0e4, turns: 3, counter_clockwise: true })
+    Ok(Circle {
+        radius_m: 1.0e-3 * radius_mm,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 3,
+        counter_clockwise: true,
+    })
 }
 
 /// What `circle --json` says.
@@ -79,12 +92,18 @@ pub struct CircleRun {
     pub points: Vec<Point>,
 }
 
-/// Largest backlash of the machine's axes that its files tell of; it widens the window about the reversals.
+/// Largest backlash of the machine's axes that its files tell of; it widens the window about the
+/// reversals.
 fn backlash_m(machine: &Machine) -> f64 {
-    machine.axes.iter().map(|axis| axis.actual.mechanics.backlash_m).fold(0.0, f64::max)
+    machine
+        .axes
+        .iter()
+        .map(|axis| axis.actual.mechanics.backlash_m)
+        .fold(0.0, f64::max)
 }
 
-/// Runs a circle counter-clockwise, and clockwise for the hysteresis; the frames go to `log`, also where the circle breaks off.
+/// Runs a circle counter-clockwise, and clockwise for the hysteresis; the frames go to `log`, also
+/// where the circle breaks off.
 ///
 /// # Errors
 /// Where it cannot be run.
@@ -105,17 +124,35 @@ pub fn run(
 }
 
 fn measured(session: &mut Session<'_>, machine: &Machine, circle: &Circle) -> Outcome<CircleRun> {
-    progress::step(&format!("circle R {} mm, F {} mm/min", 1.0e3 * circle.radius_m, 6.0e4 * circle.feed_m_per_s));
+    progress::step(&format!(
+        "circle R {} mm, F {} mm/min",
+        1.0e3 * circle.radius_m,
+        6.0e4 * circle.feed_m_per_s
+    ));
     let points = session.circle(circle)?;
-    let clockwise = session.circle(&Circle { turns: 1, counter_clockwise: false, ..*circle })?;
-    let mut figures = ballbar::figures(&points, circle.radius_m, backlash_m(machine), MEASURE_FROM_RAD);
-    figures.circular_hysteresis_h_um = Some(ballbar::hysteresis_um(&points, &clockwise, circle.radius_m));
+    let clockwise = session.circle(&Circle {
+        turns: 1,
+        counter_clockwise: false,
+        ..*circle
+    })?;
+    let mut figures = ballbar::figures(
+        &points,
+        circle.radius_m,
+        backlash_m(machine),
+        MEASURE_FROM_RAD,
+    );
+    figures.circular_hysteresis_h_um =
+        Some(ballbar::hysteresis_um(&points, &clockwise, circle.radius_m));
     let report = CircleReport {
         machine: machine.name.clone(),
         radius_mm: 1.0e3 * circle.radius_m,
         feed_mm_min: 6.0e4 * circle.feed_m_per_s,
         compensation: String::new(),
-        deviation_of: if session.sees_truth() { "table" } else { "load scale" },
+        deviation_of: if session.sees_truth() {
+            "table"
+        } else {
+            "load scale"
+        },
         bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
         missed_cycles: session.missed(),
         figures,
@@ -141,15 +178,30 @@ pub fn command(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outco
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
     crate::run::check_circle(&machine, &circle)?;
     let compensation = compensation_of(arguments, &machine, &place, interrupt)?;
-    let run = run(&machine, &place, &circle, &compensation, arguments.candump.as_deref(), interrupt)?;
+    let run = run(
+        &machine,
+        &place,
+        &circle,
+        &compensation,
+        arguments.candump.as_deref(),
+        interrupt,
+    )?;
     print(&run.report);
     if let Some(path) = &arguments.json {
-        let text = serde_json::to_string_pretty(&run.report).map_err(|error| Failure::new(error.to_string()))?;
+        let text = serde_json::to_string_pretty(&run.report)
+            .map_err(|error| Failure::new(error.to_string()))?;
         write(path, &(text + "\n"))?;
     }
     if let Some(path) = &arguments.plot {
-        let title = format!("R {} mm, F {} mm/min", arguments.radius_mm, arguments.feed_mm_min);
-        let trace = Trace { name: run.report.compensation.clone(), points: &run.points, radius_m: circle.radius_m };
+        let title = format!(
+            "R {} mm, F {} mm/min",
+            arguments.radius_mm, arguments.feed_mm_min
+        );
+        let trace = Trace {
+            name: run.report.compensation.clone(),
+            points: &run.points,
+            radius_m: circle.radius_m,
+        };
         let svg = plots::polar(&title, &[trace])?;
         write(path, &plots::standalone(&svg))?;
     }
@@ -164,7 +216,10 @@ fn compensation_of(
 ) -> Outcome<Vec<AxisCompensation>> {
     let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let none = vec![AxisCompensation::default(); names.len()];
-    let (method, file) = (arguments.compensation, arguments.compensation_file.as_deref());
+    let (method, file) = (
+        arguments.compensation,
+        arguments.compensation_file.as_deref(),
+    );
     match (method, file) {
         (Method::None, None) => Ok(none),
         (Method::None, Some(_)) => Err(Failure::new(
@@ -179,7 +234,8 @@ fn compensation_of(
             let fits = |c: &AxisCompensation| {
                 matches!(
                     (method, c.reversal),
-                    (Method::Pulse, Compensation::Pulse(_)) | (Method::Coulomb, Compensation::Coulomb { .. })
+                    (Method::Pulse, Compensation::Pulse(_))
+                        | (Method::Coulomb, Compensation::Coulomb { .. })
                 )
             };
             if read.iter().all(fits) {
@@ -194,19 +250,30 @@ fn compensation_of(
     }
 }
 
-/// Coulomb friction of every axis as its declared model sees it on a record, for the bare feedforward.
-fn measured_coulomb(machine: &Machine, place: &Place, interrupt: &Interrupt) -> Outcome<Vec<AxisCompensation>> {
+/// Coulomb friction of every axis as its declared model sees it on a record, for the bare
+/// feedforward.
+fn measured_coulomb(
+    machine: &Machine,
+    place: &Place,
+    interrupt: &Interrupt,
+) -> Outcome<Vec<AxisCompensation>> {
     progress::step("recording the axes for their Coulomb friction");
     let none = vec![AxisCompensation::default(); machine.axes.len()];
     let mut records = Vec::new();
-    Session::connect(machine, place, 1, interrupt)?
-        .perform(&none, None, |session| recording::record(session, machine, Part::Train, &mut records))?;
+    Session::connect(machine, place, 1, interrupt)?.perform(&none, None, |session| {
+        recording::record(session, machine, Part::Train, &mut records)
+    })?;
     let folder = std::env::temp_dir().join(format!("quadrant-{}", std::process::id()));
     let of_axis = |(axis, record): (&plant_sim::machine::MachineAxis, &recording::AxisRecord)| {
-        Part::BOTH.iter().try_for_each(|part| recording::write_part(&folder, machine, axis, (*part, record), None))?;
+        Part::BOTH.iter().try_for_each(|part| {
+            recording::write_part(&folder, machine, axis, (*part, record), None)
+        })?;
         let dataset = identification::Dataset::read(&folder, None, None)?;
         let force_n = identification::outcome::declared_coulomb(&dataset)?;
-        Ok(AxisCompensation { reversal: Compensation::Coulomb { force_n }, backlash_m: 0.0 })
+        Ok(AxisCompensation {
+            reversal: Compensation::Coulomb { force_n },
+            backlash_m: 0.0,
+        })
     };
     let found = machine.axes.iter().zip(&records).map(of_axis).collect();
     // The folder is in the system's temporary directory: leaving it behind is untidy, not wrong.
@@ -216,7 +283,14 @@ fn measured_coulomb(machine: &Machine, place: &Place, interrupt: &Interrupt) -> 
 
 /// Prints the figures of a circle.
 pub fn print(report: &CircleReport) {
-    let CircleReport { radius_mm, feed_mm_min, compensation, figures, bus_load_percent, .. } = report;
+    let CircleReport {
+        radius_mm,
+        feed_mm_min,
+        compensation,
+        figures,
+        bus_load_percent,
+        ..
+    } = report;
     println!(
         "circle R {radius_mm} mm, F {feed_mm_min} mm/min, compensation {compensation}; deviation of the {}",
         report.deviation_of
@@ -224,8 +298,14 @@ pub fn print(report: &CircleReport) {
     for ((_, _, name), peak) in REVERSALS.iter().zip(figures.peak_um) {
         println!("  burst, {name:<18}{peak:>10.2} µm");
     }
-    println!("  largest burst             {:>10.2} µm", figures.peak_max_um);
-    println!("  circular deviation G      {:>10.2} µm", figures.circular_deviation_g_um);
+    println!(
+        "  largest burst             {:>10.2} µm",
+        figures.peak_max_um
+    );
+    println!(
+        "  circular deviation G      {:>10.2} µm",
+        figures.circular_deviation_g_um
+    );
     if let Some(h) = figures.circular_hysteresis_h_um {
         println!("  circular hysteresis H     {h:>10.2} µm");
     }
@@ -233,8 +313,14 @@ pub fn print(report: &CircleReport) {
         "  radial deviation Fmax/Fmin{:>10.2} / {:.2} µm",
         figures.radial_deviation_fmax_um, figures.radial_deviation_fmin_um
     );
-    println!("  step X / Y                {:>10.2} / {:.2} µm", figures.step_um[0], figures.step_um[1]);
-    println!("  ellipse                   {:>10.2} µm", figures.ellipse_um);
+    println!(
+        "  step X / Y                {:>10.2} / {:.2} µm",
+        figures.step_um[0], figures.step_um[1]
+    );
+    println!(
+        "  ellipse                   {:>10.2} µm",
+        figures.ellipse_um
+    );
     println!("  bus load, computed        {bus_load_percent:>10.1} %");
     if report.missed_cycles > 0 {
         println!("  missed cycles             {:>10}", report.missed_cycles);
@@ -250,17 +336,29 @@ pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
     crate::run::check_circle(&machine, &circle)?;
     if !(0.0..=1000.0).contains(&arguments.start_delay_ms) {
-        return Err(Failure::new(format!("--start-delay-ms: must be 0 to 1000 ms, got {}", arguments.start_delay_ms)));
+        return Err(Failure::new(format!(
+            "--start-delay-ms: must be 0 to 1000 ms, got {}",
+            arguments.start_delay_ms
+        )));
     }
     let tuned = match arguments.method {
-        cli::TuneMethod::Pulse => tune::pulse(&machine, &place, &circle, 1.0e-3 * arguments.start_delay_ms, interrupt)?,
+        cli::TuneMethod::Pulse => tune::pulse(
+            &machine,
+            &place,
+            &circle,
+            1.0e-3 * arguments.start_delay_ms,
+            interrupt,
+        )?,
     };
     let names: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     let head = format!(
         "# Tuned at R {} mm, F {} mm/min in {} circles: best there, and only there.\n",
         arguments.radius_mm, arguments.feed_mm_min, tuned.circles
     );
-    write(&arguments.out, &(head + &compensation::text(&names, &tuned.compensation)?))?;
+    write(
+        &arguments.out,
+        &(head + &compensation::text(&names, &tuned.compensation)?),
+    )?;
     print_tuned(&names, &tuned);
     println!("wrote {}", arguments.out.display());
     Ok(())
@@ -268,8 +366,10 @@ pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
 
 /// Prints what tuning found.
 pub fn print_tuned(names: &[String], tuned: &tune::Tuned) {
-    for ((name, compensation), (before, after)) in
-        names.iter().zip(&tuned.compensation).zip(tuned.before_um.iter().zip(tuned.after_um))
+    for ((name, compensation), (before, after)) in names
+        .iter()
+        .zip(&tuned.compensation)
+        .zip(tuned.before_um.iter().zip(tuned.after_um))
     {
         if let Compensation::Pulse(pulse) = compensation.reversal {
             println!(

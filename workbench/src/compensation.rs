@@ -67,23 +67,36 @@ struct NamedAxis {
 pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
     let form: FileForm = toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(0, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+        let line = error.span().map_or(0, |span| {
+            text[..span.start.min(text.len())].matches('\n').count() + 1
+        });
         Failure::new(format!("{}:{line}: {}", path.display(), error.message()))
     })?;
     let of_axis = |name: &String| {
         let found = form.axis.iter().find(|axis| axis.name == *name);
-        let lacking =
-            || Failure::new(format!("{}: no [[axis]] named \"{name}\"; run tune for this machine", path.display()));
+        let lacking = || {
+            Failure::new(format!(
+                "{}: no [[axis]] named \"{name}\"; run tune for this machine",
+                path.display()
+            ))
+        };
         let axis = found.ok_or_else(lacking)?;
         check(path, axis)?;
-        Ok(AxisCompensation { reversal: axis.reversal, backlash_m: axis.backlash_m })
+        Ok(AxisCompensation {
+            reversal: axis.reversal,
+            backlash_m: axis.backlash_m,
+        })
     };
     axes.iter().map(of_axis).collect()
 }
 
 fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
     let wrong = |key: &str, wanted: &str, got: f64| {
-        Failure::new(format!("{}: axis {}: {key} must be {wanted}, got {got}", path.display(), axis.name))
+        Failure::new(format!(
+            "{}: axis {}: {key} must be {wanted}, got {got}",
+            path.display(),
+            axis.name
+        ))
     };
     match axis.reversal {
         Compensation::None => {}
@@ -93,13 +106,21 @@ fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
         Compensation::Coulomb { .. } => {}
         Compensation::Pulse(pulse) => {
             if !(pulse.time_constant_s > 0.0 && pulse.time_constant_s.is_finite()) {
-                return Err(wrong("time_constant_s", "above zero", pulse.time_constant_s));
+                return Err(wrong(
+                    "time_constant_s",
+                    "above zero",
+                    pulse.time_constant_s,
+                ));
             }
             if !(0.0..=10.0).contains(&pulse.start_delay_s) {
                 return Err(wrong("start_delay_s", "0 to 10 s", pulse.start_delay_s));
             }
             if !pulse.height_m_per_s.is_finite() {
-                return Err(wrong("height_m_per_s", "a finite velocity", pulse.height_m_per_s));
+                return Err(wrong(
+                    "height_m_per_s",
+                    "a finite velocity",
+                    pulse.height_m_per_s,
+                ));
             }
         }
     }
@@ -115,6 +136,13 @@ fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
 /// Never in practice: the form is plain data.
 pub fn text(axes: &[String], compensation: &[AxisCompensation]) -> Outcome<String> {
     let named = axes.iter().zip(compensation);
-    let axis = named.map(|(name, c)| NamedAxis { name: name.clone(), reversal: c.reversal, backlash_m: c.backlash_m });
-    toml::to_string(&FileForm { axis: axis.collect() }).map_err(|error| Failure::new(error.to_string()))
+    let axis = named.map(|(name, c)| NamedAxis {
+        name: name.clone(),
+        reversal: c.reversal,
+        backlash_m: c.backlash_m,
+    });
+    toml::to_string(&FileForm {
+        axis: axis.collect(),
+    })
+    .map_err(|error| Failure::new(error.to_string()))
 }

@@ -1,7 +1,9 @@
-//! From SI to the drive's parameters: integer steps of physical units, as the object table states them.
+//! From SI to the drive's parameters: integer steps of physical units, as the object table states
+//! them.
 //!
-//! The drive itself turns them into machine units of the set's cycle time. Forces become motor torques here, `T = F · lead / 2π`. Every value
-//! is rounded to its step and checked against the range of its object, and the whole set against the drive's own check, so that a value that the
+//! The drive itself turns them into machine units of the set's cycle time. Forces become motor
+//! torques here, `T = F · lead / 2π`. Every value is rounded to its step and checked against the
+//! range of its object, and the whole set against the drive's own check, so that a value that the
 //! drive cannot hold is an error that names the key of the machine file.
 
 use std::f64::consts::TAU;
@@ -24,9 +26,17 @@ pub type Download = Vec<(&'static Entry, i32)>;
 /// The whole parameter set of an axis.
 ///
 /// # Errors
-/// [`Failure`] that names the key of the machine file or of the compensation whose value the drive cannot hold.
-pub fn parameters(axis: &MachineAxis, period_s: f64, compensation: &AxisCompensation) -> Outcome<Download> {
-    let mut set = Set { values: Vec::new(), torque_per_newton: axis.actual.lead_m_per_rev / TAU };
+/// [`Failure`] that names the key of the machine file or of the compensation whose value the drive
+/// cannot hold.
+pub fn parameters(
+    axis: &MachineAxis,
+    period_s: f64,
+    compensation: &AxisCompensation,
+) -> Outcome<Download> {
+    let mut set = Set {
+        values: Vec::new(),
+        torque_per_newton: axis.actual.lead_m_per_rev / TAU,
+    };
     set.cycle_time(period_s)?;
     set.loop_gains(axis, period_s)?;
     set.encoder(axis)?;
@@ -47,7 +57,8 @@ impl Set {
     /// Takes a value in SI units.
     fn put(&mut self, parameter: Parameter, key: &'static str, si: f64) -> Outcome<()> {
         let entry = TABLE.iter().find(|entry| entry.parameter == parameter);
-        let entry = entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
+        let entry =
+            entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
         let rounded = (si * entry.unit.per_si as f64).round();
         if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
             return Err(Failure::new(format!(
@@ -55,7 +66,10 @@ impl Set {
                 entry.name, entry.unit.text, entry.min, entry.max
             )));
         }
-        #[expect(clippy::cast_possible_truncation, reason = "within an i32 range, checked above")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "within an i32 range, checked above"
+        )]
         self.values.push((entry, key, rounded as i32));
         Ok(())
     }
@@ -67,25 +81,38 @@ impl Set {
             set.set(entry.parameter, *value);
         }
         if let Err(error) = set.settings() {
-            let guilty = self.values.iter().find(|(entry, ..)| entry.parameter == error.parameter());
+            let guilty = self
+                .values
+                .iter()
+                .find(|(entry, ..)| entry.parameter == error.parameter());
             let key = guilty.map_or("parameter set", |(_, key, _)| key);
-            return Err(Failure::new(format!("{key}: the drive cannot hold this value: {}", error.text())));
+            return Err(Failure::new(format!(
+                "{key}: the drive cannot hold this value: {}",
+                error.text()
+            )));
         }
-        Ok(self.values.into_iter().map(|(entry, _, value)| (entry, value)).collect())
+        Ok(self
+            .values
+            .into_iter()
+            .map(|(entry, _, value)| (entry, value))
+            .collect())
     }
 
     /// The drive counts whole µs.
     fn cycle_time(&mut self, period_s: f64) -> Outcome<()> {
         let period_us = period_s * 1.0e6;
         if (period_us - period_us.round()).abs() > 1.0e-3 {
-            return Err(Failure::new(format!("period_s: {period_us} us is not a whole number of microseconds")));
+            return Err(Failure::new(format!(
+                "period_s: {period_us} us is not a whole number of microseconds"
+            )));
         }
         self.put(Parameter::CyclePeriod, "period_s", period_s)
     }
 
     fn loop_gains(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
         let gains = &axis.gains;
-        let inertia_kg = axis.actual.mechanics.motor_inertia_kg + axis.actual.mechanics.table_mass_kg;
+        let inertia_kg =
+            axis.actual.mechanics.motor_inertia_kg + axis.actual.mechanics.table_mass_kg;
         let source = match gains.position_sensor {
             PositionSensor::Motor => 0.0,
             PositionSensor::Load => 1.0,
@@ -93,26 +120,62 @@ impl Set {
         let limit_nm = axis.actual.force_limit_n * self.torque_per_newton;
         let filter_s = filter_time_constant(gains.velocity_filter, period_s);
         self.put(Parameter::PositionSource, "position_sensor", source)?;
-        self.put(Parameter::PositionGain, "position_gain_per_s", gains.position_gain_per_s)?;
-        self.put(Parameter::Inertia, "motor_inertia_kg", inertia_kg * self.torque_per_newton)?;
-        self.put(Parameter::VelocityBandwidth, "velocity_bandwidth_hz", gains.velocity_bandwidth_hz)?;
-        self.put(Parameter::IntegralCorner, "velocity_integral_hz", gains.velocity_integral_hz)?;
+        self.put(
+            Parameter::PositionGain,
+            "position_gain_per_s",
+            gains.position_gain_per_s,
+        )?;
+        self.put(
+            Parameter::Inertia,
+            "motor_inertia_kg",
+            inertia_kg * self.torque_per_newton,
+        )?;
+        self.put(
+            Parameter::VelocityBandwidth,
+            "velocity_bandwidth_hz",
+            gains.velocity_bandwidth_hz,
+        )?;
+        self.put(
+            Parameter::IntegralCorner,
+            "velocity_integral_hz",
+            gains.velocity_integral_hz,
+        )?;
         self.put(Parameter::VelocityFilterTime, "velocity_filter", filter_s)?;
         self.put(Parameter::TorqueLimit, "force_limit_n", limit_nm)?;
-        self.put(Parameter::RatedTorque, "force_limit_n", limit_nm.max(1.0e-3))
+        self.put(
+            Parameter::RatedTorque,
+            "force_limit_n",
+            limit_nm.max(1.0e-3),
+        )
     }
 
     fn encoder(&mut self, axis: &MachineAxis) -> Outcome<()> {
         let increments = f64::from(axis.actual.motor_encoder_counts_per_rev);
-        self.put(Parameter::Feed, "lead_m_per_rev", axis.actual.lead_m_per_rev)?;
-        self.put(Parameter::EncoderIncrements, "motor_counts_per_rev", increments)
+        self.put(
+            Parameter::Feed,
+            "lead_m_per_rev",
+            axis.actual.lead_m_per_rev,
+        )?;
+        self.put(
+            Parameter::EncoderIncrements,
+            "motor_counts_per_rev",
+            increments,
+        )
     }
 
     fn filter(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
         let (coefficients, key) = torque_filter(axis, period_s)?;
-        let places =
-            [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
-        places.into_iter().zip(coefficients).try_for_each(|(place, value)| self.put(place, key, value))?;
+        let places = [
+            Parameter::FilterB0,
+            Parameter::FilterB1,
+            Parameter::FilterB2,
+            Parameter::FilterA1,
+            Parameter::FilterA2,
+        ];
+        places
+            .into_iter()
+            .zip(coefficients)
+            .try_for_each(|(place, value)| self.put(place, key, value))?;
         self.put(Parameter::FilterPeriod, key, period_s)
     }
 
@@ -120,20 +183,31 @@ impl Set {
     fn limits(&mut self, axis: &MachineAxis) -> Outcome<()> {
         let limits = &axis.limits;
         let (acceleration, key) = (limits.acceleration_m_per_s2, "acceleration_m_per_s2");
-        self.put(Parameter::VelocityLimit, "velocity_m_per_s", limits.velocity_m_per_s)?;
+        self.put(
+            Parameter::VelocityLimit,
+            "velocity_m_per_s",
+            limits.velocity_m_per_s,
+        )?;
         self.put(Parameter::AccelerationLimit, key, acceleration)?;
         self.put(Parameter::QuickStopDeceleration, key, acceleration)?;
         self.put(Parameter::SlowDownDeceleration, key, acceleration)?;
         self.put(Parameter::PositionMin, "travel_m", -limits.travel_m)?;
         self.put(Parameter::PositionMax, "travel_m", limits.travel_m)?;
         self.put(Parameter::EncoderJumpLimit, "encoder jump", ENCODER_JUMP_M)?;
-        self.put(Parameter::FollowingErrorWindow, "following error window", FOLLOWING_ERROR_M)
+        self.put(
+            Parameter::FollowingErrorWindow,
+            "following error window",
+            FOLLOWING_ERROR_M,
+        )
     }
 
-    /// Brake, encoder relation and the weight of the axis. The preset is the torque that carries it: against gravity.
+    /// Brake, encoder relation and the weight of the axis. The preset is the torque that carries
+    /// it: against gravity.
     fn mounting(&mut self, axis: &MachineAxis) -> Outcome<()> {
         let mounting = &axis.actual.mounting;
-        let (open_s, close_s) = mounting.brake.map_or((0.0, 0.0), |brake| (brake.open_s, brake.close_s));
+        let (open_s, close_s) = mounting
+            .brake
+            .map_or((0.0, 0.0), |brake| (brake.open_s, brake.close_s));
         let preset_nm = -mounting.gravity_n * self.torque_per_newton;
         self.put(Parameter::BrakeOpening, "open_s", open_s)?;
         self.put(Parameter::BrakeClosing, "close_s", close_s)?;
@@ -147,18 +221,31 @@ impl Set {
             Compensation::None => {}
             Compensation::Coulomb { force_n } => coulomb_n = force_n,
             Compensation::Pulse(pulse) => {
-                (height, constant_s, delay_s) = (pulse.height_m_per_s, pulse.time_constant_s, pulse.start_delay_s);
+                (height, constant_s, delay_s) = (
+                    pulse.height_m_per_s,
+                    pulse.time_constant_s,
+                    pulse.start_delay_s,
+                );
             }
         }
-        self.put(Parameter::CoulombTorque, "coulomb force_n", coulomb_n * self.torque_per_newton)?;
+        self.put(
+            Parameter::CoulombTorque,
+            "coulomb force_n",
+            coulomb_n * self.torque_per_newton,
+        )?;
         self.put(Parameter::PulseHeight, "pulse height_m_per_s", height)?;
         self.put(Parameter::PulseTime, "pulse time_constant_s", constant_s)?;
         self.put(Parameter::PulseStartDelay, "pulse start_delay_s", delay_s)?;
-        self.put(Parameter::BacklashGap, "backlash_m", compensation.backlash_m)
+        self.put(
+            Parameter::BacklashGap,
+            "backlash_m",
+            compensation.backlash_m,
+        )
     }
 }
 
-/// Where the load scale stands when the motor encoder is zero, m; what a user reads off both at power-up.
+/// Where the load scale stands when the motor encoder is zero, m; what a user reads off both at
+/// power-up.
 #[must_use]
 pub fn relation_m(axis: &MachineAxis) -> f64 {
     axis.actual.mounting.motor_zero_m - axis.actual.mounting.load_zero_m
@@ -169,21 +256,27 @@ const ENCODER_JUMP_M: f64 = 1.0e-4;
 /// Following error window.
 const FOLLOWING_ERROR_M: f64 = 2.0e-3;
 
-/// The machine file gives the velocity filter as share α of the new value: α = 1 − exp(−T/τ), so τ = −T / ln(1 − α). No filter: zero.
+/// The machine file gives the velocity filter as share α of the new value: α = 1 − exp(−T/τ), so τ
+/// = −T / ln(1 − α). No filter: zero.
 fn filter_time_constant(share: f64, period_s: f64) -> f64 {
-    if share < 1.0 { -period_s / (-share).ln_1p() } else { 0.0 }
+    if share < 1.0 {
+        -period_s / (-share).ln_1p()
+    } else {
+        0.0
+    }
 }
 
 /// Coefficients `[b0, b1, b2, a1, a2]` of the torque filter, with the key that asks for it.
 type TorqueFilter = ([f64; 5], &'static str);
 
-/// Second-order filter by the bilinear transform: low-pass with Q = 1/√2, notch with Q = 1 (RBJ audio EQ cookbook).
+/// Second-order filter by the bilinear transform: low-pass with Q = 1/√2, notch with Q = 1 (RBJ
+/// audio EQ cookbook).
 fn torque_filter(axis: &MachineAxis, period_s: f64) -> Outcome<TorqueFilter> {
     match (axis.gains.torque_low_pass_hz, axis.gains.torque_notch_hz) {
         (None, None) => Ok(([1.0, 0.0, 0.0, 0.0, 0.0], "torque filter")),
-        (Some(_), Some(_)) => {
-            Err(Failure::new("torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one"))
-        }
+        (Some(_), Some(_)) => Err(Failure::new(
+            "torque_low_pass_hz and torque_notch_hz: the drive has one torque filter; choose one",
+        )),
         (Some(hz), None) => Ok((low_pass(hz, period_s), "torque_low_pass_hz")),
         (None, Some(hz)) => Ok((notch(hz, period_s), "torque_notch_hz")),
     }
@@ -193,14 +286,26 @@ fn low_pass(hz: f64, period_s: f64) -> [f64; 5] {
     let (sin, cos) = (TAU * hz * period_s).sin_cos();
     let alpha = sin * std::f64::consts::FRAC_1_SQRT_2;
     let a0 = 1.0 + alpha;
-    [(1.0 - cos) / 2.0 / a0, (1.0 - cos) / a0, (1.0 - cos) / 2.0 / a0, 2.0 * cos / a0, (alpha - 1.0) / a0]
+    [
+        (1.0 - cos) / 2.0 / a0,
+        (1.0 - cos) / a0,
+        (1.0 - cos) / 2.0 / a0,
+        2.0 * cos / a0,
+        (alpha - 1.0) / a0,
+    ]
 }
 
 fn notch(hz: f64, period_s: f64) -> [f64; 5] {
     let (sin, cos) = (TAU * hz * period_s).sin_cos();
     let alpha = sin / 2.0;
     let a0 = 1.0 + alpha;
-    [1.0 / a0, -2.0 * cos / a0, 1.0 / a0, 2.0 * cos / a0, (alpha - 1.0) / a0]
+    [
+        1.0 / a0,
+        -2.0 * cos / a0,
+        1.0 / a0,
+        2.0 * cos / a0,
+        (alpha - 1.0) / a0,
+    ]
 }
 
 #[cfg(test)]
@@ -212,20 +317,26 @@ mod tests {
 
     fn settings(machine: &Machine, compensation: &AxisCompensation) -> Settings {
         let mut set = ParameterSet::default();
-        for (entry, value) in parameters(&machine.axes[0], machine.period_s, compensation).unwrap() {
+        for (entry, value) in parameters(&machine.axes[0], machine.period_s, compensation).unwrap()
+        {
             set.set(entry.parameter, value);
         }
         set.settings().unwrap()
     }
 
     fn assert_same(what: &str, got: f64, wanted: f64) {
-        assert!((got / wanted - 1.0).abs() < 1.0e-6, "{what}: {got}, wanted {wanted}");
+        assert!(
+            (got / wanted - 1.0).abs() < 1.0e-6,
+            "{what}: {got}, wanted {wanted}"
+        );
     }
 
     #[test]
     fn the_reference_gains_survive_fixed_point_to_a_millionth() {
         let machine = Machine::reference();
-        let cascade = settings(&machine, &AxisCompensation::default()).config.cascade;
+        let cascade = settings(&machine, &AxisCompensation::default())
+            .config
+            .cascade;
         // Back to SI: N per (m/s), kg.
         let newton_per_micro_nm = TAU / 0.010 / 1.0e6;
         let per_velocity = newton_per_micro_nm * machine.period_s / COUNT_M;
@@ -235,9 +346,17 @@ mod tests {
         assert_same("Kp", kp, 931.65 * TAU * 30.0);
         assert_same("Ki", ki, 931.65 * TAU * 30.0 * TAU * 7.5);
         assert_same("Ja", kg, 931.65);
-        assert_same("Kv", cascade.position_gain.0.to_num::<f64>() / machine.period_s, 40.0);
+        assert_same(
+            "Kv",
+            cascade.position_gain.0.to_num::<f64>() / machine.period_s,
+            40.0,
+        );
         assert_same("velocity filter", cascade.velocity_filter.to_num(), 0.6);
-        assert_same("torque limit", cascade.torque_limit.0.to_num::<f64>() * newton_per_micro_nm, 9000.0);
+        assert_same(
+            "torque limit",
+            cascade.torque_limit.0.to_num::<f64>() * newton_per_micro_nm,
+            9000.0,
+        );
     }
 
     #[test]
@@ -248,16 +367,35 @@ mod tests {
             let settings = settings(&machine, &AxisCompensation::default());
             let per_velocity = TAU / 0.010 / 1.0e6 * period_s / COUNT_M;
             let kp = settings.config.cascade.velocity_gain.0.to_num::<f64>() * per_velocity;
-            assert!((kp / (931.65 * TAU * 30.0) - 1.0).abs() < 2.0e-6, "{kp} at {period_s}");
-            let deceleration = settings.config.reference.quick_stop.deceleration.0.to_num::<f64>();
-            assert!((deceleration * COUNT_M / period_s / period_s / 5.0 - 1.0).abs() < 1.0e-5, "{deceleration}");
+            assert!(
+                (kp / (931.65 * TAU * 30.0) - 1.0).abs() < 2.0e-6,
+                "{kp} at {period_s}"
+            );
+            let deceleration = settings
+                .config
+                .reference
+                .quick_stop
+                .deceleration
+                .0
+                .to_num::<f64>();
+            assert!(
+                (deceleration * COUNT_M / period_s / period_s / 5.0 - 1.0).abs() < 1.0e-5,
+                "{deceleration}"
+            );
         }
     }
 
     #[test]
     fn the_pulse_is_that_of_the_file() {
-        let pulse = crate::compensation::Pulse { height_m_per_s: 1.0e-3, time_constant_s: 0.02, start_delay_s: 0.003 };
-        let compensation = AxisCompensation { reversal: Compensation::Pulse(pulse), backlash_m: 4.0e-5 };
+        let pulse = crate::compensation::Pulse {
+            height_m_per_s: 1.0e-3,
+            time_constant_s: 0.02,
+            start_delay_s: 0.003,
+        };
+        let compensation = AxisCompensation {
+            reversal: Compensation::Pulse(pulse),
+            backlash_m: 4.0e-5,
+        };
         let config = settings(&Machine::reference(), &compensation).config;
         assert_same("height", config.pulse.amplitude.0.to_num(), 100.0);
         assert_same("decay", config.pulse.decay.to_num(), (-0.05_f64).exp());
@@ -268,18 +406,36 @@ mod tests {
     #[test]
     fn an_axis_that_is_not_mounted_otherwise_has_no_brake_no_preset_and_encoders_that_agree() {
         let settings = settings(&Machine::reference(), &AxisCompensation::default());
-        assert_eq!((settings.brake.open_cycles, settings.brake.close_cycles), (0, 0));
-        assert_eq!((settings.preset.torque.to_micro_nm_lossy(), settings.relation.offset), (0, 0));
+        assert_eq!(
+            (settings.brake.open_cycles, settings.brake.close_cycles),
+            (0, 0)
+        );
+        assert_eq!(
+            (
+                settings.preset.torque.to_micro_nm_lossy(),
+                settings.relation.offset
+            ),
+            (0, 0)
+        );
     }
 
     #[test]
     fn the_preset_holds_against_gravity_and_the_brake_has_its_times() {
         let mut machine = Machine::reference();
-        let brake = BrakeParameters { rated_force_n: 4000.0, open_s: 0.030, close_s: 0.0405, rise_s: 0.0 };
+        let brake = BrakeParameters {
+            rated_force_n: 4000.0,
+            open_s: 0.030,
+            close_s: 0.0405,
+            rise_s: 0.0,
+        };
         let mounting = &mut machine.axes[0].actual.mounting;
         (mounting.gravity_n, mounting.brake) = (-2500.0, Some(brake));
         let up = settings(&machine, &AxisCompensation::default());
-        assert_eq!((up.brake.open_cycles, up.brake.close_cycles), (30, 41), "whole cycles, rounded up");
+        assert_eq!(
+            (up.brake.open_cycles, up.brake.close_cycles),
+            (30, 41),
+            "whole cycles, rounded up"
+        );
         // 2500 N at a lead of 10 mm: 2500 · 0.010 / 2π N·m.
         assert_eq!(up.preset.torque.to_micro_nm_lossy(), 3_978_874);
         assert!(!up.preset.from_last);
@@ -292,8 +448,18 @@ mod tests {
     fn an_axis_heavier_than_its_motor_names_gravity() {
         let mut machine = Machine::reference();
         machine.axes[0].actual.mounting.gravity_n = -9001.0;
-        let error = parameters(&machine.axes[0], machine.period_s, &AxisCompensation::default()).unwrap_err();
-        assert!(error.to_string().starts_with("gravity_n: the drive cannot hold"), "{error}");
+        let error = parameters(
+            &machine.axes[0],
+            machine.period_s,
+            &AxisCompensation::default(),
+        )
+        .unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("gravity_n: the drive cannot hold"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -301,15 +467,31 @@ mod tests {
         let mut machine = Machine::reference();
         let mounting = &mut machine.axes[0].actual.mounting;
         (mounting.motor_zero_m, mounting.load_zero_m) = (0.1, -0.02);
-        assert_eq!(settings(&machine, &AxisCompensation::default()).relation.offset, 12_000_000, "10 nm");
+        assert_eq!(
+            settings(&machine, &AxisCompensation::default())
+                .relation
+                .offset,
+            12_000_000,
+            "10 nm"
+        );
     }
 
     #[test]
     fn a_value_beyond_the_range_of_its_object_names_its_key() {
         let mut machine = Machine::reference();
         machine.axes[0].gains.velocity_bandwidth_hz = 1.0e6;
-        let error = parameters(&machine.axes[0], machine.period_s, &AxisCompensation::default()).unwrap_err();
-        assert!(error.to_string().starts_with("velocity_bandwidth_hz: the drive cannot hold"), "{error}");
+        let error = parameters(
+            &machine.axes[0],
+            machine.period_s,
+            &AxisCompensation::default(),
+        )
+        .unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("velocity_bandwidth_hz: the drive cannot hold"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -319,17 +501,28 @@ mod tests {
         let mut axis = machine.axes[0].clone();
         axis.gains.position_gain_per_s = 10.0;
         let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
-        assert!(error.to_string().starts_with("velocity_m_per_s: the drive cannot hold"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .starts_with("velocity_m_per_s: the drive cannot hold"),
+            "{error}"
+        );
         axis.limits.velocity_m_per_s = 0.1;
         axis.gains.position_gain_per_s = 100.0;
         let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
-        assert!(error.to_string().starts_with("position_gain_per_s: the drive cannot hold"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .starts_with("position_gain_per_s: the drive cannot hold"),
+            "{error}"
+        );
     }
 
     #[test]
     fn a_period_that_is_no_whole_number_of_microseconds_is_refused() {
         let machine = Machine::reference();
-        let error = parameters(&machine.axes[0], 1.0e-3 / 3.0, &AxisCompensation::default()).unwrap_err();
+        let error =
+            parameters(&machine.axes[0], 1.0e-3 / 3.0, &AxisCompensation::default()).unwrap_err();
         assert!(error.to_string().starts_with("period_s: "), "{error}");
     }
 }

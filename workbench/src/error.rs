@@ -25,7 +25,10 @@ impl Failure {
 
     /// A failure to write or read a file.
     pub fn file(path: &std::path::Path, error: &std::io::Error) -> Self {
-        Self(format!("{}: {error}; check the path and its permissions", path.display()))
+        Self(format!(
+            "{}: {error}; check the path and its permissions",
+            path.display()
+        ))
     }
 }
 

@@ -1,7 +1,9 @@
-//! What `commission` moves to record an axis: slow and fast runs, reversals at several accelerations, within the axis limits.
+//! What `commission` moves to record an axis: slow and fast runs, reversals at several
+//! accelerations, within the axis limits.
 //!
-//! A sequence of windowed sine bursts. A sine passes every velocity up to its peak and reverses with its peak acceleration, so a few of them from
-//! 1.5 mm/s to over half the axis' velocity cover Stribeck fall, viscous friction, presliding and inertia.
+//! A sequence of windowed sine bursts. A sine passes every velocity up to its peak and reverses
+//! with its peak acceleration, so a few of them from 1.5 mm/s to over half the axis' velocity cover
+//! Stribeck fall, viscous friction, presliding and inertia.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +17,8 @@ pub struct Burst {
     duration_s: f64,
 }
 
-/// Peak velocity and peak acceleration of each burst, as shares of the axis limits, and its number of periods.
+/// Peak velocity and peak acceleration of each burst, as shares of the axis limits, and its number
+/// of periods.
 const TRAIN: [(f64, f64, f64); 9] = [
     (0.003, 0.0008, 3.0),
     (0.008, 0.004, 4.0),
@@ -47,7 +50,11 @@ pub fn bursts(limits: &Limits, validation: bool) -> Vec<Burst> {
         let omega = acceleration / velocity;
         let amplitude_m = (velocity / omega).min(MOST * limits.travel_m);
         let frequency_hz = omega / TAU;
-        Burst { amplitude_m, frequency_hz, duration_s: (periods + 2.0 * WINDOW) / frequency_hz }
+        Burst {
+            amplitude_m,
+            frequency_hz,
+            duration_s: (periods + 2.0 * WINDOW) / frequency_hz,
+        }
     };
     TRAIN.iter().map(burst).collect()
 }
@@ -55,7 +62,11 @@ pub fn bursts(limits: &Limits, validation: bool) -> Vec<Burst> {
 /// Duration of a record, s.
 #[must_use]
 pub fn duration_s(bursts: &[Burst]) -> f64 {
-    bursts.iter().map(|burst| burst.duration_s + REST_S).sum::<f64>() + REST_S
+    bursts
+        .iter()
+        .map(|burst| burst.duration_s + REST_S)
+        .sum::<f64>()
+        + REST_S
 }
 
 /// Setpoint at a time, m.
@@ -68,8 +79,8 @@ pub fn at(bursts: &[Burst], time_s: f64) -> f64 {
             return 0.0;
         }
         if t < burst.duration_s {
-            let window =
-                smooth(t * burst.frequency_hz / WINDOW) * smooth((burst.duration_s - t) * burst.frequency_hz / WINDOW);
+            let window = smooth(t * burst.frequency_hz / WINDOW)
+                * smooth((burst.duration_s - t) * burst.frequency_hz / WINDOW);
             return burst.amplitude_m * window * (TAU * burst.frequency_hz * t).sin();
         }
         start += burst.duration_s + REST_S;
@@ -88,7 +99,11 @@ mod tests {
 
     #[test]
     fn no_record_passes_the_limits_of_its_axis() {
-        let limits = Limits { velocity_m_per_s: 0.5, acceleration_m_per_s2: 5.0, travel_m: 0.25 };
+        let limits = Limits {
+            velocity_m_per_s: 0.5,
+            acceleration_m_per_s2: 5.0,
+            travel_m: 0.25,
+        };
         for validation in [false, true] {
             let bursts = bursts(&limits, validation);
             let (dt, mut fastest, mut hardest) = (1.0e-3, 0.0_f64, 0.0_f64);
@@ -100,7 +115,10 @@ mod tests {
                 assert!(b.abs() < limits.travel_m);
                 t += dt;
             }
-            assert!(fastest < limits.velocity_m_per_s && hardest < limits.acceleration_m_per_s2, "{fastest} {hardest}");
+            assert!(
+                fastest < limits.velocity_m_per_s && hardest < limits.acceleration_m_per_s2,
+                "{fastest} {hardest}"
+            );
         }
     }
 }

@@ -21,7 +21,11 @@ impl From<IdentificationError> for Failure {
 /// # Errors
 /// Where the dataset is wrong, or a file cannot be written.
 pub fn run(arguments: &cli::Identify) -> Outcome<()> {
-    let dataset = Dataset::read(&arguments.dataset, arguments.validate.as_deref(), arguments.declared.clone())?;
+    let dataset = Dataset::read(
+        &arguments.dataset,
+        arguments.validate.as_deref(),
+        arguments.declared.clone(),
+    )?;
     let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
     // Files first: whoever reads the output may stop early.
     let json = json(&result)?;
@@ -46,7 +50,11 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
 
 /// The identified model: a machine file where the simulator has such an axis.
 fn model_toml(dataset: &Dataset, result: &Identification) -> String {
-    let mass_kg = result.report.parameters.get("inertia").map_or(0.0, |inertia| inertia.value);
+    let mass_kg = result
+        .report
+        .parameters
+        .get("inertia")
+        .map_or(0.0, |inertia| inertia.value);
     match Known::of_dataset(dataset, mass_kg).filter(|_| mass_kg > 0.0) {
         Some(known) => model_file::text(&dataset.name, &[("X".to_owned(), known, result)]),
         None => model_file::parameters_only(&dataset.name, result),
@@ -75,19 +83,40 @@ pub fn json(result: &Identification) -> Outcome<String> {
 pub fn print(result: &Identification) {
     println!("{}", report::sentence(&result.report));
     for row in report::error_table(result) {
-        let cells: Vec<String> = row.iter().skip(1).map(|cell| format!("{cell:>28}")).collect();
-        println!("  {:<32}{}", row.first().map_or("", String::as_str), cells.join(""));
+        let cells: Vec<String> = row
+            .iter()
+            .skip(1)
+            .map(|cell| format!("{cell:>28}"))
+            .collect();
+        println!(
+            "  {:<32}{}",
+            row.first().map_or("", String::as_str),
+            cells.join("")
+        );
     }
     if let Some(free_run) = &result.report.free_run {
-        let unit = if result.position_unit == "rad" { "µrad" } else { "µm" };
-        let [train, validate] = [&free_run.train, &free_run.validate]
-            .map(|e| format!("{:.3} → {:.3}", e.position_error_um_before, e.position_error_um_after));
+        let unit = if result.position_unit == "rad" {
+            "µrad"
+        } else {
+            "µm"
+        };
+        let [train, validate] = [&free_run.train, &free_run.validate].map(|e| {
+            format!(
+                "{:.3} → {:.3}",
+                e.position_error_um_before, e.position_error_um_after
+            )
+        });
         println!(
             "  free-run position error, {unit} rms: training {train}, validation {validate} (controller {})",
             free_run.controller
         );
     }
-    for order in result.report.slow_ripple.iter().flat_map(|ripple| &ripple.orders) {
+    for order in result
+        .report
+        .slow_ripple
+        .iter()
+        .flat_map(|ripple| &ripple.orders)
+    {
         let (amplitude, half_width) = (order.amplitude, order.half_width);
         println!(
             "  torque ripple of order {} per rev: {amplitude:.4} ± {half_width:.4} {}",
@@ -113,8 +142,12 @@ pub fn print(result: &Identification) {
 pub fn prediction_csv(result: &Identification) -> String {
     let curves = &result.curves;
     let mut text = format!("time_s,{},declared,extended\n", result.effort_column);
-    for (((time, effort), declared), extended) in
-        curves.time_s.iter().zip(&curves.effort).zip(&curves.declared).zip(&curves.extended)
+    for (((time, effort), declared), extended) in curves
+        .time_s
+        .iter()
+        .zip(&curves.effort)
+        .zip(&curves.declared)
+        .zip(&curves.extended)
     {
         text.push_str(&format!("{time},{effort},{declared:.6},{extended:.6}\n"));
     }

@@ -1,7 +1,8 @@
 //! The wish of the operator (Ctrl-C) or of the system (SIGTERM) that the machine stops.
 //!
-//! A token that is passed down to whoever moves axes and polled there once per cycle: below the leaves there is no signal, no global and no
-//! process exit. `main` connects it to the signals, tests raise it themselves.
+//! A token that is passed down to whoever moves axes and polled there once per cycle: below the
+//! leaves there is no signal, no global and no process exit. `main` connects it to the signals,
+//! tests raise it themselves.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,13 +25,16 @@ impl Interrupt {
 
     /// Raises the token, by the number of a signal.
     pub fn raise(&self, signal: i32) {
-        self.0.store(usize::try_from(signal).unwrap_or(NONE), Ordering::SeqCst);
+        self.0
+            .store(usize::try_from(signal).unwrap_or(NONE), Ordering::SeqCst);
     }
 
     /// The number of the signal, once it was raised.
     #[must_use]
     pub fn signal(&self) -> Option<i32> {
-        i32::try_from(self.0.load(Ordering::SeqCst)).ok().filter(|signal| *signal != 0)
+        i32::try_from(self.0.load(Ordering::SeqCst))
+            .ok()
+            .filter(|signal| *signal != 0)
     }
 
     /// Whether it was raised.
@@ -44,7 +48,11 @@ impl Interrupt {
     /// # Errors
     /// Where the token was raised.
     pub fn check(&self) -> Outcome<()> {
-        if self.is_raised() { Err(self.failure("nothing was moving")) } else { Ok(()) }
+        if self.is_raised() {
+            Err(self.failure("nothing was moving"))
+        } else {
+            Ok(())
+        }
     }
 
     /// What to tell whoever raised it, and what became of the axes.
@@ -77,6 +85,12 @@ mod tests {
         assert!(clone.check().is_ok());
         token.raise(libc::SIGTERM);
         assert_eq!(clone.signal(), Some(libc::SIGTERM));
-        assert!(clone.check().unwrap_err().to_string().starts_with("interrupted by SIGTERM"));
+        assert!(
+            clone
+                .check()
+                .unwrap_err()
+                .to_string()
+                .starts_with("interrupted by SIGTERM")
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! The `quadrant` program as a library: what its commands do, without the command line.
 //!
-//! The workbench is NMT master, SYNC producer, SDO client and source of setpoints ([`master`]) on any bus ([`link`]); it moves machines ([`run`],
-//! [`trajectory`], [`excitation`]), records them ([`recording`]), looks at circles ([`ballbar`]), tunes ([`tune`]) and reports ([`report`], [`plots`]).
-//! Whoever moves axes gets an [`interrupt`] token, so that the operator can stop them.
+//! The workbench is NMT master, SYNC producer, SDO client and source of setpoints ([`master`]) on
+//! any bus ([`link`]); it moves machines ([`run`], [`trajectory`], [`excitation`]), records them
+//! ([`recording`]), looks at circles ([`ballbar`]), tunes ([`tune`]) and reports ([`report`],
+//! [`plots`]). Whoever moves axes gets an [`interrupt`] token, so that the operator can stop them.
 
 pub mod ballbar;
 pub mod circle;

@@ -12,7 +12,8 @@ use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
 use workbench::{circle, commission, identify, nodes};
 
-/// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off, and printing then panics.
+/// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off,
+/// and printing then panics.
 fn end_quietly_on_a_closed_pipe() {
     #[expect(unsafe_code, reason = "signal dispositions have no safe interface")]
     // SAFETY: called once, before any other thread exists; SIG_DFL is a valid disposition.
@@ -24,13 +25,18 @@ fn end_quietly_on_a_closed_pipe() {
 /// What the argument parser says, in one line.
 fn one_line(text: &str) -> String {
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    let told = lines.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"));
+    let told = lines.take_while(|line| {
+        !line.starts_with("Usage:") && !line.starts_with("For more information")
+    });
     let text = told.collect::<Vec<_>>().join(" ");
-    format!("{}; see `quadrant --help`", text.trim_start_matches("error: "))
+    format!(
+        "{}; see `quadrant --help`",
+        text.trim_start_matches("error: ")
+    )
 }
 
-/// The first signal asks the machine to stop, the second one ends the process at once. A process that a signal ended says 128 + its number, as
-/// shells do.
+/// The first signal asks the machine to stop, the second one ends the process at once. A process
+/// that a signal ended says 128 + its number, as shells do.
 fn stop_on_signals() -> Outcome<Interrupt> {
     let interrupt = Interrupt::never();
     let armed = Arc::new(AtomicBool::new(false));
@@ -38,7 +44,9 @@ fn stop_on_signals() -> Outcome<Interrupt> {
         // In this order: the first signal finds the way out still closed.
         flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&armed))
             .and_then(|_| flag::register(signal, Arc::clone(&armed)))
-            .and_then(|_| flag::register_usize(signal, interrupt.cell(), signal.unsigned_abs() as usize))
+            .and_then(|_| {
+                flag::register_usize(signal, interrupt.cell(), signal.unsigned_abs() as usize)
+            })
             .map_err(|error| Failure::new(format!("signal {signal} cannot be handled: {error}")))?;
     }
     Ok(interrupt)
@@ -53,7 +61,9 @@ fn moving(command: impl FnOnce(&Interrupt) -> Outcome<()>) -> (Outcome<()>, Opti
 }
 
 fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
-    let Err(failure) = outcome else { return ExitCode::SUCCESS };
+    let Err(failure) = outcome else {
+        return ExitCode::SUCCESS;
+    };
     eprintln!("quadrant: {failure}");
     let code = signal.and_then(|signal| u8::try_from(128 + signal).ok());
     ExitCode::from(code.unwrap_or(2))
@@ -72,7 +82,9 @@ fn main() -> ExitCode {
     };
     let still = |outcome| (outcome, None);
     exit_code(match cli.command {
-        Command::Commission(arguments) => moving(|interrupt| commission::command(&arguments, interrupt)),
+        Command::Commission(arguments) => {
+            moving(|interrupt| commission::command(&arguments, interrupt))
+        }
         Command::Circle(arguments) => moving(|interrupt| circle::command(&arguments, interrupt)),
         Command::Tune(arguments) => moving(|interrupt| circle::tune(&arguments, interrupt)),
         Command::Identify(arguments) => still(identify::run(&arguments)),

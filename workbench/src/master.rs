@@ -1,15 +1,17 @@
 //! The workbench on the bus: NMT master, SYNC producer, SDO client, source of setpoints.
 //!
 //! ```text
-//!            SYNC k, setpoint k + 1                      feedback k, torque k, status, EMCY
-//! cycle ───────────────────────────▶ servo, plant ─────────────────────────────────────────▶ axis link
-//!   ▲                                                                                            │
-//!   └───────────── way up and down, stop as one: which control word, which setpoint ◀────────────┘
+//!          SYNC k, setpoint k + 1                  feedback k, torque k, status, EMCY
+//! cycle ───────────────────────▶ servo, plant ─────────────────────────────────────▶ axis link
+//!   ▲                                                                                    │
+//!   └────────── way up and down, stop as one: which control word, which setpoint ◀───────┘
 //! ```
 //!
-//! One cycle k in lock-step (`cycle`): SYNC k, setpoints k + 1, then wait until the torque k of every axis was seen. A cycle whose torque does
-//! not come while the link waits counts as missed and the run goes on; what that means is the business of the nodes' watchdogs. `way` brings the
-//! drives up and down, each step confirmed by their status. `halt` stops all axes where one has trouble, or where the operator wants it.
+//! One cycle k in lock-step (`cycle`): SYNC k, setpoints k + 1, then wait until the torque k of
+//! every axis was seen. A cycle whose torque does not come while the link waits counts as missed
+//! and the run goes on; what that means is the business of the nodes' watchdogs. `way` brings the
+//! drives up and down, each step confirmed by their status. `halt` stops all axes where one has
+//! trouble, or where the operator wants it.
 
 mod axis_link;
 mod cycle;
@@ -35,11 +37,12 @@ pub use axis_link::{AxisCycle, SILENT_CYCLES, fine};
 
 /// How long an answer may take before the node counts as absent.
 const ANSWER: Duration = Duration::from_secs(1);
-/// Frames that may pass while an answer is waited for: more than a full 1 Mbit/s bus carries in a second.
+/// Frames that may pass while an answer is waited for: more than a full 1 Mbit/s bus carries in a
+/// second.
 const FRAMES_PER_ANSWER: u32 = 20_000;
 
-/// Waiting for an answer while others talk: heartbeats never go quiet, so that no time without frames ends it. It ends by the wall clock, or by the
-/// number of frames where time is virtual.
+/// Waiting for an answer while others talk: heartbeats never go quiet, so that no time without
+/// frames ends it. It ends by the wall clock, or by the number of frames where time is virtual.
 struct Patience {
     begun: Instant,
     frames: u32,
@@ -47,7 +50,10 @@ struct Patience {
 
 impl Patience {
     fn begin() -> Self {
-        Self { begun: Instant::now(), frames: 0 }
+        Self {
+            begun: Instant::now(),
+            frames: 0,
+        }
     }
 
     fn lasts(&mut self) -> bool {
@@ -172,8 +178,14 @@ impl<L: Link> Master<L> {
         }
         let mut patience = Patience::begin();
         while let Some((ids, name, kind)) = missing.first() {
-            let received = if patience.lasts() { self.link.receive(bus, ANSWER)? } else { None };
-            let Some(frame) = received else { return Err(no_boot_up(*ids, name, *kind)) };
+            let received = if patience.lasts() {
+                self.link.receive(bus, ANSWER)?
+            } else {
+                None
+            };
+            let Some(frame) = received else {
+                return Err(no_boot_up(*ids, name, *kind));
+            };
             missing.retain(|(ids, _, kind)| !is_boot_up(*ids, *kind, &frame));
         }
         Ok(())
@@ -201,10 +213,13 @@ fn no_boot_up(ids: AxisIds, name: &str, kind: FrameKind) -> Failure {
 }
 
 fn is_boot_up(ids: AxisIds, kind: FrameKind, frame: &protocol::CanFrame) -> bool {
-    let Ok(Decoded::Message(message)) = decode(ids, frame) else { return false };
+    let Ok(Decoded::Message(message)) = decode(ids, frame) else {
+        return false;
+    };
     let boots = matches!(
         message,
-        Message::PlantHeartbeat(NmtState::Initialising) | Message::ServoHeartbeat(NmtState::Initialising)
+        Message::PlantHeartbeat(NmtState::Initialising)
+            | Message::ServoHeartbeat(NmtState::Initialising)
     );
     boots && message.kind() == kind
 }

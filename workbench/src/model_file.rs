@@ -1,8 +1,9 @@
 //! The identified model as a machine file, which `circle`, `tune` and `plant` accept.
 //!
-//! `[axis.actual]` is the identified model; `[axis.identified]` beside it holds the parameters as they were found, with intervals and units. What a record
-//! does not say (the split of the masses, the stiffness of the screw) is stated as assumed. Of several ripple orders the first is simulated, of position
-//! dependence the linear part, of friction drift the Coulomb part.
+//! `[axis.actual]` is the identified model; `[axis.identified]` beside it holds the parameters as
+//! they were found, with intervals and units. What a record does not say (the split of the masses,
+//! the stiffness of the screw) is stated as assumed. Of several ripple orders the first is
+//! simulated, of position dependence the linear part, of friction drift the Coulomb part.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -61,19 +62,32 @@ impl Known {
         }
     }
 
-    /// From a dataset; `None` where the axis is not one that the simulator has (rotary, or effort that is no force).
+    /// From a dataset; `None` where the axis is not one that the simulator has (rotary, or effort
+    /// that is no force).
     #[must_use]
     pub fn of_dataset(dataset: &Dataset, mass_kg: f64) -> Option<Self> {
         if dataset.kind != AxisKind::Linear || dataset.effort != Effort::Force {
             return None;
         }
         let record = &dataset.train;
-        let fastest = record.position.windows(11).map(|w| (w[10] - w[0]).abs()).fold(0.0, f64::max);
-        let hardest = record.effort.iter().fold(0.0, |most: f64, effort| most.max(effort.abs()));
-        let furthest = record.position.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let fastest = record
+            .position
+            .windows(11)
+            .map(|w| (w[10] - w[0]).abs())
+            .fold(0.0, f64::max);
+        let hardest = record
+            .effort
+            .iter()
+            .fold(0.0, |most: f64, effort| most.max(effort.abs()));
+        let furthest = record
+            .position
+            .iter()
+            .fold(0.0, |most: f64, x| most.max(x.abs()));
         let controller = dataset.controller.clone().unwrap_or_default();
         let lead_m = dataset.lead_m_per_rev.unwrap_or(LEAD_M);
-        let bandwidth = controller.velocity_gain_n_s_per_m.map_or(25.0, |gain| gain / (mass_kg * TAU));
+        let bandwidth = controller
+            .velocity_gain_n_s_per_m
+            .map_or(25.0, |gain| gain / (mass_kg * TAU));
         Some(Self {
             lead_m,
             counts_per_rev: (lead_m / dataset.resolution).round().clamp(100.0, 1.0e8),
@@ -90,20 +104,31 @@ impl Known {
                     Some("load") => PositionSensor::Load,
                     _ => PositionSensor::Motor,
                 },
-                position_gain_per_s: controller.position_gain_per_s.unwrap_or(40.0).clamp(1.0, 1000.0),
+                position_gain_per_s: controller
+                    .position_gain_per_s
+                    .unwrap_or(40.0)
+                    .clamp(1.0, 1000.0),
                 velocity_bandwidth_hz: bandwidth.clamp(0.1, 1000.0),
-                velocity_integral_hz: controller.integral_per_s.map_or(5.0, |rate| rate / TAU).clamp(0.0, 500.0),
+                velocity_integral_hz: controller
+                    .integral_per_s
+                    .map_or(5.0, |rate| rate / TAU)
+                    .clamp(0.0, 500.0),
                 velocity_filter: controller.velocity_filter.unwrap_or(0.7).clamp(0.01, 1.0),
                 torque_low_pass_hz: None,
                 torque_notch_hz: None,
             },
             period_s: record.period_s,
-            hold_s: if dataset.hold == EffortHold::Instant { 0.5 * record.period_s } else { 0.0 },
+            hold_s: if dataset.hold == EffortHold::Instant {
+                0.5 * record.period_s
+            } else {
+                0.0
+            },
         })
     }
 }
 
-/// The machine file of identified axes. One axis gets a second one like it, since a circle needs two.
+/// The machine file of identified axes. One axis gets a second one like it, since a circle needs
+/// two.
 #[must_use]
 pub fn text(name: &str, axes: &[(String, Known, &Identification)]) -> String {
     let period_s = axes.first().map_or(1.0e-3, |(_, known, _)| known.period_s);
@@ -116,7 +141,10 @@ pub fn text(name: &str, axes: &[(String, Known, &Identification)]) -> String {
         axis(&mut text, name, known, result);
     }
     if let [(name, ..)] = axes {
-        let _ = write!(text, "\n[[axis]]   # a circle needs two\nname = \"{name}2\"\nlike = \"{name}\"\n");
+        let _ = write!(
+            text,
+            "\n[[axis]]   # a circle needs two\nname = \"{name}2\"\nlike = \"{name}\"\n"
+        );
     }
     text
 }
@@ -126,15 +154,28 @@ fn axis(text: &mut String, name: &str, known: &Known, result: &Identification) {
     let get = |key: &str| report.parameters.get(key).map(|parameter| parameter.value);
     let or_zero = |key: &str| get(key).unwrap_or(0.0);
     let mass = or_zero("inertia").max(2.0e-3);
-    let table = get("load_inertia").or_else(|| get("backlash_load_share").map(|share| share * mass));
-    let assumed = if table.is_some() { "" } else { "   # split assumed" };
-    let table = table.unwrap_or(TABLE_SHARE * mass).clamp(0.05 * mass, 0.95 * mass);
+    let table =
+        get("load_inertia").or_else(|| get("backlash_load_share").map(|share| share * mass));
+    let assumed = if table.is_some() {
+        ""
+    } else {
+        "   # split assumed"
+    };
+    let table = table
+        .unwrap_or(TABLE_SHARE * mass)
+        .clamp(0.05 * mass, 0.95 * mass);
     let reduced = table * (mass - table) / mass;
     let stiff = STIFF * reduced / plant_sim::axis::SUB_STEP_S.powi(2);
-    let stiffness = get("compliance_stiffness").unwrap_or(stiff).clamp(1.0e4, stiff);
+    let stiffness = get("compliance_stiffness")
+        .unwrap_or(stiff)
+        .clamp(1.0e4, stiff);
     let damping = 2.0 * SCREW_DAMPING * (stiffness * reduced).sqrt();
     let (lead, g, l) = (known.lead_m, &known.gains, &known.limits);
-    let sensor = if g.position_sensor == PositionSensor::Load { "load" } else { "motor" };
+    let sensor = if g.position_sensor == PositionSensor::Load {
+        "load"
+    } else {
+        "motor"
+    };
     let noise = result.residual_rms.min(known.force_limit_n);
     let _ = write!(
         text,
@@ -160,7 +201,12 @@ fn axis(text: &mut String, name: &str, known: &Known, result: &Identification) {
     );
     friction(text, result);
     effects(text, known, result);
-    let names: Vec<String> = report.declared.iter().chain(&report.found).map(|name| format!("\"{name}\"")).collect();
+    let names: Vec<String> = report
+        .declared
+        .iter()
+        .chain(&report.found)
+        .map(|name| format!("\"{name}\""))
+        .collect();
     let _ = write!(
         text,
         "\n[axis.declared]\neffects = [{}]\n\n[axis.identified]\nverdict = \"{}\"\n",
@@ -177,16 +223,26 @@ fn axis(text: &mut String, name: &str, known: &Known, result: &Identification) {
 }
 
 fn friction(text: &mut String, result: &Identification) {
-    let get = |key: &str| result.report.parameters.get(key).map(|parameter| parameter.value);
+    let get = |key: &str| {
+        result
+            .report
+            .parameters
+            .get(key)
+            .map(|parameter| parameter.value)
+    };
     let coulomb = get("coulomb").unwrap_or(0.0).max(1.0e-2);
     let viscous = get("viscous").unwrap_or(0.0).max(0.0);
-    let asymmetry = get("viscous_asymmetry").map_or(0.0, |a| (a / viscous.max(f64::MIN_POSITIVE)).clamp(-0.9, 0.9));
+    let asymmetry = get("viscous_asymmetry").map_or(0.0, |a| {
+        (a / viscous.max(f64::MIN_POSITIVE)).clamp(-0.9, 0.9)
+    });
     let _ = write!(
         text,
         "\n[axis.actual.sliding]\ncoulomb_n = {coulomb:e}\nstatic_n = {:e}\nstribeck_velocity_m_per_s = {:e}\nviscous_n_s_per_m = {viscous:e}\n\
          viscous_asymmetry = {asymmetry:e}\nquadratic_drag_n_s2_per_m2 = {:e}\n\n[axis.actual.friction]\n",
         coulomb + get("stribeck_excess").unwrap_or(0.0).max(0.0),
-        get("stribeck_velocity").unwrap_or(2.0e-3).clamp(1.0e-6, 1.0),
+        get("stribeck_velocity")
+            .unwrap_or(2.0e-3)
+            .clamp(1.0e-6, 1.0),
         get("quadratic_drag").unwrap_or(0.0).max(0.0),
     );
     let _ = match get("presliding_deflection").filter(|deflection| *deflection > 0.0) {
@@ -206,18 +262,29 @@ fn effects(text: &mut String, known: &Known, result: &Identification) {
     let parameters = &result.report.parameters;
     let get = |key: &str| parameters.get(key).map(|parameter| parameter.value);
     let coulomb = get("coulomb").unwrap_or(0.0).max(1.0e-2);
-    let _ = write!(text, "\n[axis.actual.effects]\noffset_n = {:e}\n", get("offset").unwrap_or(0.0));
-    if let (Some(amplitude), Some(period), Some(phase)) =
-        (get("torque_ripple_amplitude"), get("torque_ripple_period"), get("torque_ripple_phase"))
-    {
+    let _ = write!(
+        text,
+        "\n[axis.actual.effects]\noffset_n = {:e}\n",
+        get("offset").unwrap_or(0.0)
+    );
+    if let (Some(amplitude), Some(period), Some(phase)) = (
+        get("torque_ripple_amplitude"),
+        get("torque_ripple_period"),
+        get("torque_ripple_phase"),
+    ) {
         let order = known.lead_m / period;
         let _ = writeln!(
             text,
             "torque_ripple = {{ amplitude_n = {amplitude:e}, order_per_rev = {order:e}, phase_rad = {phase:e} }}"
         );
     }
-    if let (Some(amplitude), Some(period)) = (get("pitch_error_amplitude"), get("pitch_error_period")) {
-        let _ = writeln!(text, "pitch_error = {{ amplitude_m = {amplitude:e}, period_m = {period:e} }}");
+    if let (Some(amplitude), Some(period)) =
+        (get("pitch_error_amplitude"), get("pitch_error_period"))
+    {
+        let _ = writeln!(
+            text,
+            "pitch_error = {{ amplitude_m = {amplitude:e}, period_m = {period:e} }}"
+        );
     }
     if let Some(slope) = get("position_dependent_friction_linear") {
         let (middle, half) = result.travel;
@@ -227,15 +294,25 @@ fn effects(text: &mut String, known: &Known, result: &Identification) {
             slope / half / (coulomb - slope * middle / half).max(1.0e-2)
         );
     }
-    if let (Some(surplus), Some(tau)) = (get("friction_drift_coulomb"), get("friction_drift_time_constant")) {
+    if let (Some(surplus), Some(tau)) = (
+        get("friction_drift_coulomb"),
+        get("friction_drift_time_constant"),
+    ) {
         let gain = (surplus / coulomb).clamp(-0.9, 10.0);
-        let _ = writeln!(text, "friction_drift = {{ gain = {gain:e}, time_constant_s = {tau:e} }}");
+        let _ = writeln!(
+            text,
+            "friction_drift = {{ gain = {gain:e}, time_constant_s = {tau:e} }}"
+        );
     }
     if let Some(k) = get("torque_saturation") {
         let _ = writeln!(text, "torque_saturation_per_n = {k:e}");
     }
     if let Some(delay_s) = get("delay") {
-        let _ = writeln!(text, "delay_s = {:e}", (delay_s - known.hold_s).clamp(0.0, known.period_s.min(1.0e-3)));
+        let _ = writeln!(
+            text,
+            "delay_s = {:e}",
+            (delay_s - known.hold_s).clamp(0.0, known.period_s.min(1.0e-3))
+        );
     }
 }
 
@@ -243,7 +320,13 @@ fn effects(text: &mut String, known: &Known, result: &Identification) {
 #[must_use]
 pub fn parameters_only(name: &str, result: &Identification) -> String {
     let report = &result.report;
-    let list = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    let list = |names: &[String]| {
+        names
+            .iter()
+            .map(|name| format!("\"{name}\""))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let mut text = format!(
         "# Identified model. No machine file: the simulator has linear axes with efforts in newtons.\nname = \"{}\"\ndeclared = [{}]\nfound = [{}]\nverdict = \"{}\"\n\n[identified]\n",
         name.replace(['\"', '\\'], " "),

@@ -28,7 +28,11 @@ fn ids(servo: u8, plant: u8) -> Outcome<AxisIds> {
 pub fn servo(arguments: &cli::Servo) -> Outcome<()> {
     let ids = ids(arguments.node, arguments.plant_node)?;
     let servo = servo::Servo::new(ids);
-    let receiver = Receiver { interface: &arguments.can, node: ids.servo, heard: &HEARD_BY_SERVO };
+    let receiver = Receiver {
+        interface: &arguments.can,
+        node: ids.servo,
+        heard: &HEARD_BY_SERVO,
+    };
     receiver.run(Box::new(servo), arguments.pace.chosen(), arguments.faults)
 }
 
@@ -53,8 +57,17 @@ pub fn plant(arguments: &cli::Plant) -> Outcome<()> {
     };
     refuse_overload(&machine, arguments.pace.chosen())?;
     let ids = ids(arguments.node - 0x10, arguments.node)?;
-    let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, plant_seed(machine.seed, 0, index));
-    let receiver = Receiver { interface: &arguments.can, node: ids.plant, heard: &HEARD_BY_PLANT };
+    let plant = PlantNode::new(
+        ids,
+        axis.actual.clone(),
+        machine.period_s,
+        plant_seed(machine.seed, 0, index),
+    );
+    let receiver = Receiver {
+        interface: &arguments.can,
+        node: ids.plant,
+        heard: &HEARD_BY_PLANT,
+    };
     receiver.run(Box::new(plant), arguments.pace.chosen(), arguments.faults)
 }
 
@@ -66,19 +79,26 @@ struct Receiver<'a> {
 }
 
 impl Receiver<'_> {
-    /// Runs a node until it is ended by SIGTERM or SIGINT: it says nothing more then, and its peer's watchdog acts.
+    /// Runs a node until it is ended by SIGTERM or SIGINT: it says nothing more then, and its
+    /// peer's watchdog acts.
     fn run(&self, node: Box<dyn Station>, pace: Pace, faults: Option<FaultPlan>) -> Outcome<()> {
         let gone = |error| Failure::new(format!("CAN interface {}: {error}", self.interface));
         let ended = Termination::catch().map_err(gone)?;
         let ids = node.ids();
-        let heard: Vec<_> = self.heard.iter().map(|kind| ids.identifier(*kind)).collect();
-        let port = CanPort::open(self.interface, &heard).map_err(|error| Failure::new(error.to_string()))?;
+        let heard: Vec<_> = self
+            .heard
+            .iter()
+            .map(|kind| ids.identifier(*kind))
+            .collect();
+        let port = CanPort::open(self.interface, &heard)
+            .map_err(|error| Failure::new(error.to_string()))?;
         let faults = faults.map(|plan| FaultyPort::new(plan, ids, self.node.get()));
         quadrant_host::run(node, Port::Can(port), faults, pace, &ended).map_err(gone)
     }
 }
 
-/// On a clock, a bus that cannot carry the cycle misses deadlines; vcan would not show it, so the computed load decides.
+/// On a clock, a bus that cannot carry the cycle misses deadlines; vcan would not show it, so the
+/// computed load decides.
 ///
 /// # Errors
 /// The load, and what makes it less.

@@ -40,7 +40,10 @@ fn draw(
     // Scales with the page instead of having a size of its own.
     Ok(text[start..].replacen(
         &format!("width=\"{}\" height=\"{}\"", size.0, size.1),
-        &format!("width=\"100%\" style=\"max-width:{}px\" font-family=\"sans-serif\"", size.0),
+        &format!(
+            "width=\"100%\" style=\"max-width:{}px\" font-family=\"sans-serif\"",
+            size.0
+        ),
         1,
     ))
 }
@@ -48,7 +51,11 @@ fn draw(
 /// The text of an SVG file of its own.
 #[must_use]
 pub fn standalone(svg: &str) -> String {
-    svg.replacen("<svg", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg", 1)
+    svg.replacen(
+        "<svg",
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg",
+        1,
+    )
 }
 
 /// A path for the polar plot.
@@ -61,13 +68,19 @@ pub struct Trace<'a> {
     pub radius_m: f64,
 }
 
-/// Polar plot of circle deviations: the deviation is drawn with an exaggerated scale on the nominal circle.
+/// Polar plot of circle deviations: the deviation is drawn with an exaggerated scale on the nominal
+/// circle.
 ///
 /// # Errors
 /// Where the plot cannot be drawn.
 pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
-    let largest =
-        |trace: &Trace<'_>| trace.points.iter().map(|p| radial_um(p, trace.radius_m).abs()).fold(0.0, f64::max);
+    let largest = |trace: &Trace<'_>| {
+        trace
+            .points
+            .iter()
+            .map(|p| radial_um(p, trace.radius_m).abs())
+            .fold(0.0, f64::max)
+    };
     let step = nice_step(traces.iter().map(largest).fold(1.0, f64::max) / 3.0);
     // The nominal circle at 1, one step of deviation 0.12 of it.
     let per_um = 0.12 / step;
@@ -79,13 +92,22 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
             .map_err(failed)?;
         for ring in -3..=3_i32 {
             let radius = 1.0 + f64::from(ring) * 0.12;
-            let style = if ring == 0 { INK.stroke_width(1) } else { PALE.stroke_width(1) };
-            chart.draw_series(LineSeries::new(ring_points(radius), style)).map_err(failed)?;
+            let style = if ring == 0 {
+                INK.stroke_width(1)
+            } else {
+                PALE.stroke_width(1)
+            };
+            chart
+                .draw_series(LineSeries::new(ring_points(radius), style))
+                .map_err(failed)?;
         }
         for axis in 0..4_u8 {
             let (sin, cos) = (TAU / 4.0 * f64::from(axis)).sin_cos();
             chart
-                .draw_series(LineSeries::new([(0.5 * cos, 0.5 * sin), (1.45 * cos, 1.45 * sin)], PALE))
+                .draw_series(LineSeries::new(
+                    [(0.5 * cos, 0.5 * sin), (1.45 * cos, 1.45 * sin)],
+                    PALE,
+                ))
                 .map_err(failed)?;
         }
         for (trace, color) in traces.iter().zip(SERIES) {
@@ -95,14 +117,18 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
                 (radius * angle.cos(), radius * angle.sin())
             };
             let line = thinned(trace.points, 4000).map(place);
-            let series = chart.draw_series(LineSeries::new(line, color.stroke_width(2))).map_err(failed)?;
-            series
-                .label(trace.name.clone())
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
+            let series = chart
+                .draw_series(LineSeries::new(line, color.stroke_width(2)))
+                .map_err(failed)?;
+            series.label(trace.name.clone()).legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
+            });
         }
         let note = format!("ring to ring {step} µm");
         let style = ("sans-serif", 13).into_font().color(&INK);
-        chart.draw_series([Text::new(note, (-1.5, -1.5), style)]).map_err(failed)?;
+        chart
+            .draw_series([Text::new(note, (-1.5, -1.5), style)])
+            .map_err(failed)?;
         legend(&mut chart)
     })
 }
@@ -179,20 +205,30 @@ pub fn curves(title: &str, x: &str, y: &str, size: (u32, u32), list: &[Curve]) -
         for (curve, color) in list.iter().zip(SERIES) {
             let points = thinned(&curve.points, 3000).copied();
             let series = if curve.dots {
-                chart.draw_series(points.map(|at| Circle::new(at, 1, color.mix(0.5).filled()))).map_err(failed)?
+                chart
+                    .draw_series(points.map(|at| Circle::new(at, 1, color.mix(0.5).filled())))
+                    .map_err(failed)?
             } else {
-                chart.draw_series(LineSeries::new(points, color.stroke_width(2))).map_err(failed)?
+                chart
+                    .draw_series(LineSeries::new(points, color.stroke_width(2)))
+                    .map_err(failed)?
             };
-            series
-                .label(curve.name.clone())
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
+            series.label(curve.name.clone()).legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
+            });
         }
-        if list.len() > 1 { legend(&mut chart) } else { Ok(()) }
+        if list.len() > 1 {
+            legend(&mut chart)
+        } else {
+            Ok(())
+        }
     })
 }
 
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
     if !(low.is_finite() && high.is_finite()) {
         return (0.0, 1.0);
     }

@@ -1,4 +1,5 @@
-//! Progress on long work, on stderr and only where that is a terminal (or `QUADRANT_PROGRESS` asks for it).
+//! Progress on long work, on stderr and only where that is a terminal (or `QUADRANT_PROGRESS` asks
+//! for it).
 
 use std::io::IsTerminal;
 

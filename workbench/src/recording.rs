@@ -54,7 +54,8 @@ impl Part {
     }
 }
 
-/// Moves all axes by their own bursts and records them together, one record per axis. What was recorded before a failure stays in `records`.
+/// Moves all axes by their own bursts and records them together, one record per axis. What was
+/// recorded before a failure stays in `records`.
 ///
 /// # Errors
 /// Where a drive faults, or the operator interrupts.
@@ -64,17 +65,29 @@ pub fn record<L: Link>(
     part: Part,
     records: &mut Vec<AxisRecord>,
 ) -> Outcome<()> {
-    let bursts: Vec<Vec<Burst>> =
-        machine.axes.iter().map(|axis| excitation::bursts(&axis.limits, part == Part::Validate)).collect();
-    let duration_s = bursts.iter().map(|bursts| excitation::duration_s(bursts)).fold(0.0, f64::max);
+    let bursts: Vec<Vec<Burst>> = machine
+        .axes
+        .iter()
+        .map(|axis| excitation::bursts(&axis.limits, part == Part::Validate))
+        .collect();
+    let duration_s = bursts
+        .iter()
+        .map(|bursts| excitation::duration_s(bursts))
+        .fold(0.0, f64::max);
     records.clear();
     records.resize(machine.axes.len(), AxisRecord::default());
     session.go_to(&vec![0.0; machine.axes.len()])?;
-    // Times are since the drive was switched on: what warms up does not start cold in the second record.
+    // Times are since the drive was switched on: what warms up does not start cold in the second
+    // record.
     let origin_s = session.cycles() as f64 * machine.period_s;
     session.follow(
         duration_s,
-        |time_s| bursts.iter().map(|bursts| excitation::at(bursts, time_s)).collect(),
+        |time_s| {
+            bursts
+                .iter()
+                .map(|bursts| excitation::at(bursts, time_s))
+                .collect()
+        },
         |time_s, axes| {
             for (record, axis) in records.iter_mut().zip(axes) {
                 record.rows.push((origin_s + time_s, *axis));
@@ -83,8 +96,9 @@ pub fn record<L: Link>(
     )
 }
 
-/// Writes a record of an axis, and what the dataset is, into its folder. The effort is what a drive's current sensor would show: the active command
-/// with the sensor's noise, seeded by the machine. A record that `broke_off` says so in `dataset.toml`.
+/// Writes a record of an axis, and what the dataset is, into its folder. The effort is what a
+/// drive's current sensor would show: the active command with the sensor's noise, seeded by the
+/// machine. A record that `broke_off` says so in `dataset.toml`.
 ///
 /// # Errors
 /// Where the folder cannot be written.
@@ -96,10 +110,19 @@ pub fn write_part(
     broke_off: Option<&Failure>,
 ) -> Outcome<()> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
-    let text = csv(record, axis.force_record_noise_n, machine.seed.wrapping_add(part.stream()));
+    let text = csv(
+        record,
+        axis.force_record_noise_n,
+        machine.seed.wrapping_add(part.stream()),
+    );
     write(&folder.join(part.file()), &text)?;
-    let note = broke_off.map_or_else(String::new, |why| format!("# {} broke off: {why}\n", part.file()));
-    write(&folder.join("dataset.toml"), &(note + &dataset_toml(machine, axis)))
+    let note = broke_off.map_or_else(String::new, |why| {
+        format!("# {} broke off: {why}\n", part.file())
+    });
+    write(
+        &folder.join("dataset.toml"),
+        &(note + &dataset_toml(machine, axis)),
+    )
 }
 
 fn csv(record: &AxisRecord, noise_n: f64, seed: u64) -> String {
@@ -109,19 +132,29 @@ fn csv(record: &AxisRecord, noise_n: f64, seed: u64) -> String {
         let sample: f64 = StandardNormal.sample(&mut noise);
         let effort = row.force_n + noise_n * sample;
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{time_s:.6},{:.11},{:.10},{:.9},{effort:.3}", row.reference_m, row.motor_m, row.load_m);
+        let _ = writeln!(
+            text,
+            "{time_s:.6},{:.11},{:.10},{:.9},{effort:.3}",
+            row.reference_m, row.motor_m, row.load_m
+        );
     }
     text
 }
 
-/// What an engineer knows of the axis before it moves: units, encoders, current loop, declared effects. Nothing of the simulator's own.
+/// What an engineer knows of the axis before it moves: units, encoders, current loop, declared
+/// effects. Nothing of the simulator's own.
 fn dataset_toml(machine: &Machine, axis: &MachineAxis) -> String {
     let actual = &axis.actual;
     let sensor = match axis.gains.position_sensor {
         PositionSensor::Motor => "motor",
         PositionSensor::Load => "load",
     };
-    let declared = axis.declared.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    let declared = axis
+        .declared
+        .iter()
+        .map(|name| format!("\"{name}\""))
+        .collect::<Vec<_>>()
+        .join(", ");
     format!(
         "name = \"{}-{}\"\nsample_period_s = {}\neffort_hold = \"zero-order\"\ntime_from = \"power-on\"\neffort_lag_s = {}   # current loop, first order\n\n\
          [axis]\nkind = \"linear\"\nlead_m_per_rev = {}\nencoder_resolution_m = {:e}\nload_encoder_resolution_m = {:e}\n\n\

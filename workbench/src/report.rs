@@ -46,7 +46,11 @@ impl Page {
         self.raw("<table>\n");
         for (index, row) in rows.iter().enumerate() {
             let tag = if index == 0 { "th" } else { "td" };
-            let class = if row.first().is_some_and(|cell| cell.starts_with('✓')) { " class=\"good\"" } else { "" };
+            let class = if row.first().is_some_and(|cell| cell.starts_with('✓')) {
+                " class=\"good\""
+            } else {
+                ""
+            };
             let cells: String = row.iter().fold(String::new(), |mut cells, cell| {
                 let _ = write!(cells, "<{tag}>{}</{tag}>", escaped(cell));
                 cells
@@ -78,16 +82,29 @@ impl Page {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }
 
 /// One sentence about what was found.
 #[must_use]
 pub fn sentence(report: &Report) -> String {
-    let found = if report.found.is_empty() { "nothing".to_owned() } else { report.found.join(", ") };
+    let found = if report.found.is_empty() {
+        "nothing".to_owned()
+    } else {
+        report.found.join(", ")
+    };
     let looks = &report.residual.looks_like;
-    let rest = if report.verdict == "explained" { String::new() } else { format!("; unexplained: {looks}") };
-    format!("The declared model ({}) lacks: {found}{rest}", report.declared.join(", "))
+    let rest = if report.verdict == "explained" {
+        String::new()
+    } else {
+        format!("; unexplained: {looks}")
+    };
+    format!(
+        "The declared model ({}) lacks: {found}{rest}",
+        report.declared.join(", ")
+    )
 }
 
 /// The chapters of an identification.
@@ -125,27 +142,44 @@ fn effect_pictures(result: &Identification) -> Outcome<Vec<String>> {
     let picture = |curve: &EffectCurve| {
         let dots = |which: usize, name: &str| Curve {
             name: name.into(),
-            points: curve.points.iter().map(|point| (point[0], point[which])).collect(),
+            points: curve
+                .points
+                .iter()
+                .map(|point| (point[0], point[which]))
+                .collect(),
             dots: true,
         };
         let list = [dots(1, "residual without it"), dots(2, "the effect")];
         let title = format!("{}: {} (training)", curve.effect, curve.equation);
-        plots::curves(&title, &curve.against, result.effort_unit, (540, 360), &list)
+        plots::curves(
+            &title,
+            &curve.against,
+            result.effort_unit,
+            (540, 360),
+            &list,
+        )
     };
     result.curves.effects.iter().map(picture).collect()
 }
 
 /// Free-run simulation: errors, shapes at reversals, picture.
 fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
-    let Some(free_run) = &result.report.free_run else { return Ok(()) };
+    let Some(free_run) = &result.report.free_run else {
+        return Ok(());
+    };
     let known = free_run.controller == "known";
-    let unit = if result.position_unit == "rad" { "µrad" } else { "µm" };
+    let unit = if result.position_unit == "rad" {
+        "µrad"
+    } else {
+        "µm"
+    };
     page.paragraph(if known {
         "Free run: the whole axis simulated in closed loop from the setpoints alone, parameters fitted to the positions of the training record:"
     } else {
         "The controller is not known: the recorded effort was applied and a soft controller kept the simulation near the record. No free run, but models compare:"
     });
-    let percent = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
+    let percent =
+        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
     let head = [
         "record".to_owned(),
         format!("position error before, {unit} rms"),
@@ -162,12 +196,21 @@ fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
             percent(errors.tracking_error_percent_after),
         ]
     };
-    page.table(&[head.to_vec(), line("training", &free_run.train), line("validation", &free_run.validate)]);
+    page.table(&[
+        head.to_vec(),
+        line("training", &free_run.train),
+        line("validation", &free_run.validate),
+    ]);
     let shapes = &free_run.reversals;
     let row = |name: &str, value: Option<f64>| {
-        vec![name.to_owned(), value.map_or_else(|| "not tried".to_owned(), |value| format!("{value:.3}"))]
+        vec![
+            name.to_owned(),
+            value.map_or_else(|| "not tried".to_owned(), |value| format!("{value:.3}")),
+        ]
     };
-    page.paragraph("What acts at reversals, by what the free run leaves on blocks that were not fitted:");
+    page.paragraph(
+        "What acts at reversals, by what the free run leaves on blocks that were not fitted:",
+    );
     page.table(&[
         vec!["shape".to_owned(), format!("position error, {unit} rms")],
         row("rigid friction with stick", Some(shapes.rigid_um)),
@@ -177,7 +220,12 @@ fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
     ]);
     let curve = |which: usize, name: &str| Curve {
         name: name.into(),
-        points: result.curves.free_run.iter().map(|point| (point[0], point[which])).collect(),
+        points: result
+            .curves
+            .free_run
+            .iter()
+            .map(|point| (point[0], point[which]))
+            .collect(),
         dots: false,
     };
     let list = [curve(1, "declared"), curve(2, "extended")];
@@ -193,7 +241,9 @@ fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
 
 /// Ripple that was found about the reversals of an axis that is never slow for long.
 fn slow_ripple(page: &mut Page, result: &Identification) {
-    let Some(ripple) = &result.report.slow_ripple else { return };
+    let Some(ripple) = &result.report.slow_ripple else {
+        return;
+    };
     page.paragraph(&format!(
         "Torque ripple about the reversals (samples up to {:.3} {}/s, low-pass {} Hz): force error {:.2} → {:.2} % on the training record, {:.2} → {:.2} % on the validation record:",
         ripple.fastest,
@@ -210,7 +260,11 @@ fn slow_ripple(page: &mut Page, result: &Identification) {
         "± (95 %)".to_owned(),
     ]];
     rows.extend(ripple.orders.iter().map(|order| {
-        vec![order.per_rev.to_string(), format!("{:.4}", order.amplitude), format!("{:.4}", order.half_width)]
+        vec![
+            order.per_rev.to_string(),
+            format!("{:.4}", order.amplitude),
+            format!("{:.4}", order.half_width),
+        ]
     }));
     page.table(&rows);
 }
@@ -220,8 +274,15 @@ fn slow_ripple(page: &mut Page, result: &Identification) {
 pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
     let report = &result.report;
     let unit = result.effort_unit;
-    let mut rows = vec![["record", "force error before, %", "after, %"].map(String::from).to_vec()];
-    rows[0].extend([format!("about reversals before, {unit}"), format!("after, {unit}")]);
+    let mut rows = vec![
+        ["record", "force error before, %", "after, %"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    rows[0].extend([
+        format!("about reversals before, {unit}"),
+        format!("after, {unit}"),
+    ]);
     let has_difference = report.train.position_difference_error_um_before.is_some();
     if has_difference {
         rows[0].extend(["motor − load before, µm".to_owned(), "after, µm".to_owned()]);
@@ -235,7 +296,8 @@ pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
             format!("{:.1}", errors.reversal_error_after),
         ];
         if has_difference {
-            let um = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
+            let um =
+                |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
             row.push(um(errors.position_difference_error_um_before));
             row.push(um(errors.position_difference_error_um_after));
         }
@@ -250,19 +312,34 @@ pub fn error_table(result: &Identification) -> Vec<Vec<String>> {
 }
 
 fn protocol_table(report: &Report) -> Vec<Vec<String>> {
-    let mut rows = vec![["samples and fit", "declared, %", "extended, %"].map(String::from).to_vec()];
+    let mut rows = vec![
+        ["samples and fit", "declared, %", "extended, %"]
+            .map(String::from)
+            .to_vec(),
+    ];
     rows.extend(report.protocols.iter().map(|protocol| {
         let percent = |value: f64| format!("{value:.2}");
-        vec![protocol.definition.to_owned(), percent(protocol.declared_percent), percent(protocol.extended_percent)]
+        vec![
+            protocol.definition.to_owned(),
+            percent(protocol.declared_percent),
+            percent(protocol.extended_percent),
+        ]
     }));
     rows
 }
 
 fn candidate_table(report: &Report) -> Vec<Vec<String>> {
     let mut rows = vec![
-        ["effect", "judged on", "share removed, %", "evidence t", "validation error alone, %", "physical"]
-            .map(String::from)
-            .to_vec(),
+        [
+            "effect",
+            "judged on",
+            "share removed, %",
+            "evidence t",
+            "validation error alone, %",
+            "physical",
+        ]
+        .map(String::from)
+        .to_vec(),
     ];
     rows.extend(report.candidates.iter().map(|candidate| {
         let mark = if candidate.accepted { "✓ " } else { "" };
@@ -271,7 +348,9 @@ fn candidate_table(report: &Report) -> Vec<Vec<String>> {
             candidate.judged_on.to_owned(),
             format!("{:.1}", 100.0 * candidate.share.max(-9.99)),
             format!("{:.1}", candidate.evidence),
-            candidate.validation_error_percent.map_or_else(|| "–".to_owned(), |error| format!("{error:.2}")),
+            candidate
+                .validation_error_percent
+                .map_or_else(|| "–".to_owned(), |error| format!("{error:.2}")),
             if candidate.physical { "yes" } else { "no" }.to_owned(),
         ]
     }));
@@ -279,10 +358,18 @@ fn candidate_table(report: &Report) -> Vec<Vec<String>> {
 }
 
 fn parameter_table(report: &Report) -> Vec<Vec<String>> {
-    let mut rows = vec![["parameter", "value", "low", "high", "unit"].map(String::from).to_vec()];
+    let mut rows = vec![
+        ["parameter", "value", "low", "high", "unit"]
+            .map(String::from)
+            .to_vec(),
+    ];
     rows.extend(report.parameters.iter().map(|(name, parameter)| {
         let number = |value: f64| {
-            if value.abs() >= 0.01 && value.abs() < 1.0e6 { format!("{value:.4}") } else { format!("{value:.4e}") }
+            if value.abs() >= 0.01 && value.abs() < 1.0e6 {
+                format!("{value:.4}")
+            } else {
+                format!("{value:.4e}")
+            }
         };
         vec![
             name.clone(),
@@ -300,11 +387,22 @@ fn residual_pictures(result: &Identification) -> Outcome<Vec<String>> {
     let against = |column: usize, name: &str, label: &str| {
         let dots = |which: usize, name: &str| Curve {
             name: name.into(),
-            points: result.curves.moving.iter().map(|row| (row[column], row[which])).collect(),
+            points: result
+                .curves
+                .moving
+                .iter()
+                .map(|row| (row[column], row[which]))
+                .collect(),
             dots: true,
         };
         let list = [dots(2, "declared"), dots(3, "extended")];
-        plots::curves(&format!("Residual against {name} (validation)"), label, result.effort_unit, (540, 360), &list)
+        plots::curves(
+            &format!("Residual against {name} (validation)"),
+            label,
+            result.effort_unit,
+            (540, 360),
+            &list,
+        )
     };
     Ok(vec![
         against(0, "velocity", &format!("velocity, {unit}/s"))?,
@@ -316,10 +414,24 @@ fn time_picture(result: &Identification) -> Outcome<String> {
     let curves = &result.curves;
     let over = |name: &str, values: &[f64]| Curve {
         name: name.into(),
-        points: curves.time_s.iter().copied().zip(values.iter().copied()).collect(),
+        points: curves
+            .time_s
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect(),
         dots: false,
     };
-    let list =
-        [over("declared", &curves.declared), over("extended", &curves.extended), over("recorded", &curves.effort)];
-    plots::curves("Effort on the validation record", "time, s", result.effort_unit, (1080, 340), &list)
+    let list = [
+        over("declared", &curves.declared),
+        over("extended", &curves.extended),
+        over("recorded", &curves.effort),
+    ];
+    plots::curves(
+        "Effort on the validation record",
+        "time, s",
+        result.effort_unit,
+        (1080, 340),
+        &list,
+    )
 }

@@ -1,4 +1,5 @@
-//! Runs on a machine: connect, configure, enable, move; and whatever happens, stop, disable, write the log.
+//! Runs on a machine: connect, configure, enable, move; and whatever happens, stop, disable, write
+//! the log.
 
 use std::path::Path;
 
@@ -48,7 +49,11 @@ impl Link for Box<dyn Link> {
         self.as_mut().send(bus, frame)
     }
 
-    fn receive(&mut self, bus: usize, timeout: std::time::Duration) -> Outcome<Option<protocol::CanFrame>> {
+    fn receive(
+        &mut self,
+        bus: usize,
+        timeout: std::time::Duration,
+    ) -> Outcome<Option<protocol::CanFrame>> {
         self.as_mut().receive(bus, timeout)
     }
 
@@ -78,11 +83,17 @@ impl Link for Box<dyn Link> {
 }
 
 impl<'a> Session<'a> {
-    /// Connects to a machine, downloads its parameters and enables its drives. `run` tells the noise of one run from that of another.
+    /// Connects to a machine, downloads its parameters and enables its drives. `run` tells the
+    /// noise of one run from that of another.
     ///
     /// # Errors
     /// Where a node does not answer, or a drive does not come up.
-    pub fn open(machine: &'a Machine, place: &Place, compensation: &[AxisCompensation], run: u64) -> Outcome<Self> {
+    pub fn open(
+        machine: &'a Machine,
+        place: &Place,
+        compensation: &[AxisCompensation],
+        run: u64,
+    ) -> Outcome<Self> {
         let mut session = Self::connect(machine, place, run, &Interrupt::never())?;
         session.ready(compensation)?;
         Ok(session)
@@ -92,10 +103,17 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// Where an interface cannot be opened.
-    pub fn connect(machine: &'a Machine, place: &Place, run: u64, interrupt: &Interrupt) -> Outcome<Self> {
+    pub fn connect(
+        machine: &'a Machine,
+        place: &Place,
+        run: u64,
+        interrupt: &Interrupt,
+    ) -> Outcome<Self> {
         let link: Box<dyn Link> = match place {
             Place::InProcess => Box::new(InProcess::new(machine, run)?),
-            Place::Can { names, pace } => Box::new(Interfaces::open(machine, names)?.with_pace(*pace)),
+            Place::Can { names, pace } => {
+                Box::new(Interfaces::open(machine, names)?.with_pace(*pace))
+            }
         };
         Self::on(link, machine, interrupt)
     }
@@ -108,7 +126,11 @@ impl<'a, L: Link> Session<'a, L> {
     /// Beyond 16 axes.
     pub fn on(link: L, machine: &'a Machine, interrupt: &Interrupt) -> Outcome<Self> {
         let master = Master::on(link, machine)?.until(interrupt.clone());
-        Ok(Self { machine, master, interrupt: interrupt.clone() })
+        Ok(Self {
+            machine,
+            master,
+            interrupt: interrupt.clone(),
+        })
     }
 
     /// Finds the nodes, downloads the parameters and enables the drives.
@@ -117,14 +139,18 @@ impl<'a, L: Link> Session<'a, L> {
     /// Where a node does not answer, a drive does not come up, or the operator has interrupted.
     pub fn ready(&mut self, compensation: &[AxisCompensation]) -> Outcome<()> {
         self.interrupt.check()?;
-        let configured = self.master.find_nodes().and_then(|()| self.master.configure(self.machine, compensation));
+        let configured = self
+            .master
+            .find_nodes()
+            .and_then(|()| self.master.configure(self.machine, compensation));
         // A signal ends the waiting for an answer too: that is no silence of the node.
         self.interrupt.check()?;
         configured?;
         self.master.enable()
     }
 
-    /// Enables the drives, does `work`, disables them and writes the candump log: whatever becomes of the work.
+    /// Enables the drives, does `work`, disables them and writes the candump log: whatever becomes
+    /// of the work.
     ///
     /// # Errors
     /// The first of: enabling, the work, disabling, writing.
@@ -145,8 +171,12 @@ impl<'a, L: Link> Session<'a, L> {
         match (outcome, log, written) {
             (Ok(done), _, written) => disabled.and(written).map(|()| done),
             (Err(failure), None, _) => Err(failure),
-            (Err(failure), Some(path), Ok(())) => Err(Failure::new(format!("{failure}; log: {}", path.display()))),
-            (Err(failure), Some(_), Err(lost)) => Err(Failure::new(format!("{failure}; and its log was lost: {lost}"))),
+            (Err(failure), Some(path), Ok(())) => {
+                Err(Failure::new(format!("{failure}; log: {}", path.display())))
+            }
+            (Err(failure), Some(_), Err(lost)) => Err(Failure::new(format!(
+                "{failure}; and its log was lost: {lost}"
+            ))),
         }
     }
 
@@ -174,10 +204,17 @@ impl<'a, L: Link> Session<'a, L> {
     /// # Errors
     /// Where a drive faults on the way.
     pub fn go_to(&mut self, to: &[f64]) -> Outcome<()> {
-        let from: Vec<f64> = (0..to.len()).map(|axis| self.master.axis(axis).reference_m).collect();
+        let from: Vec<f64> = (0..to.len())
+            .map(|axis| self.master.axis(axis).reference_m)
+            .collect();
         let limits = self.machine.axes.iter().map(|axis| axis.limits);
-        let velocity = limits.clone().map(|l| l.velocity_m_per_s).fold(f64::INFINITY, f64::min);
-        let acceleration = limits.map(|l| l.acceleration_m_per_s2).fold(f64::INFINITY, f64::min);
+        let velocity = limits
+            .clone()
+            .map(|l| l.velocity_m_per_s)
+            .fold(f64::INFINITY, f64::min);
+        let acceleration = limits
+            .map(|l| l.acceleration_m_per_s2)
+            .fold(f64::INFINITY, f64::min);
         let path = Move::new(&from, to, 0.5 * velocity, 0.5 * acceleration);
         self.follow(path.duration_s(), |time_s| path.at(time_s), |_, _| ())?;
         self.follow(SETTLE_S, |_| to.to_vec(), |_, _| ())
@@ -186,7 +223,8 @@ impl<'a, L: Link> Session<'a, L> {
     /// Follows a trajectory; `each` sees every cycle with the time since the begin.
     ///
     /// # Errors
-    /// Where an axis faults or falls silent on the way, or the operator interrupts: all axes stand then, and are disabled.
+    /// Where an axis faults or falls silent on the way, or the operator interrupts: all axes stand
+    /// then, and are disabled.
     pub fn follow(
         &mut self,
         duration_s: f64,
@@ -271,7 +309,9 @@ impl<'a, L: Link> Session<'a, L> {
 pub fn write_logs(path: &Path, logs: &[bus::BusLog]) -> Outcome<()> {
     let failed = |error: std::io::Error| Failure::file(path, &error);
     let mut file = std::io::BufWriter::new(std::fs::File::create(path).map_err(failed)?);
-    logs.iter().try_for_each(|log| log.write(&mut file)).map_err(failed)?;
+    logs.iter()
+        .try_for_each(|log| log.write(&mut file))
+        .map_err(failed)?;
     std::io::Write::flush(&mut file).map_err(failed)
 }
 
@@ -304,9 +344,24 @@ pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
         let limits = &axis.limits;
         let acceleration = circle.feed_m_per_s * circle.feed_m_per_s / circle.radius_m;
         for (what, wanted, limit, unit) in [
-            ("--radius-mm", circle.radius_m * 1.0e3, limits.travel_m * 1.0e3, "mm of travel"),
-            ("--feed-mm-min", circle.feed_m_per_s * 6.0e4, limits.velocity_m_per_s * 6.0e4, "mm/min of velocity"),
-            ("--feed-mm-min with --radius-mm", acceleration, limits.acceleration_m_per_s2, "m/s² of acceleration"),
+            (
+                "--radius-mm",
+                circle.radius_m * 1.0e3,
+                limits.travel_m * 1.0e3,
+                "mm of travel",
+            ),
+            (
+                "--feed-mm-min",
+                circle.feed_m_per_s * 6.0e4,
+                limits.velocity_m_per_s * 6.0e4,
+                "mm/min of velocity",
+            ),
+            (
+                "--feed-mm-min with --radius-mm",
+                acceleration,
+                limits.acceleration_m_per_s2,
+                "m/s² of acceleration",
+            ),
         ] {
             if wanted > limit {
                 return Err(Failure::new(format!(

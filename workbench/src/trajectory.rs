@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Reference circle in X and Y: from X = 0, Y = −R, counter-clockwise (or clockwise), with a smooth start over the first quarter turn and a smooth stop
-/// over the last one.
+/// Reference circle in X and Y: from X = 0, Y = −R, counter-clockwise (or clockwise), with a smooth
+/// start over the first quarter turn and a smooth stop over the last one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     /// Radius, m.
@@ -18,7 +18,8 @@ pub struct Circle {
 
 /// Angle of the smooth start and of the smooth stop.
 const RAMP_RAD: f64 = PI / 2.0;
-/// The turns that count begin here: after the first half turn, and away from a reversal by an eighth.
+/// The turns that count begin here: after the first half turn, and away from a reversal by an
+/// eighth.
 pub const MEASURE_FROM_RAD: f64 = 1.25 * PI;
 
 impl Circle {
@@ -52,7 +53,8 @@ impl Circle {
     pub fn angle_rad(&self, time_s: f64) -> f64 {
         let (ramp, total) = (self.ramp_s(), self.duration_s());
         if time_s >= total - ramp {
-            return self.end_rad() - self.omega() * ramp * smooth_area(((total - time_s) / ramp).clamp(0.0, 1.0));
+            return self.end_rad()
+                - self.omega() * ramp * smooth_area(((total - time_s) / ramp).clamp(0.0, 1.0));
         }
         if time_s <= ramp {
             return self.omega() * ramp * smooth_area((time_s / ramp).clamp(0.0, 1.0));
@@ -65,7 +67,10 @@ impl Circle {
     pub fn at(&self, time_s: f64) -> [f64; 2] {
         let angle = self.angle_rad(time_s);
         let sense = if self.counter_clockwise { 1.0 } else { -1.0 };
-        [sense * self.radius_m * angle.sin(), -self.radius_m * angle.cos()]
+        [
+            sense * self.radius_m * angle.sin(),
+            -self.radius_m * angle.cos(),
+        ]
     }
 }
 
@@ -85,12 +90,25 @@ pub struct Move {
 impl Move {
     /// A motion within a velocity and an acceleration limit.
     #[must_use]
-    pub fn new(from: &[f64], to: &[f64], velocity_m_per_s: f64, acceleration_m_per_s2: f64) -> Self {
-        let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+    pub fn new(
+        from: &[f64],
+        to: &[f64],
+        velocity_m_per_s: f64,
+        acceleration_m_per_s2: f64,
+    ) -> Self {
+        let longest = from
+            .iter()
+            .zip(to)
+            .map(|(from, to)| (to - from).abs())
+            .fold(0.0, f64::max);
         // The quintic's peak velocity is 15/8 of the mean, its peak acceleration 10/√3 · s/T².
         let by_velocity = 1.875 * longest / velocity_m_per_s;
         let by_acceleration = (10.0 / 3.0_f64.sqrt() * longest / acceleration_m_per_s2).sqrt();
-        Self { from: from.to_vec(), to: to.to_vec(), duration_s: by_velocity.max(by_acceleration).max(0.01) }
+        Self {
+            from: from.to_vec(),
+            to: to.to_vec(),
+            duration_s: by_velocity.max(by_acceleration).max(0.01),
+        }
     }
 
     /// Duration, s.
@@ -104,7 +122,11 @@ impl Move {
     pub fn at(&self, time_s: f64) -> Vec<f64> {
         let u = (time_s / self.duration_s).clamp(0.0, 1.0);
         let share = u.powi(3) * (10.0 - 15.0 * u + 6.0 * u * u);
-        self.from.iter().zip(&self.to).map(|(from, to)| from + share * (to - from)).collect()
+        self.from
+            .iter()
+            .zip(&self.to)
+            .map(|(from, to)| from + share * (to - from))
+            .collect()
     }
 }
 
@@ -114,7 +136,12 @@ mod tests {
 
     #[test]
     fn the_circle_starts_and_stops_at_rest_and_runs_at_its_feed_between() {
-        let circle = Circle { radius_m: 0.1, feed_m_per_s: 2.0 / 60.0, turns: 3, counter_clockwise: true };
+        let circle = Circle {
+            radius_m: 0.1,
+            feed_m_per_s: 2.0 / 60.0,
+            turns: 3,
+            counter_clockwise: true,
+        };
         let speed = |t: f64| {
             let ([x0, y0], [x1, y1]) = (circle.at(t - 5.0e-4), circle.at(t + 5.0e-4));
             (x1 - x0).hypot(y1 - y0) / 1.0e-3
@@ -125,7 +152,11 @@ mod tests {
         }
         assert!((circle.angle_rad(circle.duration_s()) - circle.end_rad()).abs() < 1.0e-9);
         let ramp = circle.ramp_s();
-        assert!((circle.angle_rad(ramp) - RAMP_RAD).abs() < 1.0e-9, "{}", circle.angle_rad(ramp));
+        assert!(
+            (circle.angle_rad(ramp) - RAMP_RAD).abs() < 1.0e-9,
+            "{}",
+            circle.angle_rad(ramp)
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! The way up and down against a scripted drive: every step is confirmed, and a refusal is told in the drive's own words.
+//! The way up and down against a scripted drive: every step is confirmed, and a refusal is told in
+//! the drive's own words.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,10 +7,14 @@ use std::time::Duration;
 use plant_sim::Machine;
 use plant_sim::node::Truth;
 use protocol::cob::AxisIds;
-use protocol::message::{self, Decoded, EmergencyMessage, ErrorRegister, Feedback, NmtCommand, NmtState, Status};
+use protocol::message::{
+    self, Decoded, EmergencyMessage, ErrorRegister, Feedback, NmtCommand, NmtState, Status,
+};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::states::{Command, ControlWord, DriveState, StatusWord};
-use protocol::weight::{FollowingError24, LoadIncrements24, MotorIncrements, TorqueMicroNm, TorquePerMille};
+use protocol::weight::{
+    FollowingError24, LoadIncrements24, MotorIncrements, TorqueMicroNm, TorquePerMille,
+};
 use protocol::{CanFrame, Fault, Message, SyncCounter};
 use servo::objects::{self, Parameter};
 use servo::parameters::SetError;
@@ -18,7 +23,8 @@ use workbench::interrupt::Interrupt;
 use workbench::link::{Link, axis_ids};
 use workbench::master::Master;
 
-/// A drive that needs `delay` cycles to enable and to disable operation, and refuses to enable with `refusal`.
+/// A drive that needs `delay` cycles to enable and to disable operation, and refuses to enable with
+/// `refusal`.
 struct Drive {
     ids: AxisIds,
     state: DriveState,
@@ -63,16 +69,33 @@ impl Drive {
 
     fn cycle(&mut self, counter: SyncCounter) {
         let (motor, load) = (MotorIncrements(0), LoadIncrements24::from_counts(0));
-        self.say(Message::Feedback(Feedback { motor, load, counter }));
+        self.say(Message::Feedback(Feedback {
+            motor,
+            load,
+            counter,
+        }));
         if self.is_dead {
             self.say(Message::PlantHeartbeat(NmtState::Operational));
-            return self.say(Message::Feedback(Feedback { motor, load, counter: counter.next() }));
+            return self.say(Message::Feedback(Feedback {
+                motor,
+                load,
+                counter: counter.next(),
+            }));
         }
         let (torque, control) = (TorqueMicroNm(0), ControlWord::DISABLE_VOLTAGE);
         let following_error = FollowingError24::saturating(0);
         let status = StatusWord::of(self.state);
-        self.say(Message::Status(Status { status, following_error, torque: TorquePerMille(0), fault: None }));
-        self.say(Message::Torque(message::Torque { torque, control, counter }));
+        self.say(Message::Status(Status {
+            status,
+            following_error,
+            torque: TorquePerMille(0),
+            fault: None,
+        }));
+        self.say(Message::Torque(message::Torque {
+            torque,
+            control,
+            counter,
+        }));
     }
 
     fn follow(&mut self, control: ControlWord) {
@@ -83,13 +106,18 @@ impl Drive {
         self.waited += 1;
         self.state = match (self.state, control.command()) {
             (DriveState::SwitchedOn, Some(Command::EnableOperation)) => self.enabled(),
-            (DriveState::OperationEnabled, Some(Command::SwitchOn)) if self.waited <= self.delay => self.state,
+            (DriveState::OperationEnabled, Some(Command::SwitchOn))
+                if self.waited <= self.delay =>
+            {
+                self.state
+            }
             (DriveState::SwitchOnDisabled | DriveState::SwitchedOn, Some(Command::Shutdown)) => {
                 DriveState::ReadyToSwitchOn
             }
-            (DriveState::ReadyToSwitchOn | DriveState::OperationEnabled, Some(Command::SwitchOn)) => {
-                DriveState::SwitchedOn
-            }
+            (
+                DriveState::ReadyToSwitchOn | DriveState::OperationEnabled,
+                Some(Command::SwitchOn),
+            ) => DriveState::SwitchedOn,
             (_, Some(Command::DisableVoltage)) => DriveState::SwitchOnDisabled,
             (state, _) => state,
         };
@@ -100,7 +128,11 @@ impl Drive {
             Some(fault) => {
                 if !self.has_refused {
                     let register = ErrorRegister(ErrorRegister::GENERIC);
-                    let emergency = EmergencyMessage::new(fault.emergency_code(), register, [fault.code(), 0, 0, 0, 0]);
+                    let emergency = EmergencyMessage::new(
+                        fault.emergency_code(),
+                        register,
+                        [fault.code(), 0, 0, 0, 0],
+                    );
                     self.say(Message::ServoEmergency(emergency));
                 }
                 self.has_refused = true;
@@ -119,7 +151,9 @@ impl Drive {
             Request::Download(address, data) => {
                 self.written.push((address, data.to_u32()));
                 match self.aborts {
-                    Some((object, code)) if object == address => Response::Aborted(address, code.value()),
+                    Some((object, code)) if object == address => {
+                        Response::Aborted(address, code.value())
+                    }
                     _ => Response::Downloaded(address),
                 }
             }
@@ -167,7 +201,11 @@ impl Link for Drive {
         Ok(self.out.pop_front())
     }
 
-    fn receive_in_cycle(&mut self, bus: usize, _most: Option<Duration>) -> Outcome<Option<CanFrame>> {
+    fn receive_in_cycle(
+        &mut self,
+        bus: usize,
+        _most: Option<Duration>,
+    ) -> Outcome<Option<CanFrame>> {
         self.receive(bus, Duration::ZERO)
     }
 
@@ -190,13 +228,25 @@ fn one_axis() -> Machine {
     machine
 }
 
-const UP: [ControlWord; 4] =
-    [ControlWord::DISABLE_VOLTAGE, ControlWord::SHUTDOWN, ControlWord::SWITCH_ON, ControlWord::ENABLE_OPERATION];
-const DOWN: [ControlWord; 3] = [ControlWord::SWITCH_ON, ControlWord::SHUTDOWN, ControlWord::DISABLE_VOLTAGE];
+const UP: [ControlWord; 4] = [
+    ControlWord::DISABLE_VOLTAGE,
+    ControlWord::SHUTDOWN,
+    ControlWord::SWITCH_ON,
+    ControlWord::ENABLE_OPERATION,
+];
+const DOWN: [ControlWord; 3] = [
+    ControlWord::SWITCH_ON,
+    ControlWord::SHUTDOWN,
+    ControlWord::DISABLE_VOLTAGE,
+];
 
 #[test]
 fn a_refusal_names_axis_state_fault_and_what_to_do() {
-    for fault in [Fault::ReferenceTooFar, Fault::CycleTimeMismatch, Fault::EncoderRelation] {
+    for fault in [
+        Fault::ReferenceTooFar,
+        Fault::CycleTimeMismatch,
+        Fault::EncoderRelation,
+    ] {
         let mut master = Master::start(Drive::new(0, Some(fault)), &one_axis()).unwrap();
         let text = master.enable().unwrap_err().to_string();
         let wanted = format!(
@@ -204,8 +254,16 @@ fn a_refusal_names_axis_state_fault_and_what_to_do() {
             fault.text()
         );
         assert_eq!(text, wanted);
-        assert!(master.cycles() < 20, "an EMCY is an answer, not a reason to wait: {} cycles", master.cycles());
-        assert_eq!(master.state(0), Some(DriveState::SwitchOnDisabled), "it goes down again");
+        assert!(
+            master.cycles() < 20,
+            "an EMCY is an answer, not a reason to wait: {} cycles",
+            master.cycles()
+        );
+        assert_eq!(
+            master.state(0),
+            Some(DriveState::SwitchOnDisabled),
+            "it goes down again"
+        );
     }
 }
 
@@ -215,7 +273,11 @@ fn a_brake_of_half_a_second_is_waited_for_on_the_way_up_and_down() {
     master.enable().unwrap();
     assert!((500..520).contains(&master.cycles()), "{}", master.cycles());
     master.disable().unwrap();
-    assert!((1000..1040).contains(&master.cycles()), "{}", master.cycles());
+    assert!(
+        (1000..1040).contains(&master.cycles()),
+        "{}",
+        master.cycles()
+    );
     assert_eq!(master.state(0), Some(DriveState::SwitchOnDisabled));
     assert_eq!(master.into_link().commands, [&UP[..], &DOWN[..]].concat());
 }
@@ -224,19 +286,33 @@ fn a_brake_of_half_a_second_is_waited_for_on_the_way_up_and_down() {
 fn a_drive_that_never_answers_a_step_is_given_up_after_a_second_and_told() {
     let mut master = Master::start(Drive::new(u32::MAX, None), &one_axis()).unwrap();
     let text = master.enable().unwrap_err().to_string();
-    assert!(text.contains("did not reach OperationEnabled (SwitchedOn; no fault reported)"), "{text}");
-    assert!((1000..1040).contains(&master.cycles()), "{}", master.cycles());
+    assert!(
+        text.contains("did not reach OperationEnabled (SwitchedOn; no fault reported)"),
+        "{text}"
+    );
+    assert!(
+        (1000..1040).contains(&master.cycles()),
+        "{}",
+        master.cycles()
+    );
 }
 
 #[test]
 fn an_interruption_on_the_way_up_takes_the_drive_down() {
     let interrupt = Interrupt::never();
-    let mut master = Master::start(Drive::new(500, None), &one_axis()).unwrap().until(interrupt.clone());
+    let mut master = Master::start(Drive::new(500, None), &one_axis())
+        .unwrap()
+        .until(interrupt.clone());
     interrupt.raise(libc::SIGINT);
     let text = master.enable().unwrap_err().to_string();
     assert_eq!(text, "interrupted by SIGINT; the drives were not enabled");
     assert_eq!(master.state(0), Some(DriveState::SwitchOnDisabled));
-    assert!(!master.into_link().commands.contains(&ControlWord::ENABLE_OPERATION));
+    assert!(
+        !master
+            .into_link()
+            .commands
+            .contains(&ControlWord::ENABLE_OPERATION)
+    );
 }
 
 #[test]
@@ -265,7 +341,8 @@ fn a_drive_that_takes_no_declared_period_is_not_configured() {
 fn a_refused_set_names_parameter_and_reason_also_where_they_are_unknown() {
     let machine = one_axis();
     let row = |parameter: Parameter| u32::try_from(parameter as usize + 1).unwrap();
-    let brakes_hard = u32::from(SetError::BeyondAcceleration(Parameter::QuickStopDeceleration).code());
+    let brakes_hard =
+        u32::from(SetError::BeyondAcceleration(Parameter::QuickStopDeceleration).code());
     for (refused, wanted) in [
         (
             (row(Parameter::QuickStopDeceleration), brakes_hard),
@@ -278,7 +355,10 @@ fn a_refused_set_names_parameter_and_reason_also_where_they_are_unknown() {
         drive.refused = refused;
         let mut master = Master::start(drive, &machine).unwrap();
         let text = master.configure(&machine, &[]).unwrap_err().to_string();
-        assert_eq!(text, format!("axis X: the drive refuses the parameter set: {wanted}"));
+        assert_eq!(
+            text,
+            format!("axis X: the drive refuses the parameter set: {wanted}")
+        );
     }
 }
 
@@ -290,7 +370,11 @@ fn a_plant_that_has_begun_the_next_cycle_by_itself_ends_the_waiting_for_a_dead_s
     for _ in 0..3 {
         master.link_mut().received = 0;
         master.cycle(&[0.0]).unwrap();
-        assert_eq!(master.link_mut().received, 3, "feedback k, a heartbeat, feedback k + 1");
+        assert_eq!(
+            master.link_mut().received,
+            3,
+            "feedback k, a heartbeat, feedback k + 1"
+        );
     }
     assert_eq!(master.missed(), 3);
     assert!(master.has_lost_a_servo());
@@ -301,5 +385,8 @@ fn a_servo_that_does_not_answer_is_given_up_although_its_plant_goes_on_talking()
     let mut drive = Drive::new(0, None);
     drive.is_dead = true;
     let text = Master::start(drive, &one_axis()).err().unwrap().to_string();
-    assert!(text.contains("the servo (node 1) does not answer"), "{text}");
+    assert!(
+        text.contains("the servo (node 1) does not answer"),
+        "{text}"
+    );
 }

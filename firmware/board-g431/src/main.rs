@@ -1,12 +1,16 @@
 //! The drive node on ST's B-G431B-ESC1 (STM32G431CB).
 //!
-//! The same sans-I/O node as on the host, at clock pace: frames from FDCAN1 (PA11 receive, PB9 transmit) and the time go in, what it says goes out. One task
-//! waits for a frame or for the time when the node is due ([`Station::wake_at_us`]: the deadline of a cycle, its own SYNC timer, a heartbeat). That time
-//! is absolute, so a busy bus does not put it off. Contract: from the arrival of the frame that completes a cycle to the torque frame in the
-//! transmit FIFO there is no waiting but for a free FIFO slot; the computation is bounded because the node has no loop over anything but its own tables.
+//! The same sans-I/O node as on the host, at clock pace: frames from FDCAN1 (PA11 receive, PB9
+//! transmit) and the time go in, what it says goes out. One task waits for a frame or for the time
+//! when the node is due ([`Station::wake_at_us`]: the deadline of a cycle, its own SYNC timer, a
+//! heartbeat). That time is absolute, so a busy bus does not put it off. Contract: from the arrival
+//! of the frame that completes a cycle to the torque frame in the transmit FIFO there is no waiting
+//! but for a free FIFO slot; the computation is bounded because the node has no loop over anything
+//! but its own tables.
 //!
-//! Not proven here: that the board boots and keeps this contract. The image is linked and its budgets are checked; timing on the target is
-//! a later issue. The node reads its position from the bus, from the plant, as in hardware-in-the-loop tests; there is no inverter control in it.
+//! Not proven here: that the board boots and keeps this contract. The image is linked and its
+//! budgets are checked; timing on the target is a later issue. The node reads its position from the
+//! bus, from the plant, as in hardware-in-the-loop tests; there is no inverter control in it.
 #![no_std]
 #![no_main]
 
@@ -17,12 +21,16 @@ use defmt::{error, info, unwrap, warn};
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_futures::select::{Either, select};
-use embassy_stm32::can::config::{FrameTransmissionConfig, GlobalFilter, NominalBitTiming, TxBufferMode};
+use embassy_stm32::can::config::{
+    FrameTransmissionConfig, GlobalFilter, NominalBitTiming, TxBufferMode,
+};
 use embassy_stm32::can::filter::{Action, FilterType, StandardFilter, StandardFilterSlot};
 use embassy_stm32::can::{self, CanConfigurator, CanRx, CanTx, Frame, OperatingMode};
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::peripherals::FDCAN1;
-use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllQDiv, PllRDiv, PllSource, Sysclk, mux};
+use embassy_stm32::rcc::{
+    Hse, HseMode, Pll, PllMul, PllPreDiv, PllQDiv, PllRDiv, PllSource, Sysclk, mux,
+};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, bind_interrupts};
 use embassy_time::{Duration, Instant, Timer};
@@ -43,7 +51,8 @@ const SERVO_NODE: u8 = 0x01;
 const PLANT_NODE: u8 = 0x11;
 /// The board's 120 Ω across the bus: on where the board ends it.
 const TERMINATION: Level = Level::Low;
-/// Frames that one event can cause: what was due (EMCY, torque, status, heartbeat) and then as many for the frame that came, doubled.
+/// Frames that one event can cause: what was due (EMCY, torque, status, heartbeat) and then as many
+/// for the frame that came, doubled.
 type Outbox = Vec<CanFrame, 16>;
 
 // Register codes, held to the plain numbers that the host checks.
@@ -58,11 +67,22 @@ const _: () = {
     assert!((Q.to_bits() as u32 + 1) * 2 == PLL_Q);
 };
 
-/// Crystal → PLL → 170 MHz for the core and, from Q, for FDCAN. The default leaves the FDCAN multiplexer on a crystal that is off.
+/// Crystal → PLL → 170 MHz for the core and, from Q, for FDCAN. The default leaves the FDCAN
+/// multiplexer on a crystal that is off.
 fn clock_tree() -> Config {
     let mut config = Config::default();
-    config.rcc.hse = Some(Hse { freq: Hertz(HSE_HZ), mode: HseMode::Oscillator });
-    config.rcc.pll = Some(Pll { source: PllSource::HSE, prediv: M, mul: N, divp: None, divq: Some(Q), divr: Some(R) });
+    config.rcc.hse = Some(Hse {
+        freq: Hertz(HSE_HZ),
+        mode: HseMode::Oscillator,
+    });
+    config.rcc.pll = Some(Pll {
+        source: PllSource::HSE,
+        prediv: M,
+        mul: N,
+        divp: None,
+        divq: Some(Q),
+        divr: Some(R),
+    });
     config.rcc.sys = Sysclk::PLL1_R;
     config.rcc.boost = true; // range 1 boost mode, needed above 150 MHz (RM0440 §6.1.5)
     config.rcc.mux.fdcansel = mux::Fdcansel::PLL1_Q;
@@ -76,9 +96,12 @@ const fn nominal(timing: BitTiming) -> NominalBitTiming {
         NonZeroU8::new(timing.segment_2),
         NonZeroU8::new(timing.jump_width),
     ) {
-        (Some(prescaler), Some(seg1), Some(seg2), Some(sync_jump_width)) => {
-            NominalBitTiming { prescaler, seg1, seg2, sync_jump_width }
-        }
+        (Some(prescaler), Some(seg1), Some(seg2), Some(sync_jump_width)) => NominalBitTiming {
+            prescaler,
+            seg1,
+            seg2,
+            sync_jump_width,
+        },
         _ => panic!("a bit segment is zero"),
     }
 }
@@ -94,13 +117,20 @@ const fn ids() -> AxisIds {
 
 const IDS: AxisIds = ids();
 
-/// The identifiers that reach the node, two to a filter; everything else is rejected by the peripheral.
+/// The identifiers that reach the node, two to a filter; everything else is rejected by the
+/// peripheral.
 fn listen(can: &CanConfigurator<'_>) {
     for (slot, pair) in (0_u8..).zip(HEARD_BY_SERVO.chunks(2)) {
-        let (Some(first), Some(second)) = (pair.first(), pair.last()) else { continue };
+        let (Some(first), Some(second)) = (pair.first(), pair.last()) else {
+            continue;
+        };
         let filter = FilterType::DedicatedDual(IDS.identifier(*first), IDS.identifier(*second));
-        let filter = StandardFilter { filter, action: Action::StoreInFifo0 };
-        can.properties().set_standard_filter(StandardFilterSlot::from(slot), filter);
+        let filter = StandardFilter {
+            filter,
+            action: Action::StoreInFifo0,
+        };
+        can.properties()
+            .set_standard_filter(StandardFilterSlot::from(slot), filter);
     }
 }
 
@@ -111,8 +141,14 @@ async fn main(spawner: Spawner) {
     let _transceiver_on = Output::new(peripherals.PC11, Level::Low, Speed::Low);
     let _termination = Output::new(peripherals.PC14, TERMINATION, Speed::Low);
 
-    let mut can = CanConfigurator::new(peripherals.FDCAN1, peripherals.PA11, peripherals.PB9, Interrupts);
-    // Transmit as a FIFO: in priority mode a full mailbox aborts the pending frame with the lower identifier.
+    let mut can = CanConfigurator::new(
+        peripherals.FDCAN1,
+        peripherals.PA11,
+        peripherals.PB9,
+        Interrupts,
+    );
+    // Transmit as a FIFO: in priority mode a full mailbox aborts the pending frame with the lower
+    // identifier.
     can.set_config(
         can.config()
             .set_nominal_bit_timing(NOMINAL)
@@ -127,7 +163,11 @@ async fn main(spawner: Spawner) {
     info!("servo {} for plant {} on FDCAN1", SERVO_NODE, PLANT_NODE);
     loop {
         Timer::after(Duration::from_secs(10)).await;
-        info!("transmit errors {}, receive errors {}", properties.tx_error_count(), properties.rx_error_count());
+        info!(
+            "transmit errors {}, receive errors {}",
+            properties.tx_error_count(),
+            properties.rx_error_count()
+        );
     }
 }
 
@@ -138,15 +178,21 @@ async fn node(mut transmit: CanTx<'static>, mut receive: CanRx<'static>) {
     Station::boot(&mut servo, &mut |frame| post(&mut out, frame));
     loop {
         send(&mut transmit, &mut out).await;
-        let due = servo.wake_at_us().map_or(Instant::MAX, Instant::from_micros);
+        let due = servo
+            .wake_at_us()
+            .map_or(Instant::MAX, Instant::from_micros);
         match select(receive.read(), Timer::at(due)).await {
             Either::First(Ok(envelope)) => {
                 if let Some(frame) = frame_of(&envelope.frame) {
-                    servo.take(&frame, Instant::now().as_micros(), &mut |frame| post(&mut out, frame));
+                    servo.take(&frame, Instant::now().as_micros(), &mut |frame| {
+                        post(&mut out, frame)
+                    });
                 }
             }
             Either::First(Err(bus)) => warn!("bus: {}", bus),
-            Either::Second(()) => servo.time(Instant::now().as_micros(), &mut |frame| post(&mut out, frame)),
+            Either::Second(()) => servo.time(Instant::now().as_micros(), &mut |frame| {
+                post(&mut out, frame)
+            }),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Clock tree and CAN bit timing of the B-G431B-ESC1 as plain numbers.
 //!
-//! The board leaf turns them into register codes; linking is not booting, so what can be checked without the board is checked here, when the
-//! program is compiled and by tests on the host. Limits: STM32G431 datasheet DS12589 table 36 (PLL), RM0440 §44.3 (FDCAN bit timing).
+//! The board leaf turns them into register codes; linking is not booting, so what can be checked
+//! without the board is checked here, when the program is compiled and by tests on the host.
+//! Limits: STM32G431 datasheet DS12589 table 36 (PLL), RM0440 §44.3 (FDCAN bit timing).
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -59,7 +60,12 @@ impl BitTiming {
 }
 
 /// 1 Mbit/s: 10 clocks a quantum, 17 quanta. CiA 301 recommends the sample point at 87.5 %.
-pub const ONE_MEGABIT: BitTiming = BitTiming { prescaler: 10, segment_1: 14, segment_2: 2, jump_width: 2 };
+pub const ONE_MEGABIT: BitTiming = BitTiming {
+    prescaler: 10,
+    segment_1: 14,
+    segment_2: 2,
+    jump_width: 2,
+};
 
 const _: () = {
     assert!(PLL_INPUT_HZ >= 2_660_000 && PLL_INPUT_HZ <= 16_000_000);
@@ -75,7 +81,10 @@ mod tests {
 
     #[test]
     fn the_clock_tree_gives_170_mhz_from_the_crystal() {
-        assert_eq!((PLL_INPUT_HZ, VCO_HZ, SYSTEM_HZ, FDCAN_HZ), (4_000_000, 340_000_000, 170_000_000, 170_000_000));
+        assert_eq!(
+            (PLL_INPUT_HZ, VCO_HZ, SYSTEM_HZ, FDCAN_HZ),
+            (4_000_000, 340_000_000, 170_000_000, 170_000_000)
+        );
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! The control path alone, for one question: can it panic?
 //!
-//! The panic handler calls a symbol that does not exist, so the image links only if no panic is reachable from any entry point. Linked for soft float, so that a
-//! float would show as an `__aeabi_f…` symbol. Built with optimisation: the proof is one of the optimised program, which is the one that runs.
-//! (The bus load computation of `protocol` is not part of the control path: the workbench calls it, with 64-bit divisions.)
-//! Inputs and states come in by reference and as plain numbers, so that nothing folds away.
+//! The panic handler calls a symbol that does not exist, so the image links only if no panic is
+//! reachable from any entry point. Linked for soft float, so that a float would show as an
+//! `__aeabi_f…` symbol. Built with optimisation: the proof is one of the optimised program, which
+//! is the one that runs. (The bus load computation of `protocol` is not part of the control path:
+//! the workbench calls it, with 64-bit divisions.) Inputs and states come in by reference and as
+//! plain numbers, so that nothing folds away.
 #![no_std]
 #![no_main]
 
@@ -17,7 +19,10 @@ use servo::Servo;
 /// Where the node's frames go: a leaf's business, called as it is.
 type Send = extern "C" fn(&CanFrame);
 
-#[expect(unsafe_code, reason = "a symbol that does not exist can only be declared")]
+#[expect(
+    unsafe_code,
+    reason = "a symbol that does not exist can only be declared"
+)]
 unsafe extern "C" {
     safe fn a_panic_is_reachable_from_the_control_path() -> !;
 }
@@ -50,11 +55,21 @@ extern "C" fn entry_boot(servo: &mut Servo, send: Send) {
 /// Any frame that a bus can carry.
 #[expect(unsafe_code, reason = "an entry point keeps its name")]
 #[unsafe(no_mangle)]
-extern "C" fn entry_frame(servo: &mut Servo, id: u32, flags: u8, data: &[u8; 8], length: u8, now_us: u64, send: Send) {
+extern "C" fn entry_frame(
+    servo: &mut Servo,
+    id: u32,
+    flags: u8,
+    data: &[u8; 8],
+    length: u8,
+    now_us: u64,
+    send: Send,
+) {
     let data = data.get(..usize::from(length)).unwrap_or(data);
     let frame = match (flags & 1, flags & 2) {
         (0, 0) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new(id, data)),
-        (0, _) => StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new_remote(id, data.len())),
+        (0, _) => {
+            StandardId::new((id & 0x7FF) as u16).and_then(|id| CanFrame::new_remote(id, data.len()))
+        }
         _ => ExtendedId::new(id & 0x1FFF_FFFF).and_then(|id| CanFrame::new(id, data)),
     };
     if let Some(frame) = frame {

@@ -4,17 +4,19 @@
 //! v_cmd = v_ref + Kv (x_ref − x) + pulse          position loop, motor or load side
 //! v_f  += α (v_motor − v_f)                         velocity filter
 //! e_v   = v_cmd − v_f                               velocity loop, motor side
-//! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless that drives T further beyond the limit
+//! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless T is driven beyond the limit
 //! ```
 //!
-//! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the torque that is really
-//! commanded, after every limit: the integral stands still while the torque is at its limit and the error would push it
-//! further.
+//! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the
+//! torque that is really commanded, after every limit: the integral stands still while the torque
+//! is at its limit and the error would push it further.
 
 use fixed::FixedI64;
 use fixed::types::{I2F30, I20F12};
 
-use crate::units::{Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain};
+use crate::units::{
+    Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain,
+};
 
 /// Gains of the cascade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,13 +61,19 @@ impl CascadeState {
     /// At standstill, with the torque that it takes to stay there in the integral.
     #[must_use]
     pub const fn holding(torque: Torque) -> Self {
-        Self { integral: torque, velocity: Velocity::ZERO }
+        Self {
+            integral: torque,
+            velocity: Velocity::ZERO,
+        }
     }
 
     /// In motion: the velocity filter begins settled.
     #[must_use]
     pub const fn moving(self, velocity: Velocity) -> Self {
-        Self { integral: self.integral, velocity }
+        Self {
+            integral: self.integral,
+            velocity,
+        }
     }
 
     /// The integral part of the torque.
@@ -76,17 +84,35 @@ impl CascadeState {
 
     /// First half of a cycle: the torque that is wanted.
     pub fn propose(&mut self, config: &CascadeConfig, input: &CascadeInput) -> Proposal {
-        let setpoint = input.velocity_setpoint.plus(config.position_gain.times(input.error));
+        let setpoint = input
+            .velocity_setpoint
+            .plus(config.position_gain.times(input.error));
         self.velocity = filtered(self.velocity, input.motor_velocity, config.velocity_filter);
         let error = setpoint.minus(self.velocity);
-        let integral = self.integral.plus(config.integral_gain.times(error)).limited(config.torque_limit);
+        let integral = self
+            .integral
+            .plus(config.integral_gain.times(error))
+            .limited(config.torque_limit);
         let direct = config.velocity_gain.times(error);
-        let feedforward = config.acceleration_gain.times(input.acceleration).plus(input.friction);
-        Proposal { torque: direct.plus(integral).plus(feedforward), integral, error }
+        let feedforward = config
+            .acceleration_gain
+            .times(input.acceleration)
+            .plus(input.friction);
+        Proposal {
+            torque: direct.plus(integral).plus(feedforward),
+            integral,
+            error,
+        }
     }
 
-    /// Second half: `commanded` is what is left of it after every limit and filter. Tells whether a limit cut it.
-    pub fn settle(&mut self, config: &CascadeConfig, proposal: &Proposal, commanded: Torque) -> bool {
+    /// Second half: `commanded` is what is left of it after every limit and filter. Tells whether a
+    /// limit cut it.
+    pub fn settle(
+        &mut self,
+        config: &CascadeConfig,
+        proposal: &Proposal,
+        commanded: Torque,
+    ) -> bool {
         let limit = config.torque_limit;
         let high = commanded >= limit || proposal.torque > limit;
         let low = commanded <= limit.reversed() || proposal.torque < limit.reversed();
@@ -110,7 +136,9 @@ fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
     // 20.12 times 2.30 bits: 22.42 bits, exact; to nearest, as in `PositionGain::times`.
     let step = new.minus(before).0.wide_mul(share);
     let half = FixedI64::from_bits(1 << 29);
-    before.plus(Velocity(I20F12::saturating_from_num(step.saturating_add(half))))
+    before.plus(Velocity(I20F12::saturating_from_num(
+        step.saturating_add(half),
+    )))
 }
 
 #[cfg(test)]
@@ -128,7 +156,10 @@ mod tests {
     }
 
     fn input(velocity_setpoint: i32) -> CascadeInput {
-        CascadeInput { velocity_setpoint: Velocity(I20F12::from_num(velocity_setpoint)), ..CascadeInput::default() }
+        CascadeInput {
+            velocity_setpoint: Velocity(I20F12::from_num(velocity_setpoint)),
+            ..CascadeInput::default()
+        }
     }
 
     fn step(state: &mut CascadeState, velocity_setpoint: i32) -> (Torque, bool) {
@@ -145,13 +176,18 @@ mod tests {
         }
         assert_eq!(state.integral(), Torque::ZERO);
         let (torque, limited) = step(&mut state, -10);
-        assert!(torque < Torque::ZERO && !limited, "no stored torque to undo");
+        assert!(
+            torque < Torque::ZERO && !limited,
+            "no stored torque to undo"
+        );
     }
 
     #[test]
     fn below_the_limit_the_integral_takes_over() {
         let mut state = CascadeState::default();
-        let torques: Vec<i32> = (0..5).map(|_| step(&mut state, 10).0.to_micro_nm_lossy()).collect();
+        let torques: Vec<i32> = (0..5)
+            .map(|_| step(&mut state, 10).0.to_micro_nm_lossy())
+            .collect();
         assert_eq!(torques, [11_000, 12_000, 13_000, 14_000, 15_000]);
     }
 }

@@ -1,7 +1,7 @@
 //! Commanded direction and its changes.
 //!
-//! The reversal unit, Coulomb feedforward and backlash compensation all act on a change of *commanded* direction: the sign of the
-//! setpoint's velocity, held through standstill.
+//! The reversal unit, Coulomb feedforward and backlash compensation all act on a change of
+//! *commanded* direction: the sign of the setpoint's velocity, held through standstill.
 
 use crate::units::Velocity;
 
@@ -63,12 +63,18 @@ mod tests {
 
     fn reversals(velocities: &[i32]) -> Vec<Option<Direction>> {
         let mut memory = DirectionMemory::default();
-        velocities.iter().map(|v| memory.reversal(Velocity(I20F12::from_num(*v)))).collect()
+        velocities
+            .iter()
+            .map(|v| memory.reversal(Velocity(I20F12::from_num(*v))))
+            .collect()
     }
 
     #[test]
     fn a_dwell_does_not_hide_a_reversal_and_makes_none() {
-        assert_eq!(reversals(&[1, 0, 0, -1, 0, -1]), [None, None, None, Some(Direction::Negative), None, None]);
+        assert_eq!(
+            reversals(&[1, 0, 0, -1, 0, -1]),
+            [None, None, None, Some(Direction::Negative), None, None]
+        );
         assert_eq!(reversals(&[0, 1, 0, 1]), [None; 4]);
     }
 }

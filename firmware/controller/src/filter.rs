@@ -1,10 +1,11 @@
 //! Optional second-order filter on the torque command: low-pass or notch.
 //!
-//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form 1, coefficients in
-//! Q29 computed on the host. What rounding cuts off is carried into the next cycle (first-order error feedback), so
-//! that the gain at rest is exact and small torques do not stick. Headroom: inputs and outputs stay within
-//! [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7 < 2³,
-//! so the accumulator stays below 2⁶⁰.
+//! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form
+//! 1, coefficients in Q29 computed on the host. What rounding cuts off is carried into the next
+//! cycle (first-order error feedback), so that the gain at rest is exact and small torques do not
+//! stick. Headroom: inputs and outputs stay within [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and
+//! [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7 < 2³, so the
+//! accumulator stays below 2⁶⁰.
 
 use crate::units::Torque;
 
@@ -44,7 +45,9 @@ impl FilterConfig {
     /// # Errors
     /// [`FilterError`]: a sum of magnitudes above 7, or a filter that does not decay.
     pub fn new(coefficients: [i32; 5]) -> Result<Self, FilterError> {
-        let sum = coefficients.iter().fold(0_u64, |sum, c| sum.saturating_add(u64::from(c.unsigned_abs())));
+        let sum = coefficients.iter().fold(0_u64, |sum, c| {
+            sum.saturating_add(u64::from(c.unsigned_abs()))
+        });
         if sum > 7 << COEFFICIENT_FRACTION_BITS {
             return Err(FilterError::TooLarge { sum });
         }
@@ -56,9 +59,9 @@ impl FilterConfig {
     }
 }
 
-/// Jury's criterion for the denominator z² − a1 z − a2: positive at z = 1 and, for the second order, at z = −1, and the
-/// product of the poles, −a2, inside the circle. 1 − a1 − a2 > 0 and 1 + a1 − a2 > 0 make |a1| < 1 − a2. In integers,
-/// exact.
+/// Jury's criterion for the denominator z² − a1 z − a2: positive at z = 1 and, for the second
+/// order, at z = −1, and the product of the poles, −a2, inside the circle. 1 − a1 − a2 > 0 and 1 +
+/// a1 − a2 > 0 make |a1| < 1 − a2. In integers, exact.
 fn decays(a1: i32, a2: i32) -> bool {
     let one = 1_i64 << COEFFICIENT_FRACTION_BITS;
     let [a1, a2] = [a1, a2].map(i64::from);
@@ -76,22 +79,28 @@ impl FilterState {
     /// As after a long time with one torque.
     #[must_use]
     pub fn at_rest(torque: Torque) -> Self {
-        Self { past: [torque.to_micro_nm_lossy(); 4], rest: 0 }
+        Self {
+            past: [torque.to_micro_nm_lossy(); 4],
+            rest: 0,
+        }
     }
 
     /// Filters one torque; both sides within `±limit`.
     pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: Torque) -> Torque {
         let limit = limit.to_micro_nm_lossy().clamp(0, TORQUE_LIMIT_MICRO_NM);
-        let x0 = torque.to_micro_nm_lossy().max(limit.saturating_neg()).min(limit);
+        let x0 = torque
+            .to_micro_nm_lossy()
+            .max(limit.saturating_neg())
+            .min(limit);
         let [x1, x2, y1, y2] = self.past;
         let products = config.0.into_iter().zip([x0, x1, x2, y1, y2]);
-        // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the same.
-        let sum = products.fold(self.rest, |sum, (c, v)| sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v))));
-        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS)).unwrap_or(if sum < 0 {
-            i32::MIN
-        } else {
-            i32::MAX
+        // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the
+        // same.
+        let sum = products.fold(self.rest, |sum, (c, v)| {
+            sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v)))
         });
+        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS))
+            .unwrap_or(if sum < 0 { i32::MIN } else { i32::MAX });
         let y0 = whole.max(limit.saturating_neg()).min(limit);
         self.rest = sum & REST_MASK;
         self.past = [x0, x1, y0, y1];
@@ -114,14 +123,20 @@ mod tests {
             let out = state.step(&FilterConfig::OFF, Torque::from_micro_nm(torque), limit);
             assert_eq!(out.to_micro_nm_lossy(), torque);
         }
-        assert_eq!(state.step(&FilterConfig::OFF, Torque::from_micro_nm(2_000_000), limit), limit);
+        assert_eq!(
+            state.step(&FilterConfig::OFF, Torque::from_micro_nm(2_000_000), limit),
+            limit
+        );
     }
 
     #[test]
     fn a_one_pole_low_pass_has_gain_one_at_rest() {
         // y += 0.25 (x − y), in Q29.
         let config = FilterConfig::new([1 << 27, 0, 0, 3 << 27, 0]).unwrap();
-        let (mut state, limit) = (FilterState::default(), Torque::from_micro_nm(TORQUE_LIMIT_MICRO_NM));
+        let (mut state, limit) = (
+            FilterState::default(),
+            Torque::from_micro_nm(TORQUE_LIMIT_MICRO_NM),
+        );
         let mut out = Torque::ZERO;
         (0..100).for_each(|_| out = state.step(&config, Torque::from_micro_nm(1_000_000), limit));
         assert!((out.to_micro_nm_lossy() - 1_000_000).abs() <= 1);
@@ -130,7 +145,12 @@ mod tests {
     #[test]
     fn coefficients_beyond_the_headroom_are_refused() {
         let result = FilterConfig::new([i32::MAX, i32::MAX, 0, 0, 0]);
-        assert_eq!(result, Err(FilterError::TooLarge { sum: 2 * u64::from(i32::MAX.unsigned_abs()) }));
+        assert_eq!(
+            result,
+            Err(FilterError::TooLarge {
+                sum: 2 * u64::from(i32::MAX.unsigned_abs())
+            })
+        );
     }
 
     /// 1 in Q29.
@@ -144,7 +164,10 @@ mod tests {
     fn a_pole_at_1_2_is_refused() {
         // (1 − 1.2 z⁻¹)(1 − 0.5 z⁻¹): a1 = 1.7, a2 = −0.6.
         let [a1, a2] = [1.7, -0.6].map(q29);
-        assert_eq!(FilterConfig::new([ONE, 0, 0, a1, a2]), Err(FilterError::Unstable { a1, a2 }));
+        assert_eq!(
+            FilterConfig::new([ONE, 0, 0, a1, a2]),
+            Err(FilterError::Unstable { a1, a2 })
+        );
     }
 
     #[test]
@@ -161,7 +184,11 @@ mod tests {
             (ONE / 2 - 1, ONE / 2, true),
             (ONE / 2, ONE / 2, false),
         ] {
-            assert_eq!(FilterConfig::new([ONE, 0, 0, a1, a2]).is_ok(), stable, "{a1} {a2}");
+            assert_eq!(
+                FilterConfig::new([ONE, 0, 0, a1, a2]).is_ok(),
+                stable,
+                "{a1} {a2}"
+            );
         }
     }
 

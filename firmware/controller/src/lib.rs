@@ -1,18 +1,19 @@
 //! The control law of one axis: `step(&Config, &mut State, &Input) -> Output`.
 //!
-//! It sits between the feedback and the torque frame of one cycle. Fixed point throughout, no clock, no input or
-//! output, no allocation, no float, no panic path. Configuration, state, input and output are four types; physical
-//! units meet machine units on the host side only.
+//! It sits between the feedback and the torque frame of one cycle. Fixed point throughout, no
+//! clock, no input or output, no allocation, no float, no panic path. Configuration, state, input
+//! and output are four types; physical units meet machine units on the host side only.
 //!
 //! ```text
 //!              ┌─ next velocity ─▶ direction ─▶ reversal ─▶ pulse ─┐
 //!              ├─ velocity ────────────────────────────────────────┤
-//! [reference] ─┼─ acceleration ────────────────────────────────────┼──▶ cascade ──▶ filter ──▶ torque
+//! [reference] ─┼─ acceleration ────────────────────────────────────┼▶ cascade ─▶ filter ─▶ torque
 //!              └─ position + backlash offset − measurement ─▶ error ┘
 //! ```
 //!
-//! Errors use the reference in time with the encoders (cycle k), the acceleration is that of the time when the torque
-//! acts (k + 1 to k + 2), and a reversal is known one cycle ahead, from the next velocity.
+//! Errors use the reference in time with the encoders (cycle k), the acceleration is that of the
+//! time when the torque acts (k + 1 to k + 2), and a reversal is known one cycle ahead, from the
+//! next velocity.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(
@@ -93,18 +94,26 @@ pub struct State {
 }
 
 impl State {
-    /// At standstill with a torque that holds the axis, as a vertical one needs: the integral and the filter begin with
-    /// it.
+    /// At standstill with a torque that holds the axis, as a vertical one needs: the integral and
+    /// the filter begin with it.
     #[must_use]
     pub fn holding(torque: Torque) -> Self {
-        Self { cascade: CascadeState::holding(torque), filter: FilterState::at_rest(torque), ..Self::default() }
+        Self {
+            cascade: CascadeState::holding(torque),
+            filter: FilterState::at_rest(torque),
+            ..Self::default()
+        }
     }
 
-    /// In motion: the motor's history begins with a measured velocity, so that a stop out of motion starts without a
-    /// kick.
+    /// In motion: the motor's history begins with a measured velocity, so that a stop out of motion
+    /// starts without a kick.
     #[must_use]
     pub fn moving(self, motor: Position, velocity: Velocity) -> Self {
-        Self { cascade: self.cascade.moving(velocity), motor: Some(motor.after(velocity.reversed())), ..self }
+        Self {
+            cascade: self.cascade.moving(velocity),
+            motor: Some(motor.after(velocity.reversed())),
+            ..self
+        }
     }
 
     /// Where the backlash unit has the motor, beside the setpoint.
@@ -138,24 +147,32 @@ pub struct Output {
 
 /// One cycle of the control law.
 ///
-/// The first step after a reset takes the motor to stand still: there is nothing to difference yet ([`State::moving`]
-/// says otherwise).
+/// The first step after a reset takes the motor to stand still: there is nothing to difference yet
+/// ([`State::moving`] says otherwise).
 ///
-/// The backlash unit turns round with the *next* velocity, as early as a reversal is known, but adds its offset to the
-/// velocity of *this* cycle: position, velocity and offset go into the same error, and the limits hold for their sum.
+/// The backlash unit turns round with the *next* velocity, as early as a reversal is known, but
+/// adds its offset to the velocity of *this* cycle: position, velocity and offset go into the same
+/// error, and the limits hold for their sum.
 pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let reference = &input.reference;
-    let motor_velocity = state.motor.map_or(Velocity::ZERO, |before| input.motor.step_from(before));
+    let motor_velocity = state
+        .motor
+        .map_or(Velocity::ZERO, |before| input.motor.step_from(before));
     state.motor = Some(input.motor);
 
     let reversal = state.direction.reversal(reference.next_velocity);
     let direction = state.direction.last();
     let pulse = state.pulse.step(&config.pulse, reversal);
-    let (offset, offset_velocity) = state.backlash.step(&config.backlash, direction, reference.velocity);
+    let (offset, offset_velocity) =
+        state
+            .backlash
+            .step(&config.backlash, direction, reference.velocity);
 
-    let following_error = reference.position.error_from(measured(config.position_source, input));
-    // With the load scale in the loop the table has to be at the setpoint itself; only the motor gets the offset's
-    // velocity.
+    let following_error = reference
+        .position
+        .error_from(measured(config.position_source, input));
+    // With the load scale in the loop the table has to be at the setpoint itself; only the motor
+    // gets the offset's velocity.
     let offset = match config.position_source {
         PositionSource::Motor => offset,
         PositionSource::Load => PositionError::ZERO,
@@ -171,9 +188,15 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         },
     );
     let limit = config.cascade.torque_limit;
-    let torque = state.filter.step(&config.filter, proposal.torque.limited(limit), limit);
+    let torque = state
+        .filter
+        .step(&config.filter, proposal.torque.limited(limit), limit);
     let limited = state.cascade.settle(&config.cascade, &proposal, torque);
-    Output { torque, following_error, limited }
+    Output {
+        torque,
+        following_error,
+        limited,
+    }
 }
 
 fn measured(source: PositionSource, input: &Input) -> Position {

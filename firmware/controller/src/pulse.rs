@@ -1,9 +1,10 @@
 //! The reversal unit: the compensation pulse of the paper.
 //!
-//! On a change of commanded direction, `Δn · exp(−t / T_comp)` is added to the speed setpoint, in the new direction, after an
-//! optional start delay. Source: "Influence of the gap and the friction on trajectory reproduction accuracy in a multiaxis
-//! machine with CNC", §4.2. The exponential is a geometric series: one multiplication a cycle by
-//! `decay = exp(−T_cycle / T_comp)`, computed on the host.
+//! On a change of commanded direction, `Δn · exp(−t / T_comp)` is added to the speed setpoint, in
+//! the new direction, after an optional start delay. Source: "Influence of the gap and the friction
+//! on trajectory reproduction accuracy in a multiaxis machine with CNC", §4.2. The exponential is a
+//! geometric series: one multiplication a cycle by `decay = exp(−T_cycle / T_comp)`, computed on
+//! the host.
 
 use fixed::FixedI64;
 use fixed::types::extra::U42;
@@ -36,8 +37,8 @@ pub enum PulseState {
         /// Its direction.
         direction: Direction,
     },
-    /// The pulse decays. What decays is the envelope, 1…0 in 2.30 bits: a decaying height in 20.12 bits would lose an area that the velocity loop
-    /// integrates.
+    /// The pulse decays. What decays is the envelope, 1…0 in 2.30 bits: a decaying height in 20.12
+    /// bits would lose an area that the velocity loop integrates.
     Active {
         /// exp(−t / T_comp), never negative.
         envelope: I2F30,
@@ -50,24 +51,45 @@ impl PulseState {
     /// Advances by one cycle; gives what is added to the speed setpoint.
     pub fn step(&mut self, config: &PulseConfig, reversal: Option<Direction>) -> Velocity {
         if let Some(direction) = reversal {
-            *self = Self::Waiting { cycles: config.start_delay_cycles, direction };
+            *self = Self::Waiting {
+                cycles: config.start_delay_cycles,
+                direction,
+            };
         }
         match *self {
             Self::Idle => Velocity::ZERO,
-            Self::Waiting { cycles: 0, direction } => self.emit(config, I2F30::ONE, direction),
+            Self::Waiting {
+                cycles: 0,
+                direction,
+            } => self.emit(config, I2F30::ONE, direction),
             Self::Waiting { cycles, direction } => {
-                *self = Self::Waiting { cycles: cycles.saturating_sub(1), direction };
+                *self = Self::Waiting {
+                    cycles: cycles.saturating_sub(1),
+                    direction,
+                };
                 Velocity::ZERO
             }
-            Self::Active { envelope, direction } => self.emit(config, envelope, direction),
+            Self::Active {
+                envelope,
+                direction,
+            } => self.emit(config, envelope, direction),
         }
     }
 
     fn emit(&mut self, config: &PulseConfig, envelope: I2F30, direction: Direction) -> Velocity {
         // 2.30 times 2.30 bits: 4.60 bits, exact; rounded down, so that it ends.
         let next = I2F30::saturating_from_num(envelope.wide_mul(config.decay));
-        let height = Velocity(I20F12::saturating_from_num(config.amplitude.0.wide_mul(envelope).saturating_add(HALF)));
-        *self = if next == I2F30::ZERO { Self::Idle } else { Self::Active { envelope: next, direction } };
+        let height = Velocity(I20F12::saturating_from_num(
+            config.amplitude.0.wide_mul(envelope).saturating_add(HALF),
+        ));
+        *self = if next == I2F30::ZERO {
+            Self::Idle
+        } else {
+            Self::Active {
+                envelope: next,
+                direction,
+            }
+        };
         signed(height, direction)
     }
 }
@@ -89,7 +111,11 @@ mod tests {
     fn config(delay: u16) -> PulseConfig {
         // T_comp = 20 cycles.
         let decay = I2F30::from_num((-1.0_f64 / 20.0).exp());
-        PulseConfig { amplitude: Velocity(I20F12::from_num(100)), decay, start_delay_cycles: delay }
+        PulseConfig {
+            amplitude: Velocity(I20F12::from_num(100)),
+            decay,
+            start_delay_cycles: delay,
+        }
     }
 
     #[test]
@@ -99,7 +125,10 @@ mod tests {
             let reversal = (cycle == 0).then_some(Direction::Negative);
             let got: f64 = state.step(&config(0), reversal).0.to_num();
             let wanted = -100.0 * (-f64::from(cycle) / 20.0).exp();
-            assert!((got - wanted).abs() < 0.005, "cycle {cycle}: {got} {wanted}");
+            assert!(
+                (got - wanted).abs() < 0.005,
+                "cycle {cycle}: {got} {wanted}"
+            );
         }
     }
 
@@ -107,7 +136,12 @@ mod tests {
     fn the_start_delay_is_counted_in_whole_cycles() {
         let mut state = PulseState::default();
         let heights: Vec<f64> = (0..5)
-            .map(|cycle| state.step(&config(3), (cycle == 0).then_some(Direction::Positive)).0.to_num())
+            .map(|cycle| {
+                state
+                    .step(&config(3), (cycle == 0).then_some(Direction::Positive))
+                    .0
+                    .to_num()
+            })
             .collect();
         assert_eq!(&heights[..3], [0.0; 3]);
         assert!((heights[3] - 100.0).abs() < 1e-3);

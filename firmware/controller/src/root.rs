@@ -1,11 +1,15 @@
 //! Integer square root, for every braking curve `v = √(2 a s)` of the drive.
 //!
-//! Digit by digit (Crenshaw, "Math Toolkit for Real-Time Programming", 2000, ch. 4): `u64::isqrt` of the core library
-//! divides, and a 64-bit division is a call of hundreds of cycles on a Cortex-M4.
+//! Digit by digit (Crenshaw, "Math Toolkit for Real-Time Programming", 2000, ch. 4): `u64::isqrt`
+//! of the core library divides, and a 64-bit division is a call of hundreds of cycles on a
+//! Cortex-M4.
 
 /// The whole part of the root; begins at its first digit.
 pub(crate) fn root(square: u64) -> u32 {
-    let digits = 64_u32.wrapping_sub(square.leading_zeros()).wrapping_add(1).wrapping_shr(1);
+    let digits = 64_u32
+        .wrapping_sub(square.leading_zeros())
+        .wrapping_add(1)
+        .wrapping_shr(1);
     let (mut rest, mut root) = (square, 0_u64);
     for digit in (0..digits).rev() {
         let bit = 1_u64.wrapping_shl(digit.wrapping_mul(2));

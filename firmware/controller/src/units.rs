@@ -8,8 +8,8 @@
 //! | [`Acceleration`] | 10 nm per cycle² | `I20F12` | ±5.2 km/s² at 1 kHz, 2.4 µm/s² |
 //! | [`Torque`] | µN·m | `I40F24` | ±550 kN·m |
 //!
-//! Every sum saturates. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they cannot overflow, and
-//! saturate only when they are brought back to 32 bits.
+//! Every sum saturates. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
+//! cannot overflow, and saturate only when they are brought back to 32 bits.
 
 use fixed::types::{I8F24, I20F12, I24F8, I32F32, I40F24, I56F8};
 
@@ -67,7 +67,9 @@ impl Position {
     /// Way from `earlier` to `self` within one cycle.
     #[must_use]
     pub fn step_from(self, earlier: Self) -> Velocity {
-        Velocity(I20F12::saturating_from_num(self.0.saturating_sub(earlier.0)))
+        Velocity(I20F12::saturating_from_num(
+            self.0.saturating_sub(earlier.0),
+        ))
     }
 
     /// Mean velocity since an earlier position, so many cycles ago; zero cycles count as one.
@@ -86,7 +88,10 @@ impl Position {
     /// Where a constant velocity leads within one cycle.
     #[must_use]
     pub fn after(self, velocity: Velocity) -> Self {
-        Self(self.0.saturating_add(I56F8::saturating_from_num(velocity.0)))
+        Self(
+            self.0
+                .saturating_add(I56F8::saturating_from_num(velocity.0)),
+        )
     }
 }
 
@@ -204,9 +209,11 @@ impl PositionGain {
     /// Gain · error, saturated.
     #[must_use]
     pub fn times(self, error: PositionError) -> Velocity {
-        // 8.24 times 24.8 bits: 32.32 bits, exact; brought to 12 fractional bits by rounding to nearest, since rounding down would be a bias that the
-        // velocity loop integrates.
-        Velocity(I20F12::saturating_from_num(self.0.wide_mul(error.0).saturating_add(HALF)))
+        // 8.24 times 24.8 bits: 32.32 bits, exact; brought to 12 fractional bits by rounding to
+        // nearest, since rounding down would be a bias that the velocity loop integrates.
+        Velocity(I20F12::saturating_from_num(
+            self.0.wide_mul(error.0).saturating_add(HALF),
+        ))
     }
 }
 
@@ -228,7 +235,8 @@ impl AccelerationGain {
     }
 }
 
-/// Way per encoder increment, 10 nm with 32 fractional bits (never negative: the encoder's sense is the plant's business).
+/// Way per encoder increment, 10 nm with 32 fractional bits (never negative: the encoder's sense is
+/// the plant's business).
 ///
 /// At most 2⁻³² of 10 nm off per increment: 5 nm over the whole 31 bits of an encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -244,10 +252,14 @@ impl WayPerIncrement {
     #[must_use]
     pub const fn times(self, increments: i32) -> Position {
         let increments = widen(increments);
-        // |increments| ≤ 2³¹: times whole (16 bits) below 2⁴⁷ and shifted by 8 below 2⁵⁵; times fraction at most 2³¹ (2³² − 1),
-        // below 2⁶³. The sum stays below 2⁵⁶, so no wrap is possible anywhere here.
-        let whole = increments.wrapping_mul(widen_u16(self.whole)).wrapping_shl(8);
-        let fraction = increments.wrapping_mul(widen_u32(self.fraction)).wrapping_shr(24);
+        // |increments| ≤ 2³¹: times whole (16 bits) below 2⁴⁷ and shifted by 8 below 2⁵⁵; times
+        // fraction at most 2³¹ (2³² − 1), below 2⁶³. The sum stays below 2⁵⁶: nothing here wraps.
+        let whole = increments
+            .wrapping_mul(widen_u16(self.whole))
+            .wrapping_shl(8);
+        let fraction = increments
+            .wrapping_mul(widen_u32(self.fraction))
+            .wrapping_shr(24);
         Position(I56F8::from_bits(whole.wrapping_add(fraction)))
     }
 }

@@ -1,4 +1,5 @@
-//! The law starts without a kick: at standstill with a torque that holds the axis, and out of motion.
+//! The law starts without a kick: at standstill with a torque that holds the axis, and out of
+//! motion.
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
@@ -15,7 +16,10 @@ fn per_cycle(counts: i32) -> Velocity {
 
 /// The reference axis' gains at 1 kHz; a low-pass of one pole in the torque.
 fn config() -> Config {
-    let ramp = Ramp { deceleration: per_cycle(500), jerk: per_cycle(100) };
+    let ramp = Ramp {
+        deceleration: per_cycle(500),
+        jerk: per_cycle(100),
+    };
     Config {
         reference: ReferenceConfig {
             velocity_limit: per_cycle(50_000),
@@ -48,11 +52,32 @@ fn config() -> Config {
 fn at_standstill_the_first_torque_is_the_one_that_holds() {
     let (config, here) = (config(), Position::from_counts(123_456));
     let holding = Torque::from_micro_nm(3_978_873);
-    let (mut stage, mut law) = (ReferenceState::at(here, Velocity::ZERO), State::holding(holding));
+    let (mut stage, mut law) = (
+        ReferenceState::at(here, Velocity::ZERO),
+        State::holding(holding),
+    );
     for _ in 0..10 {
-        let reference = stage.step(&config.reference, &ReferenceInput { preview: Some(here), ..Default::default() });
-        let output = controller::step(&config, &mut law, &Input { reference, motor: here, load: here });
-        assert!((output.torque.to_micro_nm_lossy() - 3_978_873).abs() <= 1, "{:?}", output.torque);
+        let reference = stage.step(
+            &config.reference,
+            &ReferenceInput {
+                preview: Some(here),
+                ..Default::default()
+            },
+        );
+        let output = controller::step(
+            &config,
+            &mut law,
+            &Input {
+                reference,
+                motor: here,
+                load: here,
+            },
+        );
+        assert!(
+            (output.torque.to_micro_nm_lossy() - 3_978_873).abs() <= 1,
+            "{:?}",
+            output.torque
+        );
     }
 }
 
@@ -60,18 +85,32 @@ fn at_standstill_the_first_torque_is_the_one_that_holds() {
 fn first_torque_of_a_stop(law: State) -> i32 {
     let (config, here, speed) = (config(), Position::from_counts(123_456), per_cycle(40_000));
     let (mut stage, mut law) = (ReferenceState::at(here, speed), law);
-    let input = ReferenceInput { mode: Mode::QuickStop, ..Default::default() };
+    let input = ReferenceInput {
+        mode: Mode::QuickStop,
+        ..Default::default()
+    };
     let reference = stage.step(&config.reference, &input);
-    controller::step(&config, &mut law, &Input { reference, motor: here, load: here }).torque.to_micro_nm_lossy()
+    controller::step(
+        &config,
+        &mut law,
+        &Input {
+            reference,
+            motor: here,
+            load: here,
+        },
+    )
+    .torque
+    .to_micro_nm_lossy()
 }
 
 #[test]
 fn out_of_motion_the_first_torque_is_that_of_the_ramp_alone() {
     let here = Position::from_counts(123_456);
-    // The ramp begins with −100 counts per cycle², a step for the feedforward (above 50): Ja · 100, of which the filter
-    // passes a quarter at once.
+    // The ramp begins with −100 counts per cycle², a step for the feedforward (above 50): Ja · 100,
+    // of which the filter passes a quarter at once.
     let torque = first_torque_of_a_stop(State::default().moving(here, per_cycle(40_000)));
     assert!((torque + 14_827 * 100 / 4).abs() <= 2, "{torque} µN·m");
-    // Without the measured velocity the loop believes that the axis stands, and kicks with the limit.
+    // Without the measured velocity the loop believes that the axis stands, and kicks with the
+    // limit.
     assert_eq!(first_torque_of_a_stop(State::default()), 14_323_944 / 4);
 }

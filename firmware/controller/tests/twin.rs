@@ -1,9 +1,10 @@
 //! A floating-point twin beside the fixed-point law, and golden vectors for later runs on ARM.
 //!
-//! The twin is written from the equations of the module docs in `f64`. On the reference gains and any plausible motion
-//! the two differ by less than [`BOUND_MICRO_NM`] after 3000 cycles: rounding of position to 39 pm and of velocity to
-//! 2.4 pm per cycle is all there is. The twin has the gains as the fixed-point numbers hold them; how well they hold
-//! the SI ones is tested where they are made.
+//! The twin is written from the equations of the module docs in `f64`. On the reference gains and
+//! any plausible motion the two differ by less than [`BOUND_MICRO_NM`] after 3000 cycles: rounding
+//! of position to 39 pm and of velocity to 2.4 pm per cycle is all there is. The twin has the gains
+//! as the fixed-point numbers hold them; how well they hold the SI ones is tested where they are
+//! made.
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
@@ -28,15 +29,22 @@ const PULSE_HEIGHT: f64 = 178.0;
 const PULSE_DECAY: f64 = 0.988_5;
 const COULOMB: f64 = 636_620.0;
 
-/// The motions of these tests are those of no axis: every setpoint passes, and every change of acceleration is jerk.
+/// The motions of these tests are those of no axis: every setpoint passes, and every change of
+/// acceleration is jerk.
 const UNLIMITED: ReferenceConfig = ReferenceConfig {
     velocity_limit: Velocity(I20F12::MAX),
     acceleration_limit: Velocity(I20F12::MAX),
     step: Velocity(I20F12::MAX),
     position_min: Position(I56F8::MIN),
     position_max: Position(I56F8::MAX),
-    quick_stop: Ramp { deceleration: Velocity(I20F12::MAX), jerk: Velocity::ZERO },
-    slow_down: Ramp { deceleration: Velocity(I20F12::MAX), jerk: Velocity::ZERO },
+    quick_stop: Ramp {
+        deceleration: Velocity(I20F12::MAX),
+        jerk: Velocity::ZERO,
+    },
+    slow_down: Ramp {
+        deceleration: Velocity(I20F12::MAX),
+        jerk: Velocity::ZERO,
+    },
     filter_log2: 0,
     setpoint_cycles: 1,
 };
@@ -73,7 +81,8 @@ struct Twin {
     integral: f64,
 }
 
-/// What the reference stage says of a path: x(k), x(k) − x(k−1), x(k+1) − x(k), and a(k) + 1.5 (a(k) − a(k−1)).
+/// What the reference stage says of a path: x(k), x(k) − x(k−1), x(k+1) − x(k), and a(k) + 1.5
+/// (a(k) − a(k−1)).
 struct Path {
     setpoint: f64,
     velocity: f64,
@@ -82,12 +91,29 @@ struct Path {
 }
 
 impl Path {
-    /// `at` is at rest before cycle 0; the stage takes two setpoints before it believes an acceleration.
+    /// `at` is at rest before cycle 0; the stage takes two setpoints before it believes an
+    /// acceleration.
     fn of(at: impl Fn(u32) -> f64, cycle: u32) -> Self {
-        let velocity = |cycle: u32| if cycle == 0 { 0.0 } else { at(cycle) - at(cycle - 1) };
-        let acceleration = |cycle: u32| if cycle < 2 { 0.0 } else { velocity(cycle + 1) - velocity(cycle) };
+        let velocity = |cycle: u32| {
+            if cycle == 0 {
+                0.0
+            } else {
+                at(cycle) - at(cycle - 1)
+            }
+        };
+        let acceleration = |cycle: u32| {
+            if cycle < 2 {
+                0.0
+            } else {
+                velocity(cycle + 1) - velocity(cycle)
+            }
+        };
         let now = acceleration(cycle);
-        let before = if cycle == 0 { 0.0 } else { acceleration(cycle - 1) };
+        let before = if cycle == 0 {
+            0.0
+        } else {
+            acceleration(cycle - 1)
+        };
         Self {
             setpoint: at(cycle),
             velocity: velocity(cycle),
@@ -99,7 +125,14 @@ impl Path {
 
 impl Twin {
     fn new(config: &Config) -> Self {
-        Self { config: config.clone(), motor: None, direction: 0.0, pulse: 0.0, velocity: 0.0, integral: 0.0 }
+        Self {
+            config: config.clone(),
+            motor: None,
+            direction: 0.0,
+            pulse: 0.0,
+            velocity: 0.0,
+            integral: 0.0,
+        }
     }
 
     fn step(&mut self, source: PositionSource, path: &Path, motor: f64, load: f64) -> f64 {
@@ -109,8 +142,14 @@ impl Twin {
         let integral_gain: f64 = cascade.integral_gain.0.to_num();
         let acceleration_gain: f64 = cascade.acceleration_gain.0.to_num();
         let share: f64 = cascade.velocity_filter.to_num();
-        let (height, decay): (f64, f64) = (self.config.pulse.amplitude.0.to_num(), self.config.pulse.decay.to_num());
-        let (limit, coulomb): (f64, f64) = (cascade.torque_limit.0.to_num(), self.config.coulomb.0.to_num());
+        let (height, decay): (f64, f64) = (
+            self.config.pulse.amplitude.0.to_num(),
+            self.config.pulse.decay.to_num(),
+        );
+        let (limit, coulomb): (f64, f64) = (
+            cascade.torque_limit.0.to_num(),
+            self.config.coulomb.0.to_num(),
+        );
         let motor_velocity = motor - self.motor.replace(motor).unwrap_or(motor);
         self.pulse *= decay;
         if path.next_velocity != 0.0 {
@@ -120,13 +159,19 @@ impl Twin {
             }
             self.direction = now;
         }
-        let measured = if source == PositionSource::Motor { motor } else { load };
+        let measured = if source == PositionSource::Motor {
+            motor
+        } else {
+            load
+        };
         let command = path.velocity + self.pulse + position_gain * (path.setpoint - measured);
         self.velocity += share * (motor_velocity - self.velocity);
         let error = command - self.velocity;
         let integral = (self.integral + integral_gain * error).clamp(-limit, limit);
-        let wanted =
-            velocity_gain * error + integral + acceleration_gain * path.acceleration + coulomb * self.direction;
+        let wanted = velocity_gain * error
+            + integral
+            + acceleration_gain * path.acceleration
+            + coulomb * self.direction;
         let torque = wanted.clamp(-limit, limit);
         let pushes = (wanted >= limit && error > 0.0) || (wanted <= -limit && error < 0.0);
         if !pushes {
@@ -152,11 +197,30 @@ fn position(x: f64) -> Position {
 }
 
 /// One cycle of stage and law: the preview is the setpoint of the next cycle.
-fn torque(config: &Config, stage: &mut ReferenceState, law: &mut State, preview: Position, at: [Position; 2]) -> i32 {
-    let input = ReferenceInput { preview: Some(preview), ..ReferenceInput::default() };
+fn torque(
+    config: &Config,
+    stage: &mut ReferenceState,
+    law: &mut State,
+    preview: Position,
+    at: [Position; 2],
+) -> i32 {
+    let input = ReferenceInput {
+        preview: Some(preview),
+        ..ReferenceInput::default()
+    };
     let [motor, load] = at;
     let reference = stage.step(&config.reference, &input);
-    controller::step(config, law, &Input { reference, motor, load }).torque.to_micro_nm_lossy()
+    controller::step(
+        config,
+        law,
+        &Input {
+            reference,
+            motor,
+            load,
+        },
+    )
+    .torque
+    .to_micro_nm_lossy()
 }
 
 proptest! {
@@ -176,7 +240,8 @@ proptest! {
             let at = [position(motor), position(load)];
             let fixed = torque(&config, &mut stage, &mut law, position(path(cycle + 1)), at);
             let float = twin.step(source, &Path::of(path, cycle), motor, load);
-            // At the limit the two may hold the integral one cycle apart, which is a step and no rounding.
+            // At the limit the two may hold the integral one cycle apart, which is a step and no
+            // rounding.
             if float.abs() > 0.95 * LIMIT {
                 break;
             }
@@ -199,12 +264,13 @@ proptest! {
     }
 }
 
-/// Rows of bits: setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m). Whatever runs this law has to
-/// give the same integers.
+/// Rows of bits: setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m). Whatever
+/// runs this law has to give the same integers.
 #[test]
 fn the_golden_vectors_repeat_to_the_bit() {
-    let mut text =
-        String::from("# preview motor load torque; 10 nm/256 and uN m; config of tests/twin.rs, load side\n");
+    let mut text = String::from(
+        "# preview motor load torque; 10 nm/256 and uN m; config of tests/twin.rs, load side\n",
+    );
     let (config, mut law) = (config(PositionSource::Load), State::default());
     let at = |cycle| motion(cycle, 40_000.0, 333.0, 2.0);
     let mut stage = ReferenceState::at(position(at(0).0), Velocity::ZERO);
@@ -213,13 +279,21 @@ fn the_golden_vectors_repeat_to_the_bit() {
         let [preview, motor, load] = [preview, motor, load].map(position);
         let torque = torque(&config, &mut stage, &mut law, preview, [motor, load]);
         let bits = |position: Position| position.0.to_bits();
-        text += &format!("{} {} {} {torque}\n", bits(preview), bits(motor), bits(load));
+        text += &format!(
+            "{} {} {} {torque}\n",
+            bits(preview),
+            bits(motor),
+            bits(load)
+        );
     }
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/vectors/reference.txt");
     if std::env::var_os("QUADRANT_BLESS").is_some() {
         std::fs::write(path, &text).unwrap();
     }
     let golden = std::fs::read_to_string(path).unwrap_or_default();
-    let differing = golden.lines().zip(text.lines()).position(|(golden, now)| golden != now);
+    let differing = golden
+        .lines()
+        .zip(text.lines())
+        .position(|(golden, now)| golden != now);
     assert!(golden == text, "line {differing:?} of {path} differs");
 }

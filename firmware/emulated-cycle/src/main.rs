@@ -1,18 +1,24 @@
-//! The servo node as ARM code on an emulated Cortex-M4 (QEMU's mps2-an386), for two questions: does it answer like the host's, and in how many instructions?
+//! The servo node as ARM code on an emulated Cortex-M4 (QEMU's mps2-an386), for two questions: does
+//! it answer like the host's, and in how many instructions?
 //!
-//! The recording of a run on the host lies in memory ([`recording`]). Its events go into a servo one by one, and every answer is compared with the recorded
-//! one, byte for byte. An event that is to be measured goes first into [`REPEATS`] copies of the servo between two readings of SysTick:
+//! The recording of a run on the host lies in memory ([`recording`]). Its events go into a servo
+//! one by one, and every answer is compared with the recorded one, byte for byte. An event that is
+//! to be measured goes first into [`REPEATS`] copies of the servo between two readings of SysTick:
 //!
 //! ```text
-//! instructions = (ticks of REPEATS events − ticks of REPEATS empty events) · instructions per tick / REPEATS
+//! instructions = (ticks of REPEATS events − ticks of REPEATS empty events)
+//!                · instructions per tick / REPEATS
 //! ```
 //!
-//! With `-icount shift=0` one instruction takes one nanosecond, and SysTick at 25 MHz counts 40 of them a tick, so that the copies bring the resolution below
-//! one instruction. The copies meet the same state and the same frame, so every one of them runs the same instructions. Instructions are not cycles: memory
-//! and pipeline cost nothing here.
+//! With `-icount shift=0` one instruction takes one nanosecond, and SysTick at 25 MHz counts 40 of
+//! them a tick, so that the copies bring the resolution below one instruction. The copies meet the
+//! same state and the same frame, so every one of them runs the same instructions. Instructions are
+//! not cycles: memory and pipeline cost nothing here.
 //!
-//! Report, a line each: `delay I T` (`I` instructions took `T` ticks), `empty N T` (`N` empty events), `C T` for each measured event (class as in the
-//! recording), `wrong E` for an event whose answer differs, `end E F` (events and answers compared). The exit code says whether the image came to its end.
+//! Report, a line each: `delay I T` (`I` instructions took `T` ticks), `empty N T` (`N` empty
+//! events), `C T` for each measured event (class as in the recording), `wrong E` for an event whose
+//! answer differs, `end E F` (events and answers compared). The exit code says whether the image
+//! came to its end.
 #![no_std]
 #![no_main]
 
@@ -34,9 +40,11 @@ use servo::Servo;
 
 use recording::{Class, Event, Events, FRAME};
 
-/// Copies of the servo that take an event that is measured: 40 instructions a tick / 64 copies is 0.6.
+/// Copies of the servo that take an event that is measured: 40 instructions a tick / 64 copies is
+/// 0.6.
 const REPEATS: usize = 64;
-/// Rounds of the delay that tells how long a tick is: `subs` and `bne`, two instructions (cortex-m 0.7.10, `asm::delay`).
+/// Rounds of the delay that tells how long a tick is: `subs` and `bne`, two instructions (cortex-m
+/// 0.7.10, `asm::delay`).
 const DELAY: u32 = 100_000;
 /// SysTick counts 24 bits.
 const SYSTICK: u32 = 0x00FF_FFFF;
@@ -50,7 +58,11 @@ fn main() -> ! {
     let (mut events, mut answers) = (0_u32, 0_usize);
     for event in Events(recorded()) {
         if event.is_measured {
-            report(format_args!("{} {}", event.class as u8, measured(&servo, &event)));
+            report(format_args!(
+                "{} {}",
+                event.class as u8,
+                measured(&servo, &event)
+            ));
         }
         let out = happens(&mut servo, &event);
         if !is_as_recorded(out, event.answers) {
@@ -71,13 +83,18 @@ fn start(mut systick: SYST) {
 }
 
 /// The recording that QEMU's loader has put into memory.
-#[expect(unsafe_code, reason = "the loader's memory is known by its address alone")]
+#[expect(
+    unsafe_code,
+    reason = "the loader's memory is known by its address alone"
+)]
 fn recorded() -> &'static [u8] {
     let place = core::ptr::with_exposed_provenance::<u8>(recording::ADDRESS);
-    // SAFETY: the PSRAM of the machine lies there, initialised, outside of every section of the image, and nobody writes to it.
+    // SAFETY: the PSRAM of the machine lies there, initialised, outside of every section of the
+    // image, and nobody writes to it.
     let space: &[u8] = unsafe { core::slice::from_raw_parts(place, recording::SPACE) };
     let (length, rest) = space.split_first_chunk().expect("16 MiB hold a length");
-    rest.get(..u32::from_le_bytes(*length) as usize).expect("the recording fits into the PSRAM")
+    rest.get(..u32::from_le_bytes(*length) as usize)
+        .expect("the recording fits into the PSRAM")
 }
 
 fn report_clock(servo: &Servo) {
@@ -86,7 +103,10 @@ fn report_clock(servo: &Servo) {
     let delay = ticks_since(begin);
     report(format_args!("delay {} {delay}", 2 * DELAY));
     let frame = recording::from_bytes([0; FRAME]).expect("zeros are a frame");
-    report(format_args!("empty {REPEATS} {}", ticks(servo, |servo| nothing(servo, &frame, 0))));
+    report(format_args!(
+        "empty {REPEATS} {}",
+        ticks(servo, |servo| nothing(servo, &frame, 0))
+    ));
 }
 
 fn ticks_since(begin: u32) -> u32 {
@@ -133,7 +153,9 @@ fn happens<'a>(servo: &'a mut Servo, event: &Event<'_>) -> &'a [CanFrame] {
     match event.class {
         Class::Boot => servo.boot(),
         Class::Time => time(servo, event.now_us),
-        Class::Sync | Class::Setpoint | Class::Feedback | Class::Other => takes(servo, &frame_of(event), event.now_us),
+        Class::Sync | Class::Setpoint | Class::Feedback | Class::Other => {
+            takes(servo, &frame_of(event), event.now_us)
+        }
     }
 }
 
@@ -143,7 +165,10 @@ fn frame_of(event: &Event<'_>) -> CanFrame {
 
 fn is_as_recorded(out: &[CanFrame], answers: &[[u8; FRAME]]) -> bool {
     out.len() == answers.len()
-        && out.iter().zip(answers).all(|(frame, answer)| recording::to_bytes(frame) == Some(*answer))
+        && out
+            .iter()
+            .zip(answers)
+            .all(|(frame, answer)| recording::to_bytes(frame) == Some(*answer))
 }
 
 /// A line to the host: one semihosting call, whatever it is made of.

@@ -2,13 +2,18 @@
 //!
 //! ```text
 //! recording = number of bytes that follow (u32), event, event, …
-//! event     = class (u8), measured (u8), time in µs (u64), frame, number of answers (u8), frame, frame, …
+//! event     = class (u8), measured (u8), time in µs (u64), frame,
+//!             number of answers (u8), frame, frame, …
 //! frame     = identifier (u16), length (u8), data (8 bytes)           all little-endian
 //! ```
 //!
-//! Boot-up and passing time have no frame; a frame of zeros stands in its place. This one file is part of two programs, the image and the benchmark that
-//! records (`hil-tests/benches/instructions.rs`), so that there is one description of the format.
-#![allow(dead_code, reason = "each of the two programs uses its half: one writes, the other reads")]
+//! Boot-up and passing time have no frame; a frame of zeros stands in its place. This one file is
+//! part of two programs, the image and the benchmark that records
+//! (`hil-tests/benches/instructions.rs`), so that there is one description of the format.
+#![allow(
+    dead_code,
+    reason = "each of the two programs uses its half: one writes, the other reads"
+)]
 
 use embedded_can::{Frame, Id, StandardId};
 use protocol::CanFrame;
@@ -20,7 +25,8 @@ pub(crate) const ADDRESS: usize = 0x2100_0000;
 /// Size of that PSRAM.
 pub(crate) const SPACE: usize = 16 << 20;
 
-/// What happens to the servo. The discriminant is the byte in the recording and in the image's report.
+/// What happens to the servo. The discriminant is the byte in the recording and in the image's
+/// report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub(crate) enum Class {
@@ -40,7 +46,14 @@ pub(crate) enum Class {
 
 impl Class {
     /// All classes; the place of each is its byte.
-    pub(crate) const ALL: [Self; 6] = [Self::Boot, Self::Time, Self::Sync, Self::Setpoint, Self::Feedback, Self::Other];
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Boot,
+        Self::Time,
+        Self::Sync,
+        Self::Setpoint,
+        Self::Feedback,
+        Self::Other,
+    ];
 
     /// The class of a byte.
     pub(crate) fn from_byte(byte: u8) -> Option<Self> {
@@ -50,11 +63,15 @@ impl Class {
 
 /// A frame as it stands in the recording; `None` for what no node of ours sends or hears.
 pub(crate) fn to_bytes(frame: &CanFrame) -> Option<[u8; FRAME]> {
-    let Id::Standard(id) = frame.id() else { return None };
+    let Id::Standard(id) = frame.id() else {
+        return None;
+    };
     let mut bytes = [0; FRAME];
     let (head, data) = bytes.split_at_mut(3);
     head[..2].copy_from_slice(&id.as_raw().to_le_bytes());
-    head[2] = u8::try_from(frame.dlc()).ok().filter(|_| !frame.is_remote_frame())?;
+    head[2] = u8::try_from(frame.dlc())
+        .ok()
+        .filter(|_| !frame.is_remote_frame())?;
     data[..frame.dlc()].copy_from_slice(frame.data());
     Some(bytes)
 }

@@ -1,7 +1,8 @@
 //! One station at one port: what delivers its frames and tells it the time.
 //!
-//! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline, the station does what is due next. After three
-//!   deadlines without a frame of the workbench it is gone, and time follows the clock until the workbench says something again.
+//! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline,
+//!   the station does what is due next. After three deadlines without a frame of the workbench it
+//!   is gone, and time follows the clock until the workbench says something again.
 //! - *Clock pace*: time is the clock, and the station wakes when it is due.
 
 use std::convert::Infallible;
@@ -18,11 +19,12 @@ use protocol::{AxisIds, CanFrame, Message, Station, SyncCounter};
 use crate::lockstep_time::LockstepTime;
 use crate::port::Port;
 
-/// Deadlines without a frame of the workbench after which it counts as gone. One is a lost frame, two are a lost SYNC and a lost frame; the workbench
-/// waits for one and a half.
+/// Deadlines without a frame of the workbench after which it counts as gone. One is a lost frame,
+/// two are a lost SYNC and a lost frame; the workbench waits for one and a half.
 const DEADLINES_UNTIL_ALONE: u8 = 3;
 
-/// What a station does at one time before its port is looked at again: heartbeat, deadline, own timer and timeouts, with room for as many again.
+/// What a station does at one time before its port is looked at again: heartbeat, deadline, own
+/// timer and timeouts, with room for as many again.
 const DUE_AT_ONCE: u8 = 8;
 
 /// A station with its port.
@@ -45,7 +47,10 @@ struct ClockTime {
 
 impl ClockTime {
     fn from(now_us: u64) -> Self {
-        Self { from: Instant::now(), from_us: now_us }
+        Self {
+            from: Instant::now(),
+            from_us: now_us,
+        }
     }
 
     fn now_us(self) -> u64 {
@@ -60,9 +65,19 @@ impl ClockTime {
 impl Leaf {
     pub(crate) fn new(station: Box<dyn Station>, port: Port, faults: Option<FaultyPort>) -> Self {
         let ids = station.ids();
-        let of_workbench = FRAMES.iter().filter(|spec| spec.sender == Sender::Workbench);
+        let of_workbench = FRAMES
+            .iter()
+            .filter(|spec| spec.sender == Sender::Workbench);
         let of_workbench = of_workbench.map(|spec| ids.identifier(spec.kind)).collect();
-        Self { station, ids, of_workbench, port, faults, received: Vec::new(), time: LockstepTime::default() }
+        Self {
+            station,
+            ids,
+            of_workbench,
+            port,
+            faults,
+            received: Vec::new(),
+            time: LockstepTime::default(),
+        }
     }
 
     /// The boot-up message.
@@ -71,14 +86,25 @@ impl Leaf {
     }
 
     /// Runs in lock-step until the port fails.
-    pub(crate) async fn in_step(&mut self, deadline: std::time::Duration) -> io::Result<Infallible> {
+    pub(crate) async fn in_step(
+        &mut self,
+        deadline: std::time::Duration,
+    ) -> io::Result<Infallible> {
         loop {
             let mut silent = 0;
             while silent < DEADLINES_UNTIL_ALONE {
                 let deadlines = self.deadlines_to_wait();
-                match self.port.receive(Some(deadline * u32::from(deadlines))).await? {
+                match self
+                    .port
+                    .receive(Some(deadline * u32::from(deadlines)))
+                    .await?
+                {
                     Some(frame) => {
-                        silent = if self.is_of_workbench(&frame) { 0 } else { silent };
+                        silent = if self.is_of_workbench(&frame) {
+                            0
+                        } else {
+                            silent
+                        };
                         self.deliver(frame, Self::take_in_step)?;
                     }
                     None => {
@@ -91,12 +117,18 @@ impl Leaf {
         }
     }
 
-    /// How long it may be silent: a deadline where a frame of the present cycle is missing, two where SYNC is. In bus time the own timer (1.3 periods) comes at
-    /// about twice the deadline of a cycle (0.6) too. With one deadline for both, a plant that waits for a servo which waits for a lost frame would begin the next
-    /// cycle while the servo closes the present one, and run ahead from there on.
+    /// How long it may be silent: a deadline where a frame of the present cycle is missing, two
+    /// where SYNC is. In bus time the own timer (1.3 periods) comes at about twice the deadline of
+    /// a cycle (0.6) too. With one deadline for both, a plant that waits for a servo which waits
+    /// for a lost frame would begin the next cycle while the servo closes the present one, and run
+    /// ahead from there on.
     fn deadlines_to_wait(&self) -> u8 {
         let due = self.station.wake_at_us().zip(self.station.sync_due_us());
-        if due.is_some_and(|(wake_us, sync_us)| wake_us > sync_us) { 2 } else { 1 }
+        if due.is_some_and(|(wake_us, sync_us)| wake_us > sync_us) {
+            2
+        } else {
+            1
+        }
     }
 
     /// Runs by the clock until the port fails.
@@ -110,7 +142,8 @@ impl Leaf {
         }
     }
 
-    /// The workbench is gone: time follows the clock until it says something. The peer's frames come meanwhile; it is as alone.
+    /// The workbench is gone: time follows the clock until it says something. The peer's frames
+    /// come meanwhile; it is as alone.
     async fn alone(&mut self) -> io::Result<()> {
         let clock = ClockTime::from(self.time.now_us());
         loop {
@@ -126,7 +159,9 @@ impl Leaf {
 
     /// The next frame; `None` where the station was due before one came, and did what was due.
     async fn frame_or_wake(&mut self, clock: ClockTime) -> io::Result<Option<CanFrame>> {
-        let Some(due_us) = self.station.wake_at_us() else { return self.port.receive(None).await };
+        let Some(due_us) = self.station.wake_at_us() else {
+            return self.port.receive(None).await;
+        };
         match select(self.port.receive(None), Timer::at(clock.at(due_us))).await {
             Either::First(received) => received,
             Either::Second(()) => self.wake().map(|()| None),
@@ -134,8 +169,14 @@ impl Leaf {
     }
 
     /// A frame came in: what the port makes of it reaches the station.
-    fn deliver(&mut self, frame: CanFrame, take: fn(&mut Self, &CanFrame) -> io::Result<()>) -> io::Result<()> {
-        let Some(faults) = &mut self.faults else { return take(self, &frame) };
+    fn deliver(
+        &mut self,
+        frame: CanFrame,
+        take: fn(&mut Self, &CanFrame) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let Some(faults) = &mut self.faults else {
+            return take(self, &frame);
+        };
         let mut received = std::mem::take(&mut self.received);
         faults.receive(frame, &mut received);
         let outcome = received.drain(..).try_for_each(|frame| take(self, &frame));
@@ -160,13 +201,20 @@ impl Leaf {
 
     /// Time reaches what is due next, and the station does everything that is due then.
     fn wake(&mut self) -> io::Result<()> {
-        let Some(due_us) = self.station.wake_at_us() else { return Ok(()) };
+        let Some(due_us) = self.station.wake_at_us() else {
+            return Ok(());
+        };
         self.time.reach(due_us);
         for _ in 0..DUE_AT_ONCE {
             let sync_due_us = self.station.sync_due_us();
             self.act(|station, now_us, send| station.time(now_us, send))?;
-            self.time.without_sync(sync_due_us, self.station.sync_due_us());
-            if self.station.wake_at_us().is_none_or(|due_us| due_us > self.time.now_us()) {
+            self.time
+                .without_sync(sync_due_us, self.station.sync_due_us());
+            if self
+                .station
+                .wake_at_us()
+                .is_none_or(|due_us| due_us > self.time.now_us())
+            {
                 break;
             }
         }
@@ -174,7 +222,10 @@ impl Leaf {
     }
 
     /// Lets the station act at the present time and sends what it says.
-    fn act(&mut self, act: impl FnOnce(&mut dyn Station, u64, &mut dyn FnMut(CanFrame))) -> io::Result<()> {
+    fn act(
+        &mut self,
+        act: impl FnOnce(&mut dyn Station, u64, &mut dyn FnMut(CanFrame)),
+    ) -> io::Result<()> {
         let (mut outcome, port) = (Ok(()), &self.port);
         let mut send = |frame| {
             if outcome.is_ok() {
@@ -186,7 +237,9 @@ impl Leaf {
     }
 
     fn is_of_workbench(&self, frame: &CanFrame) -> bool {
-        self.of_workbench.iter().any(|id| frame.id() == Id::Standard(*id))
+        self.of_workbench
+            .iter()
+            .any(|id| frame.id() == Id::Standard(*id))
     }
 
     /// The counter, where a frame is SYNC.

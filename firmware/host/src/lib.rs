@@ -1,6 +1,8 @@
-//! A node as a host program: the same sans-I/O station as on the board, on embassy-executor, over SocketCAN or an in-process bus.
+//! A node as a host program: the same sans-I/O station as on the board, on embassy-executor, over
+//! SocketCAN or an in-process bus.
 //!
-//! One task drives the station (`leaf`): frames as they come, and the time. Servo and plant run through the same code.
+//! One task drives the station (`leaf`): frames as they come, and the time. Servo and plant run
+//! through the same code.
 //!
 //! ```text
 //! CAN port ─▶ (faults, in tests) ─▶ station ─▶ CAN port
@@ -42,7 +44,8 @@ pub enum Pace {
 /// Why the driver ended; nothing while it runs.
 type End = Rc<RefCell<Option<io::Error>>>;
 
-/// Runs a station on a port until the port fails or `stop` becomes readable; once per process, because the executor is static.
+/// Runs a station on a port until the port fails or `stop` becomes readable; once per process,
+/// because the executor is static.
 ///
 /// # Errors
 /// Where the port fails.

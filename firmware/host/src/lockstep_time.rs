@@ -1,9 +1,11 @@
 //! Bus time in lock-step: what a node takes for the time while everybody waits for everybody.
 //!
-//! It moves on in two ways only. A SYNC that begins a cycle moves it to when that SYNC was due: one period per cycle, however long the
-//! cycle took by the clock. The end of the leaf's patience moves it to when the node is due next: to the deadline of a cycle whose frame was lost, or to
-//! the node's own timer where SYNC was. A SYNC that begins nothing (a double, or one that comes after its cycle was begun without it)
-//! moves nothing, so the leaf follows SYNC by its counter as the node does.
+//! It moves on in two ways only. A SYNC that begins a cycle moves it to when that SYNC was due: one
+//! period per cycle, however long the cycle took by the clock. The end of the leaf's patience moves
+//! it to when the node is due next: to the deadline of a cycle whose frame was lost, or to the
+//! node's own timer where SYNC was. A SYNC that begins nothing (a double, or one that comes after
+//! its cycle was begun without it) moves nothing, so the leaf follows SYNC by its counter as the
+//! node does.
 
 use protocol::{SyncCounter, SyncEvent, SyncTracker};
 
@@ -40,9 +42,13 @@ impl LockstepTime {
         }
     }
 
-    /// The node did something without SYNC, and may have begun a cycle: the next SYNC is due later then.
+    /// The node did something without SYNC, and may have begun a cycle: the next SYNC is due later
+    /// then.
     pub fn without_sync(&mut self, due_before_us: Option<u64>, due_after_us: Option<u64>) {
-        if due_before_us.zip(due_after_us).is_some_and(|(before, after)| after > before) {
+        if due_before_us
+            .zip(due_after_us)
+            .is_some_and(|(before, after)| after > before)
+        {
             self.sync.begin_without_sync();
         }
     }
@@ -56,7 +62,8 @@ mod tests {
         SyncCounter::new(value).unwrap()
     }
 
-    /// Times after each of these SYNC counters, for a node that expects each cycle 1000 µs after the one before.
+    /// Times after each of these SYNC counters, for a node that expects each cycle 1000 µs after
+    /// the one before.
     fn times(counters: &[u8]) -> Vec<u64> {
         let mut time = LockstepTime::default();
         let mut due = None;

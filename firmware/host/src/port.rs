@@ -119,7 +119,11 @@ fn pack(frame: &CanFrame) -> Vec<u8> {
         Id::Standard(id) => u32::from(id.as_raw()),
         Id::Extended(id) => id.as_raw() | 1 << 31,
     };
-    let id = if frame.is_remote_frame() { id | 1 << 30 } else { id };
+    let id = if frame.is_remote_frame() {
+        id | 1 << 30
+    } else {
+        id
+    };
     let length = u8::try_from(frame.dlc()).unwrap_or(8);
     [&id.to_le_bytes()[..], &[length], frame.payload()].concat()
 }
@@ -129,7 +133,14 @@ fn unpack(bytes: &[u8]) -> Option<CanFrame> {
     let (length, data) = rest.split_first()?;
     let head = u32::from_le_bytes(*head);
     let low = head & 0x1FFF_FFFF;
-    let id: Id =
-        if head >> 31 == 1 { ExtendedId::new(low)?.into() } else { StandardId::new(u16::try_from(low).ok()?)?.into() };
-    if head >> 30 & 1 == 1 { CanFrame::new_remote(id, usize::from(*length)) } else { CanFrame::new(id, data) }
+    let id: Id = if head >> 31 == 1 {
+        ExtendedId::new(low)?.into()
+    } else {
+        StandardId::new(u16::try_from(low).ok()?)?.into()
+    };
+    if head >> 30 & 1 == 1 {
+        CanFrame::new_remote(id, usize::from(*length))
+    } else {
+        CanFrame::new(id, data)
+    }
 }

@@ -1,4 +1,5 @@
-//! SIGTERM and SIGINT as a descriptor that becomes readable, so that a node ends between two frames and says nothing more; its peers' watchdogs act.
+//! SIGTERM and SIGINT as a descriptor that becomes readable, so that a node ends between two frames
+//! and says nothing more; its peers' watchdogs act.
 
 use std::io;
 use std::mem::MaybeUninit;
@@ -9,14 +10,16 @@ use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
 pub struct Termination(OwnedFd);
 
 impl Termination {
-    /// Takes both signals away from their default action, which ends the process wherever it stands. Threads inherit this, so it comes before any.
+    /// Takes both signals away from their default action, which ends the process wherever it
+    /// stands. Threads inherit this, so it comes before any.
     ///
     /// # Errors
     /// The kernel's.
     pub fn catch() -> io::Result<Self> {
         let mut signals = MaybeUninit::uninit();
         #[expect(unsafe_code, reason = "signalfd has no safe wrapper here")]
-        // SAFETY: `signals` is initialised by sigemptyset before anything reads it, and outlives the calls; the descriptor is new and owned by nobody else.
+        // SAFETY: `signals` is initialised by sigemptyset before anything reads it, and outlives
+        // the calls; the descriptor is new and owned by nobody else.
         unsafe {
             libc::sigemptyset(signals.as_mut_ptr());
             libc::sigaddset(signals.as_mut_ptr(), libc::SIGTERM);

@@ -32,5 +32,8 @@ fn alarms_ring_by_the_clock_on_a_quiet_bus_and_under_a_flood_of_frames() {
 
 fn on_time(due_ms: u64, rang: Option<Duration>) {
     let (due, rang) = (Duration::from_millis(due_ms), rang.expect("it rings"));
-    assert!((due..due + LATE).contains(&rang), "due {due:?}, rang {rang:?}");
+    assert!(
+        (due..due + LATE).contains(&rang),
+        "due {due:?}, rang {rang:?}"
+    );
 }

@@ -18,10 +18,22 @@ fn ids() -> AxisIds {
 }
 
 fn cycle(counter: SyncCounter) -> [CanFrame; 3] {
-    let setpoint =
-        Setpoint { control: ControlWord::SHUTDOWN, counter: counter.next(), position: SetpointFine::saturating(0) };
-    let feedback = Feedback { motor: MotorIncrements(7), load: LoadIncrements24::from_counts(7), counter };
-    [Message::Sync(counter), Message::Setpoint(setpoint), Message::Feedback(feedback)].map(|m| m.encode(ids()))
+    let setpoint = Setpoint {
+        control: ControlWord::SHUTDOWN,
+        counter: counter.next(),
+        position: SetpointFine::saturating(0),
+    };
+    let feedback = Feedback {
+        motor: MotorIncrements(7),
+        load: LoadIncrements24::from_counts(7),
+        counter,
+    };
+    [
+        Message::Sync(counter),
+        Message::Setpoint(setpoint),
+        Message::Feedback(feedback),
+    ]
+    .map(|m| m.encode(ids()))
 }
 
 fn traffic() -> Vec<CanFrame> {
@@ -50,9 +62,17 @@ fn the_executor_adds_nothing_and_loses_nothing() {
 
     let (node_end, our_end) = InProcessPort::pair().unwrap();
     let (stop, stopped) = UnixStream::pair().unwrap();
-    let pace = Pace::Lockstep { deadline: Duration::from_secs(20) };
+    let pace = Pace::Lockstep {
+        deadline: Duration::from_secs(20),
+    };
     let node = std::thread::spawn(move || {
-        quadrant_host::run(Box::new(Servo::new(ids())), Port::InProcess(node_end), None, pace, &stopped)
+        quadrant_host::run(
+            Box::new(Servo::new(ids())),
+            Port::InProcess(node_end),
+            None,
+            pace,
+            &stopped,
+        )
     });
     let mut got = Vec::new();
     let patience = Instant::now() + Duration::from_secs(20);

@@ -25,17 +25,33 @@ fn what_is_due_happens_after_a_deadline_without_frames_three_times_and_then_by_t
     // Frames, however late each, keep the deadline away.
     while running.elapsed() < 5 * DEADLINE {
         running.port.send(&a_frame()).unwrap();
-        assert_eq!(running.rang(DEADLINE / 20), None, "a frame came within the deadline");
+        assert_eq!(
+            running.rang(DEADLINE / 20),
+            None,
+            "a frame came within the deadline"
+        );
     }
     let quiet_since = running.elapsed();
     for deadlines in 1..=3 {
-        let rang = running.rang(4 * DEADLINE).expect("a deadline without frames");
+        let rang = running
+            .rang(4 * DEADLINE)
+            .expect("a deadline without frames");
         let earliest = quiet_since + deadlines * DEADLINE * 9 / 10;
-        assert!(rang >= earliest, "{deadlines}: {rang:?}, at least {earliest:?}");
+        assert!(
+            rang >= earliest,
+            "{deadlines}: {rang:?}, at least {earliest:?}"
+        );
     }
-    assert_eq!(running.rang(4 * DEADLINE), None, "alone, time follows the clock");
+    assert_eq!(
+        running.rang(4 * DEADLINE),
+        None,
+        "alone, time follows the clock"
+    );
 
     running.port.send(&a_frame()).unwrap();
-    assert!(running.rang(4 * DEADLINE).is_some(), "a frame brings lock-step back, and its deadline");
+    assert!(
+        running.rang(4 * DEADLINE).is_some(),
+        "a frame brings lock-step back, and its deadline"
+    );
     running.stop();
 }

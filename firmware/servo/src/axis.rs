@@ -6,8 +6,9 @@
 //!            └──▶ watchdogs      reference stage ──────┘
 //! ```
 //!
-//! The law is stepped in every cycle in which there may be torque, bridged ones included: what is missing is predicted (feedback) or extrapolated (setpoint),
-//! and the law never sees a hole. Nothing here knows frames, time or identifiers.
+//! The law is stepped in every cycle in which there may be torque, bridged ones included: what is
+//! missing is predicted (feedback) or extrapolated (setpoint), and the law never sees a hole.
+//! Nothing here knows frames, time or identifiers.
 
 use controller::reference::{Mode, Reference, ReferenceInput, ReferenceState};
 use controller::units::{Position, PositionError, Torque, Velocity};
@@ -101,17 +102,24 @@ impl Axis {
             self.follow_control_word(settings, contents, circumstances, notices);
         }
         let refused = self.control_axis(settings, contents, measured, notices);
-        let missed = contents.feedback.is_err() || (expected && contents.preview.is_err()) || !circumstances.in_sync;
+        let missed = contents.feedback.is_err()
+            || (expected && contents.preview.is_err())
+            || !circumstances.in_sync;
         let implausible = contents.feedback.is_ok() && self.watchdog.misses().1 > 0;
         self.watchdog.cycle(missed, refused || implausible);
         self.last.warning |= missed || refused || implausible;
-        StageOutput { control: self.drive.stage_control(), torque: self.last.torque }
+        StageOutput {
+            control: self.drive.stage_control(),
+            torque: self.last.torque,
+        }
     }
 
     /// Whether a setpoint is due in the present cycle.
     #[must_use]
     pub fn expects_setpoint(&self, settings: &Settings) -> bool {
-        self.track.as_ref().is_none_or(|track| track.expects_setpoint(&settings.config.reference))
+        self.track
+            .as_ref()
+            .is_none_or(|track| track.expects_setpoint(&settings.config.reference))
     }
 
     /// Latches a fault; the first one stays.
@@ -139,7 +147,9 @@ impl Axis {
     /// The position that the loop controls.
     #[must_use]
     pub fn position(&self, settings: &Settings) -> Option<Position> {
-        self.encoders.position().map(|at| at.of(settings.config.position_source))
+        self.encoders
+            .position()
+            .map(|at| at.of(settings.config.position_source))
     }
 
     /// Offset of the backlash unit.
@@ -151,7 +161,9 @@ impl Axis {
     /// Whether the commanded motion has ended.
     #[must_use]
     pub fn is_standing(&self) -> bool {
-        self.last.reference.is_none_or(|reference| reference.standing)
+        self.last
+            .reference
+            .is_none_or(|reference| reference.standing)
     }
 
     /// Whether halt is commanded.
@@ -167,27 +179,49 @@ impl Axis {
         notices: &mut Notices,
     ) -> Option<Measured> {
         let encoding = encoding(settings);
-        let accepted =
-            feedback.and_then(|feedback| self.encoders.accept(feedback, &encoding).map_err(|_| Miss::Implausible));
+        let accepted = feedback.and_then(|feedback| {
+            self.encoders
+                .accept(feedback, &encoding)
+                .map_err(|_| Miss::Implausible)
+        });
         self.watchdog.counts.scale_warnings = self.encoders.scale_warnings();
-        match self.watchdog.feedback(accepted.err(), settings.limits.feedback_misses) {
+        match self
+            .watchdog
+            .feedback(accepted.err(), settings.limits.feedback_misses)
+        {
             Some(fault) if self.drive.is_energised() => self.latch(fault, settings, notices),
-            // Without torque nothing is at stake: forget the old position, so that nobody enables on it.
+            // Without torque nothing is at stake: forget the old position, so that nobody enables
+            // on it.
             Some(_) => self.encoders.forget(),
             None => {}
         }
-        let acceleration = self.last.reference.map(|reference| reference.acceleration).unwrap_or_default();
-        accepted.ok().or_else(|| self.encoders.predict(acceleration))
+        let acceleration = self
+            .last
+            .reference
+            .map(|reference| reference.acceleration)
+            .unwrap_or_default();
+        accepted
+            .ok()
+            .or_else(|| self.encoders.predict(acceleration))
     }
 
-    fn watch_setpoints(&mut self, settings: &Settings, contents: &Contents, expected: bool, notices: &mut Notices) {
+    fn watch_setpoints(
+        &mut self,
+        settings: &Settings,
+        contents: &Contents,
+        expected: bool,
+        notices: &mut Notices,
+    ) {
         if let Some(setpoint) = contents.preview.ok().or(contents.present) {
             self.setpoint = Some(position_of(setpoint));
         }
         if !expected {
             return;
         }
-        match self.watchdog.setpoint(contents.preview.err(), settings.limits.setpoint_misses) {
+        match self
+            .watchdog
+            .setpoint(contents.preview.err(), settings.limits.setpoint_misses)
+        {
             Some(fault) if self.drive.is_energised() => self.latch(fault, settings, notices),
             // Nobody enables on a setpoint that is long gone.
             Some(_) => self.setpoint = None,
@@ -202,11 +236,17 @@ impl Axis {
         circumstances: Circumstances,
         notices: &mut Notices,
     ) {
-        let Ok(Setpoint { control, .. }) = contents.preview else { return };
-        let reset_edge = control.has(ControlWord::FAULT_RESET.0) && !self.control.has(ControlWord::FAULT_RESET.0);
+        let Ok(Setpoint { control, .. }) = contents.preview else {
+            return;
+        };
+        let reset_edge = control.has(ControlWord::FAULT_RESET.0)
+            && !self.control.has(ControlWord::FAULT_RESET.0);
         self.control = control;
         let mut command = control.command();
-        if command == Some(Command::EnableOperation) && !self.drive.is_energised() && self.drive.fault().is_none() {
+        if command == Some(Command::EnableOperation)
+            && !self.drive.is_energised()
+            && self.drive.fault().is_none()
+        {
             let refusal = self.refusal(settings, contents, circumstances);
             self.say_refusal(refusal, notices);
             command = command.filter(|_| refusal.is_none());
@@ -228,7 +268,12 @@ impl Axis {
     }
 
     /// Why the axis may not be enabled now; `None` where it may.
-    fn refusal(&self, settings: &Settings, contents: &Contents, circumstances: Circumstances) -> Option<Fault> {
+    fn refusal(
+        &self,
+        settings: &Settings,
+        contents: &Contents,
+        circumstances: Circumstances,
+    ) -> Option<Fault> {
         let source = settings.config.position_source;
         let (Some(at), Some(setpoint)) = (self.position(settings), self.setpoint) else {
             return Some(Fault::FeedbackMissing);
@@ -259,18 +304,34 @@ impl Axis {
         self.refusal = refusal;
     }
 
-    /// Torque comes: the reference starts where the axis is and as it moves, the integral with the torque that held it last.
+    /// Torque comes: the reference starts where the axis is and as it moves, the integral with the
+    /// torque that held it last.
     fn energise(&mut self, settings: &Settings) {
         let preset = settings.preset;
-        let torque = self.held.filter(|_| preset.from_last).unwrap_or(preset.torque);
+        let torque = self
+            .held
+            .filter(|_| preset.from_last)
+            .unwrap_or(preset.torque);
         self.law = State::holding(torque);
-        let Some(at) = self.encoders.position() else { return };
+        let Some(at) = self.encoders.position() else {
+            return;
+        };
         let source = settings.config.position_source;
         // What an axis can stop within a cycle is no motion but the resolution of its encoder.
-        let moves = self.encoders.velocity(source).is_beyond(settings.config.reference.acceleration_limit);
-        let velocity = if moves { self.encoders.velocity(source) } else { Velocity::ZERO };
+        let moves = self
+            .encoders
+            .velocity(source)
+            .is_beyond(settings.config.reference.acceleration_limit);
+        let velocity = if moves {
+            self.encoders.velocity(source)
+        } else {
+            Velocity::ZERO
+        };
         if moves {
-            self.law = self.law.moving(at.motor, self.encoders.velocity(controller::PositionSource::Motor));
+            self.law = self.law.moving(
+                at.motor,
+                self.encoders.velocity(controller::PositionSource::Motor),
+            );
         }
         self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
@@ -292,7 +353,9 @@ impl Axis {
         measured: Option<Measured>,
         notices: &mut Notices,
     ) -> bool {
-        let Some(reference) = self.step_reference(settings, contents) else { return false };
+        let Some(reference) = self.step_reference(settings, contents) else {
+            return false;
+        };
         self.advance(settings, reference.standing, notices);
         if let (Some(measured), true) = (measured, self.drive.is_energised()) {
             self.step_law(settings, reference, measured, notices);
@@ -319,7 +382,9 @@ impl Axis {
             Drive::OperationEnabled if !self.is_halted() => Mode::Follow,
             Drive::OperationEnabled => match settings.options.halt {
                 StopOption::SlowDown | StopOption::SlowDownAndStay => Mode::SlowDown,
-                StopOption::QuickStop | StopOption::QuickStopAndStay | StopOption::DisableAtOnce => Mode::QuickStop,
+                StopOption::QuickStop
+                | StopOption::QuickStopAndStay
+                | StopOption::DisableAtOnce => Mode::QuickStop,
             },
             Drive::Stopping(stop) | Drive::Holding(stop, _) => match stop.ramp {
                 RampKind::SlowDown => Mode::SlowDown,
@@ -353,22 +418,47 @@ impl Axis {
         }
     }
 
-    fn step_law(&mut self, settings: &Settings, reference: Reference, measured: Measured, notices: &mut Notices) {
-        let input = Input { reference, motor: measured.motor, load: measured.load };
-        let Output { torque, following_error, limited } = controller::step(&settings.config, &mut self.law, &input);
+    fn step_law(
+        &mut self,
+        settings: &Settings,
+        reference: Reference,
+        measured: Measured,
+        notices: &mut Notices,
+    ) {
+        let input = Input {
+            reference,
+            motor: measured.motor,
+            load: measured.load,
+        };
+        let Output {
+            torque,
+            following_error,
+            limited,
+        } = controller::step(&settings.config, &mut self.law, &input);
         self.last.following_error = following_error;
         self.last.limited = limited || reference.limited;
         self.last.torque = torque;
-        if following_error.magnitude() > settings.limits.following_error && self.drive.fault().is_none() {
+        if following_error.magnitude() > settings.limits.following_error
+            && self.drive.fault().is_none()
+        {
             self.latch(Fault::FollowingError, settings, notices);
-            // The ramp starts from what the axis does, not from a reference that it does not follow.
+            // The ramp starts from what the axis does, not from a reference that it does not
+            // follow.
             let source = settings.config.position_source;
             let (position, velocity) = (measured.of(source), self.encoders.velocity(source));
-            self.track = self.track.as_ref().map(|_| ReferenceState::at(position, velocity));
+            self.track = self
+                .track
+                .as_ref()
+                .map(|_| ReferenceState::at(position, velocity));
         }
     }
 
-    fn watch_reference(&mut self, settings: &Settings, reference: &Reference, notices: &mut Notices) {
+    fn watch_reference(
+        &mut self,
+        settings: &Settings,
+        reference: &Reference,
+        notices: &mut Notices,
+    ) {
         let refusals = self.track.as_ref().map_or(0, ReferenceState::refusals);
         if refusals > settings.limits.refusals {
             self.latch(Fault::SetpointImplausible, settings, notices);

@@ -1,16 +1,18 @@
 //! From a parameter set to settings: physical units become machine units of the set's cycle time T.
 //!
-//! A person gives physical units. The control law counts 10 nm, cycles and µN·m. Between them stand these equations (1 count = 10 nm,
-//! I: inertia as torque per acceleration), evaluated once, at commit:
+//! A person gives physical units. The control law counts 10 nm, cycles and µN·m. Between them stand
+//! these equations (1 count = 10 nm, I: inertia as torque per acceleration), evaluated once, at
+//! commit:
 //!
 //! ```text
-//! velocity      v · T              Kp = 2π f I                  velocity filter  α = 1 − exp(−T/τ)
-//! acceleration  a · T²             Ki · T = Kp · 2π fi · T      pulse            decay = exp(−T/T_comp)
-//! jerk          j · T³             Ja = share · I               way per encoder increment = feed / increments
+//! velocity      v · T       Kp = 2π f I               velocity filter  α = 1 − exp(−T/τ)
+//! acceleration  a · T²      Ki · T = Kp · 2π fi · T   pulse            decay = exp(−T/T_comp)
+//! jerk          j · T³      Ja = share · I            way per increment = feed / increments
 //! ```
 //!
-//! Each value is rounded once, to nearest: it is off by at most half a unit of its type or a millionth, the exponentials by 2⁻³⁰. A value that
-//! the type cannot hold at that cycle time, or that would become zero though it is not, refuses the whole set: nothing saturates.
+//! Each value is rounded once, to nearest: it is off by at most half a unit of its type or a
+//! millionth, the exponentials by 2⁻³⁰. A value that the type cannot hold at that cycle time, or
+//! that would become zero though it is not, refuses the whole set: nothing saturates.
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
@@ -18,7 +20,8 @@ use controller::filter::{FilterConfig, FilterError};
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::units::{
-    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain, WayPerIncrement,
+    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
+    WayPerIncrement,
 };
 use controller::{Config, PositionSource};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8, I56F8};
@@ -27,7 +30,9 @@ use protocol::table::HEARTBEAT_EVERY_CYCLES;
 use crate::objects::Parameter;
 use crate::parameters::{ParameterSet, SetError};
 use crate::physical::{Fraction, decay};
-use crate::settings::{AbortConnectionOption, Brake, Limits, Options, Preset, Relation, Settings, StopOption};
+use crate::settings::{
+    AbortConnectionOption, Brake, Limits, Options, Preset, Relation, Settings, StopOption,
+};
 
 /// 2π and its square as fractions: 3·10⁻¹¹ and 1·10⁻¹¹ off.
 const TWO_PI: (u64, u64) = (6_283_185_307, 1_000_000_000);
@@ -48,8 +53,9 @@ const LARGEST_POSITION_GAIN: i32 = 1 << 24;
 const SMALLEST_LIMIT: Velocity = Velocity(I20F12::from_bits(16));
 /// SYNC may be silent for so many periods where the set does not say it.
 const SYNC_TIMEOUT_PERIODS: u64 = 5;
-/// The peer's heartbeat may be silent for so many periods where the set does not say it: four and a half heartbeats. Where 2 % of them are lost or damaged, two in a
-/// row go missing once in 250 s at 1 kHz, which stopped an axis; four once in a week.
+/// The peer's heartbeat may be silent for so many periods where the set does not say it: four and a
+/// half heartbeats. Where 2 % of them are lost or damaged, two in a row go missing once in 250 s at
+/// 1 kHz, which stopped an axis; four once in a week.
 const HEARTBEAT_TIMEOUT_PERIODS: u64 = 450;
 
 /// The settings of a parameter set.
@@ -57,7 +63,10 @@ const HEARTBEAT_TIMEOUT_PERIODS: u64 = 450;
 /// # Errors
 /// [`SetError`] where the values do not go together, or do not fit the machine units.
 pub fn settings(set: &ParameterSet) -> Result<Settings, SetError> {
-    let reading = Reading { set, period_us: u64::from(set.get(Parameter::CyclePeriod).unsigned_abs()) };
+    let reading = Reading {
+        set,
+        period_us: u64::from(set.get(Parameter::CyclePeriod).unsigned_abs()),
+    };
     reading.check_limits()?;
     Ok(Settings {
         period_us: set.get(Parameter::CyclePeriod).unsigned_abs(),
@@ -94,25 +103,40 @@ impl Reading<'_> {
         let value = Fraction::new(numerator, denominator).and_then(Fraction::nearest);
         match value.and_then(|value| i32::try_from(value).ok()) {
             None => Err(SetError::TooLarge(parameter)),
-            Some(0) if numerator.iter().all(|factor| *factor > 0) => Err(SetError::TooSmall(parameter)),
+            Some(0) if numerator.iter().all(|factor| *factor > 0) => {
+                Err(SetError::TooSmall(parameter))
+            }
             Some(value) => Ok(value),
         }
     }
 
-    /// A velocity (order 1), acceleration (2) or jerk (3): raw / steps per SI unit · T^order, in counts of 10 nm with 12 fractional bits.
+    /// A velocity (order 1), acceleration (2) or jerk (3): raw / steps per SI unit · T^order, in
+    /// counts of 10 nm with 12 fractional bits.
     ///
     /// The largest numerator is that of a jerk: 2³¹ · (2·10⁴)³ · 10⁸ · 2¹² is below 2¹¹⁴.
     fn motion(&self, parameter: Parameter, order: u32) -> Result<Velocity, SetError> {
         let time = self.period_us.saturating_pow(order);
         let numerator = [self.steps(parameter), time, COUNTS_PER_M, Q12];
-        let bits = Self::held(parameter, &numerator, &[parameter.unit().per_si, MICROS.saturating_pow(order)])?;
-        Ok(Velocity(I20F12::from_bits(if self.raw(parameter) < 0 { bits.saturating_neg() } else { bits })))
+        let bits = Self::held(
+            parameter,
+            &numerator,
+            &[parameter.unit().per_si, MICROS.saturating_pow(order)],
+        )?;
+        Ok(Velocity(I20F12::from_bits(if self.raw(parameter) < 0 {
+            bits.saturating_neg()
+        } else {
+            bits
+        })))
     }
 
     /// A limit of the reference stage, which counts 2⁻⁸ of 10 nm: what is less there would be none.
     fn limit(&self, parameter: Parameter, order: u32) -> Result<Velocity, SetError> {
         let limit = self.motion(parameter, order)?;
-        if self.steps(parameter) > 0 && limit < SMALLEST_LIMIT { Err(SetError::TooSmall(parameter)) } else { Ok(limit) }
+        if self.steps(parameter) > 0 && limit < SMALLEST_LIMIT {
+            Err(SetError::TooSmall(parameter))
+        } else {
+            Ok(limit)
+        }
     }
 
     /// A way given in counts; its row keeps it below what the type holds.
@@ -134,8 +158,11 @@ impl Reading<'_> {
     }
 
     fn cycles_up(&self, parameter: Parameter) -> Result<u16, SetError> {
-        let cycles = Fraction::new(&[self.steps(parameter)], &[self.period_us]).and_then(Fraction::up);
-        cycles.and_then(|cycles| u16::try_from(cycles).ok()).ok_or(SetError::TooLarge(parameter))
+        let cycles =
+            Fraction::new(&[self.steps(parameter)], &[self.period_us]).and_then(Fraction::up);
+        cycles
+            .and_then(|cycles| u16::try_from(cycles).ok())
+            .ok_or(SetError::TooLarge(parameter))
     }
 
     /// `exp(−T/τ)` with 30 fractional bits.
@@ -180,25 +207,61 @@ impl Reading<'_> {
     fn position_gain(&self) -> Result<i32, SetError> {
         let parameter = Parameter::PositionGain;
         let per_si = parameter.unit().per_si;
-        let bits = Self::held(parameter, &[self.steps(parameter), self.period_us, Q24], &[per_si, MICROS])?;
-        if bits > LARGEST_POSITION_GAIN { Err(SetError::TooLarge(parameter)) } else { Ok(bits) }
+        let bits = Self::held(
+            parameter,
+            &[self.steps(parameter), self.period_us, Q24],
+            &[per_si, MICROS],
+        )?;
+        if bits > LARGEST_POSITION_GAIN {
+            Err(SetError::TooLarge(parameter))
+        } else {
+            Ok(bits)
+        }
     }
 
     /// 2π f I, per count and cycle: over T. Below 2²⁴ · 2³¹ · 2³³ · 2¹² · 10⁶, that is 2¹²⁰.
     fn velocity_gain(&self) -> Result<i32, SetError> {
         let (parameter, inertia) = (Parameter::VelocityBandwidth, Parameter::Inertia);
-        let numerator = [self.steps(parameter), self.steps(inertia), TWO_PI.0, Q12, MICROS];
+        let numerator = [
+            self.steps(parameter),
+            self.steps(inertia),
+            TWO_PI.0,
+            Q12,
+            MICROS,
+        ];
         let (f, i) = (parameter.unit().per_si, inertia.unit().per_si);
-        Self::held(parameter, &numerator, &[f, i, TWO_PI.1, TORQUE_PER_COUNT, self.period_us])
+        Self::held(
+            parameter,
+            &numerator,
+            &[f, i, TWO_PI.1, TORQUE_PER_COUNT, self.period_us],
+        )
     }
 
-    /// Kp · 2π fi · T, per count and cycle: T falls out. At most 10⁷ · 10⁷ · 2³¹ · 4·10¹⁰ · 2¹², that is below 2¹²⁵.
+    /// Kp · 2π fi · T, per count and cycle: T falls out. At most 10⁷ · 10⁷ · 2³¹ · 4·10¹⁰ · 2¹²,
+    /// that is below 2¹²⁵.
     fn integral_gain(&self) -> Result<i32, SetError> {
-        let (corner, bandwidth, inertia) =
-            (Parameter::IntegralCorner, Parameter::VelocityBandwidth, Parameter::Inertia);
-        let numerator = [self.steps(corner), self.steps(bandwidth), self.steps(inertia), TWO_PI_SQUARED.0, Q12];
-        let (c, b, i) = (corner.unit().per_si, bandwidth.unit().per_si, inertia.unit().per_si);
-        Self::held(corner, &numerator, &[c, b, i, TWO_PI_SQUARED.1, TORQUE_PER_COUNT])
+        let (corner, bandwidth, inertia) = (
+            Parameter::IntegralCorner,
+            Parameter::VelocityBandwidth,
+            Parameter::Inertia,
+        );
+        let numerator = [
+            self.steps(corner),
+            self.steps(bandwidth),
+            self.steps(inertia),
+            TWO_PI_SQUARED.0,
+            Q12,
+        ];
+        let (c, b, i) = (
+            corner.unit().per_si,
+            bandwidth.unit().per_si,
+            inertia.unit().per_si,
+        );
+        Self::held(
+            corner,
+            &numerator,
+            &[c, b, i, TWO_PI_SQUARED.1, TORQUE_PER_COUNT],
+        )
     }
 
     /// share · I, per count and cycle²: over T². Below 2³¹ · 2²¹ · 2⁸ · 10¹², that is 2¹⁰⁰.
@@ -206,12 +269,17 @@ impl Reading<'_> {
         let (inertia, share) = (Parameter::Inertia, Parameter::AccelerationShare);
         let numerator = [self.steps(inertia), self.steps(share), Q8, MICROS, MICROS];
         let (i, s) = (inertia.unit().per_si, share.unit().per_si);
-        Self::held(inertia, &numerator, &[i, s, TORQUE_PER_COUNT, self.period_us, self.period_us])
+        Self::held(
+            inertia,
+            &numerator,
+            &[i, s, TORQUE_PER_COUNT, self.period_us, self.period_us],
+        )
     }
 
     fn pulse(&self) -> Result<PulseConfig, SetError> {
         let delay = Parameter::PulseStartDelay;
-        let cycles = Fraction::new(&[self.steps(delay)], &[self.period_us]).and_then(Fraction::nearest);
+        let cycles =
+            Fraction::new(&[self.steps(delay)], &[self.period_us]).and_then(Fraction::nearest);
         Ok(PulseConfig {
             amplitude: self.motion(Parameter::PulseHeight, 1)?,
             decay: self.decay(Parameter::PulseTime),
@@ -223,7 +291,11 @@ impl Reading<'_> {
 
     fn backlash(&self) -> Result<BacklashConfig, SetError> {
         let gap = Parameter::BacklashGap;
-        let half = Self::held(gap, &[self.steps(gap), COUNTS_PER_M, Q8], &[gap.unit().per_si, 2])?;
+        let half = Self::held(
+            gap,
+            &[self.steps(gap), COUNTS_PER_M, Q8],
+            &[gap.unit().per_si, 2],
+        )?;
         Ok(BacklashConfig {
             half_gap: PositionError(I24F8::from_bits(half)),
             velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
@@ -232,8 +304,13 @@ impl Reading<'_> {
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {
-        let places =
-            [Parameter::FilterB0, Parameter::FilterB1, Parameter::FilterB2, Parameter::FilterA1, Parameter::FilterA2];
+        let places = [
+            Parameter::FilterB0,
+            Parameter::FilterB1,
+            Parameter::FilterB2,
+            Parameter::FilterA1,
+            Parameter::FilterA2,
+        ];
         let coefficients = places.map(|place| self.raw(place));
         let filter = FilterConfig::new(coefficients).map_err(|error| match error {
             FilterError::TooLarge { .. } => SetError::FilterHeadroom(Parameter::FilterB0),
@@ -246,25 +323,41 @@ impl Reading<'_> {
         Ok(filter)
     }
 
-    /// Feed over increments, 10 nm with 32 fractional bits. Below 2³¹ · 2¹⁶ · 2²⁷ · 2³², that is 2¹⁰⁶.
+    /// Feed over increments, 10 nm with 32 fractional bits. Below 2³¹ · 2¹⁶ · 2²⁷ · 2³², that is
+    /// 2¹⁰⁶.
     fn way(&self) -> Result<WayPerIncrement, SetError> {
         let (feed, increments) = (Parameter::Feed, Parameter::EncoderIncrements);
-        let numerator = [self.steps(feed), self.steps(Parameter::EncoderRevolutions), COUNTS_PER_M, Q32];
-        let denominator = [self.steps(Parameter::FeedRevolutions), self.steps(increments), feed.unit().per_si];
+        let numerator = [
+            self.steps(feed),
+            self.steps(Parameter::EncoderRevolutions),
+            COUNTS_PER_M,
+            Q32,
+        ];
+        let denominator = [
+            self.steps(Parameter::FeedRevolutions),
+            self.steps(increments),
+            feed.unit().per_si,
+        ];
         let way = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
         let way = way.ok_or(SetError::TooLarge(feed))?;
         if way == 0 {
             return Err(SetError::TooSmall(feed));
         }
         let whole = u16::try_from(way.wrapping_shr(32)).map_err(|_| SetError::TooLarge(feed))?;
-        Ok(WayPerIncrement { whole, fraction: u32::try_from(way & u64::from(u32::MAX)).unwrap_or(u32::MAX) })
+        Ok(WayPerIncrement {
+            whole,
+            fraction: u32::try_from(way & u64::from(u32::MAX)).unwrap_or(u32::MAX),
+        })
     }
 }
 
 // The reference stage.
 impl Reading<'_> {
     fn reference(&self) -> Result<ReferenceConfig, SetError> {
-        let (low, high) = (self.raw(Parameter::PositionMin), self.raw(Parameter::PositionMax));
+        let (low, high) = (
+            self.raw(Parameter::PositionMin),
+            self.raw(Parameter::PositionMax),
+        );
         if low >= high {
             return Err(SetError::PositionLimitsCrossed(Parameter::PositionMin));
         }
@@ -272,8 +365,16 @@ impl Reading<'_> {
             velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
             step: self.limit(Parameter::StepJerk, 3)?,
-            position_min: if low == i32::MIN { Position(I56F8::MIN) } else { Position::from_counts(i64::from(low)) },
-            position_max: if high == i32::MAX { Position(I56F8::MAX) } else { Position::from_counts(i64::from(high)) },
+            position_min: if low == i32::MIN {
+                Position(I56F8::MIN)
+            } else {
+                Position::from_counts(i64::from(low))
+            },
+            position_max: if high == i32::MAX {
+                Position(I56F8::MAX)
+            } else {
+                Position::from_counts(i64::from(high))
+            },
             quick_stop: self.ramp(Parameter::QuickStopDeceleration)?,
             slow_down: self.ramp(Parameter::SlowDownDeceleration)?,
             filter_log2: self.small(Parameter::SetpointFilter),
@@ -282,7 +383,10 @@ impl Reading<'_> {
     }
 
     fn ramp(&self, deceleration: Parameter) -> Result<Ramp, SetError> {
-        Ok(Ramp { deceleration: self.limit(deceleration, 2)?, jerk: self.limit(Parameter::RampJerk, 3)? })
+        Ok(Ramp {
+            deceleration: self.limit(deceleration, 2)?,
+            jerk: self.limit(Parameter::RampJerk, 3)?,
+        })
     }
 
     /// Object 60C2h, value · 10^exponent s, in cycles.
@@ -291,17 +395,25 @@ impl Reading<'_> {
         if self.raw(parameter) == 0 {
             return Ok(1);
         }
-        let to_micros = self.raw(Parameter::SetpointPeriodExponent).saturating_add(6).unsigned_abs();
-        let period_us = self.steps(parameter).saturating_mul(10_u64.saturating_pow(to_micros));
+        let to_micros = self
+            .raw(Parameter::SetpointPeriodExponent)
+            .saturating_add(6)
+            .unsigned_abs();
+        let period_us = self
+            .steps(parameter)
+            .saturating_mul(10_u64.saturating_pow(to_micros));
         let cycles = Fraction::new(&[period_us], &[self.period_us]).and_then(Fraction::exact);
-        let cycles = cycles.filter(|cycles| (1..=20).contains(cycles)).and_then(|cycles| u8::try_from(cycles).ok());
+        let cycles = cycles
+            .filter(|cycles| (1..=20).contains(cycles))
+            .and_then(|cycles| u8::try_from(cycles).ok());
         cycles.ok_or(SetError::SetpointPeriod(parameter))
     }
 }
 
 // Everything around the loop.
 impl Reading<'_> {
-    /// An axis that may have torque has limits, its ramps keep them, and nothing is beyond the torque limit.
+    /// An axis that may have torque has limits, its ramps keep them, and nothing is beyond the
+    /// torque limit.
     fn check_limits(&self) -> Result<(), SetError> {
         let limit = self.steps(Parameter::TorqueLimit);
         let moves = limit > 0 || self.steps(Parameter::BacklashGap) > 0;
@@ -310,7 +422,10 @@ impl Reading<'_> {
                 return Err(SetError::WithoutLimit(parameter));
             }
         }
-        for parameter in [Parameter::QuickStopDeceleration, Parameter::SlowDownDeceleration] {
+        for parameter in [
+            Parameter::QuickStopDeceleration,
+            Parameter::SlowDownDeceleration,
+        ] {
             if moves && self.steps(parameter) > self.steps(Parameter::AccelerationLimit) {
                 return Err(SetError::BeyondAcceleration(parameter));
             }
@@ -324,7 +439,9 @@ impl Reading<'_> {
     }
 
     fn limits(&self) -> Result<Limits, SetError> {
-        let beat_us = self.period_us.saturating_mul(u64::from(HEARTBEAT_EVERY_CYCLES));
+        let beat_us = self
+            .period_us
+            .saturating_mul(u64::from(HEARTBEAT_EVERY_CYCLES));
         Ok(Limits {
             setpoint_misses: self.count(Parameter::SetpointMissesAllowed),
             feedback_misses: self.count(Parameter::FeedbackMissesAllowed),
@@ -332,17 +449,36 @@ impl Reading<'_> {
             following_error: self.window(Parameter::FollowingErrorWindow),
             encoder_jump: self.window(Parameter::EncoderJumpLimit),
             enable_window: self.window(Parameter::EnableWindow),
-            heartbeat_us: self.timeout(Parameter::HeartbeatTimeout, 1000, beat_us, HEARTBEAT_TIMEOUT_PERIODS)?,
-            sync_timeout_us: self.timeout(Parameter::SyncTimeout, 1, self.period_us, SYNC_TIMEOUT_PERIODS)?,
+            heartbeat_us: self.timeout(
+                Parameter::HeartbeatTimeout,
+                1000,
+                beat_us,
+                HEARTBEAT_TIMEOUT_PERIODS,
+            )?,
+            sync_timeout_us: self.timeout(
+                Parameter::SyncTimeout,
+                1,
+                self.period_us,
+                SYNC_TIMEOUT_PERIODS,
+            )?,
             stage_cycles: self.count(Parameter::StageCycles),
         })
     }
 
-    /// A timeout in µs: at least twice what it watches; where the set leaves it open, so many periods.
-    fn timeout(&self, parameter: Parameter, step_us: u64, watched_us: u64, periods: u64) -> Result<u64, SetError> {
+    /// A timeout in µs: at least twice what it watches; where the set leaves it open, so many
+    /// periods.
+    fn timeout(
+        &self,
+        parameter: Parameter,
+        step_us: u64,
+        watched_us: u64,
+        periods: u64,
+    ) -> Result<u64, SetError> {
         match self.steps(parameter).saturating_mul(step_us) {
             0 => Ok(self.period_us.saturating_mul(periods)),
-            short if short < watched_us.saturating_mul(2) => Err(SetError::TimeoutTooShort(parameter)),
+            short if short < watched_us.saturating_mul(2) => {
+                Err(SetError::TimeoutTooShort(parameter))
+            }
             timeout => Ok(timeout),
         }
     }
@@ -384,11 +520,17 @@ impl Reading<'_> {
     }
 
     fn preset(&self) -> Preset {
-        Preset { torque: self.torque(Parameter::PresetTorque), from_last: self.raw(Parameter::PresetFromLast) != 0 }
+        Preset {
+            torque: self.torque(Parameter::PresetTorque),
+            from_last: self.raw(Parameter::PresetFromLast) != 0,
+        }
     }
 
     fn relation(&self) -> Relation {
-        Relation { offset: self.raw(Parameter::RelationOffset), window: self.window(Parameter::RelationWindow) }
+        Relation {
+            offset: self.raw(Parameter::RelationOffset),
+            window: self.window(Parameter::RelationWindow),
+        }
     }
 }
 
@@ -403,22 +545,32 @@ mod tests {
     fn with(changes: &[(Parameter, i32)]) -> ParameterSet {
         let mut set = ParameterSet::default();
         for (parameter, value) in changes {
-            let entry = TABLE.iter().find(|entry| entry.parameter == *parameter).unwrap();
+            let entry = TABLE
+                .iter()
+                .find(|entry| entry.parameter == *parameter)
+                .unwrap();
             assert_eq!(entry.check(*value), Ok(()), "{}", entry.name);
             set.set(*parameter, *value);
         }
         set
     }
 
-    /// An axis: moved mass, lead, periods; with a position gain that needs no more than one over ten cycles.
+    /// An axis: moved mass, lead, periods; with a position gain that needs no more than one over
+    /// ten cycles.
     fn axis(mass_kg: f64, lead_m: f64, period_us: i32, bandwidth_hz: f64) -> ParameterSet {
         let inertia = mass_kg * lead_m / TAU * 1.0e7;
         with(&[
             (Parameter::CyclePeriod, period_us),
             (Parameter::PositionGain, 1_000_000_000 / period_us.max(1000)),
             (Parameter::Inertia, inertia.round() as i32),
-            (Parameter::VelocityBandwidth, (bandwidth_hz * 1.0e4).round() as i32),
-            (Parameter::IntegralCorner, (bandwidth_hz / 4.0 * 1.0e4).round() as i32),
+            (
+                Parameter::VelocityBandwidth,
+                (bandwidth_hz * 1.0e4).round() as i32,
+            ),
+            (
+                Parameter::IntegralCorner,
+                (bandwidth_hz / 4.0 * 1.0e4).round() as i32,
+            ),
             (Parameter::VelocityFilterTime, 1_091_356),
             (Parameter::TorqueLimit, 3_000_000),
             (Parameter::Feed, (lead_m * 1.0e9).round() as i32),
@@ -430,17 +582,38 @@ mod tests {
 
     /// Machine numbers in units of their last bit, as real numbers.
     fn exact(set: &ParameterSet) -> Vec<(Parameter, f64)> {
-        let si = |parameter: Parameter| f64::from(set.get(parameter)) / parameter.unit().per_si as f64;
+        let si =
+            |parameter: Parameter| f64::from(set.get(parameter)) / parameter.unit().per_si as f64;
         let t = si(Parameter::CyclePeriod);
         let motion = |parameter, order| (parameter, si(parameter) * t.powi(order) * 1.0e8 * 4096.0);
-        let (f, fi, i) = (si(Parameter::VelocityBandwidth), si(Parameter::IntegralCorner), si(Parameter::Inertia));
-        let way = si(Parameter::Feed) / si(Parameter::FeedRevolutions) * si(Parameter::EncoderRevolutions);
+        let (f, fi, i) = (
+            si(Parameter::VelocityBandwidth),
+            si(Parameter::IntegralCorner),
+            si(Parameter::Inertia),
+        );
+        let way = si(Parameter::Feed) / si(Parameter::FeedRevolutions)
+            * si(Parameter::EncoderRevolutions);
         vec![
-            (Parameter::PositionGain, si(Parameter::PositionGain) * t * 2.0_f64.powi(24)),
-            (Parameter::VelocityBandwidth, TAU * f * i * 0.01 / t * 4096.0),
-            (Parameter::IntegralCorner, TAU * f * i * 0.01 * TAU * fi * 4096.0),
-            (Parameter::Inertia, i * si(Parameter::AccelerationShare) * 0.01 / t / t * 256.0),
-            (Parameter::BacklashGap, si(Parameter::BacklashGap) / 2.0 * 1.0e8 * 256.0),
+            (
+                Parameter::PositionGain,
+                si(Parameter::PositionGain) * t * 2.0_f64.powi(24),
+            ),
+            (
+                Parameter::VelocityBandwidth,
+                TAU * f * i * 0.01 / t * 4096.0,
+            ),
+            (
+                Parameter::IntegralCorner,
+                TAU * f * i * 0.01 * TAU * fi * 4096.0,
+            ),
+            (
+                Parameter::Inertia,
+                i * si(Parameter::AccelerationShare) * 0.01 / t / t * 256.0,
+            ),
+            (
+                Parameter::BacklashGap,
+                si(Parameter::BacklashGap) / 2.0 * 1.0e8 * 256.0,
+            ),
             motion(Parameter::PulseHeight, 1),
             motion(Parameter::VelocityLimit, 1),
             motion(Parameter::AccelerationLimit, 2),
@@ -448,8 +621,14 @@ mod tests {
             motion(Parameter::SlowDownDeceleration, 2),
             motion(Parameter::RampJerk, 3),
             motion(Parameter::StepJerk, 3),
-            (Parameter::Feed, way / si(Parameter::EncoderIncrements) * 1.0e8 * 2.0_f64.powi(32)),
-            (Parameter::PulseStartDelay, si(Parameter::PulseStartDelay) / t),
+            (
+                Parameter::Feed,
+                way / si(Parameter::EncoderIncrements) * 1.0e8 * 2.0_f64.powi(32),
+            ),
+            (
+                Parameter::PulseStartDelay,
+                si(Parameter::PulseStartDelay) / t,
+            ),
         ]
     }
 
@@ -482,7 +661,10 @@ mod tests {
         let share: f64 = settings.config.cascade.velocity_filter.to_num();
         [
             (1.0 - share, of(Parameter::VelocityFilterTime)),
-            (settings.config.pulse.decay.to_num(), of(Parameter::PulseTime)),
+            (
+                settings.config.pulse.decay.to_num(),
+                of(Parameter::PulseTime),
+            ),
         ]
     }
 
@@ -495,11 +677,25 @@ mod tests {
         match set.settings() {
             Ok(settings) => {
                 for ((parameter, exact), held) in exact(set).into_iter().zip(held(&settings)) {
-                    prop_assert!(is_close(held, exact), "{:?}: {} for {}", parameter, held, exact);
-                    prop_assert_eq!(held == 0, exact == 0.0 || parameter == Parameter::PulseStartDelay && held == 0);
+                    prop_assert!(
+                        is_close(held, exact),
+                        "{:?}: {} for {}",
+                        parameter,
+                        held,
+                        exact
+                    );
+                    prop_assert_eq!(
+                        held == 0,
+                        exact == 0.0 || parameter == Parameter::PulseStartDelay && held == 0
+                    );
                 }
                 for (held, exact) in exponentials(set, &settings) {
-                    prop_assert!((held - exact).abs() <= 2.0_f64.powi(-30), "{} for {}", held, exact);
+                    prop_assert!(
+                        (held - exact).abs() <= 2.0_f64.powi(-30),
+                        "{} for {}",
+                        held,
+                        exact
+                    );
                 }
             }
             Err(SetError::TooLarge(parameter)) => {
@@ -509,11 +705,15 @@ mod tests {
                     Parameter::BrakeOpening | Parameter::BrakeClosing => return Ok(()),
                     _ => 2.0_f64.powi(31),
                 };
-                let guilty = exact(set).into_iter().any(|(of, exact)| of == parameter && exact.abs() >= largest - 0.6);
+                let guilty = exact(set)
+                    .into_iter()
+                    .any(|(of, exact)| of == parameter && exact.abs() >= largest - 0.6);
                 prop_assert!(guilty, "{:?} is not too large", parameter);
             }
             Err(SetError::TooSmall(parameter)) => {
-                let guilty = exact(set).into_iter().any(|(of, exact)| of == parameter && exact.abs() <= 15.51);
+                let guilty = exact(set)
+                    .into_iter()
+                    .any(|(of, exact)| of == parameter && exact.abs() <= 15.51);
                 prop_assert!(guilty, "{:?} is not too small", parameter);
             }
             Err(_) => {}
@@ -523,7 +723,10 @@ mod tests {
 
     /// Values of a row, small and large ones equally likely.
     fn value(parameter: Parameter) -> impl Strategy<Value = i32> {
-        let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
+        let entry = TABLE
+            .iter()
+            .find(|entry| entry.parameter == parameter)
+            .unwrap();
         let (min, max) = (entry.min, entry.max);
         (any::<i32>(), 0..31_u32).prop_map(move |(value, shift)| (value >> shift).clamp(min, max))
     }
@@ -600,14 +803,28 @@ mod tests {
     #[test]
     fn the_defaults_move_nothing_at_any_period() {
         for period_us in [100, 125, 450, 333, 1000, 2000, 20_000] {
-            let settings = with(&[(Parameter::CyclePeriod, period_us)]).settings().unwrap();
+            let settings = with(&[(Parameter::CyclePeriod, period_us)])
+                .settings()
+                .unwrap();
             let cascade = settings.config.cascade;
-            assert_eq!((cascade.torque_limit, cascade.position_gain), (Torque::ZERO, PositionGain::default()));
-            assert_eq!(settings.limits.sync_timeout_us, 5 * u64::from(settings.period_us));
-            assert_eq!(settings.limits.heartbeat_us, 450 * u64::from(settings.period_us));
+            assert_eq!(
+                (cascade.torque_limit, cascade.position_gain),
+                (Torque::ZERO, PositionGain::default())
+            );
+            assert_eq!(
+                settings.limits.sync_timeout_us,
+                5 * u64::from(settings.period_us)
+            );
+            assert_eq!(
+                settings.limits.heartbeat_us,
+                450 * u64::from(settings.period_us)
+            );
             assert_eq!(settings.config.reference.setpoint_cycles, 1);
             assert_eq!(
-                (settings.config.reference.position_min.0, settings.config.reference.position_max.0),
+                (
+                    settings.config.reference.position_min.0,
+                    settings.config.reference.position_max.0
+                ),
                 (I56F8::MIN, I56F8::MAX)
             );
         }
@@ -615,10 +832,16 @@ mod tests {
 
     #[test]
     fn a_lead_of_ten_millimetres_is_exact() {
-        let set = with(&[(Parameter::Feed, 10_000_000), (Parameter::EncoderIncrements, 1 << 20)]);
+        let set = with(&[
+            (Parameter::Feed, 10_000_000),
+            (Parameter::EncoderIncrements, 1 << 20),
+        ]);
         let way = set.settings().unwrap().way;
         let counts: i64 = way.times(1 << 20).0.to_num();
-        assert_eq!((counts, way.times(1 << 20).0.frac()), (1_000_000, I56F8::ZERO));
+        assert_eq!(
+            (counts, way.times(1 << 20).0.frac()),
+            (1_000_000, I56F8::ZERO)
+        );
     }
 
     #[test]
@@ -629,53 +852,117 @@ mod tests {
                 (Parameter::SetpointPeriod, value),
                 (Parameter::SetpointPeriodExponent, exponent),
             ]);
-            set.settings().map(|settings| settings.config.reference.setpoint_cycles)
+            set.settings()
+                .map(|settings| settings.config.reference.setpoint_cycles)
         };
         let refused = Err(SetError::SetpointPeriod(Parameter::SetpointPeriod));
         assert_eq!(
-            (of(1000, 1, -3), of(250, 5, -3), of(250, 250, -6), of(20_000, 4, -1)),
+            (
+                of(1000, 1, -3),
+                of(250, 5, -3),
+                of(250, 250, -6),
+                of(20_000, 4, -1)
+            ),
             (Ok(1), Ok(20), Ok(1), Ok(20))
         );
         assert_eq!(
-            (of(2000, 1, -3), of(2000, 5, -3), of(1000, 21, -3), of(1000, 255, 0)),
+            (
+                of(2000, 1, -3),
+                of(2000, 5, -3),
+                of(1000, 21, -3),
+                of(1000, 255, 0)
+            ),
             (refused, refused, refused, refused)
         );
     }
 
     #[test]
     fn a_brake_is_given_at_least_its_time() {
-        let set = with(&[(Parameter::BrakeOpening, 30_001), (Parameter::BrakeClosing, 40_000)]);
-        assert_eq!(set.settings().unwrap().brake, Brake { open_cycles: 31, close_cycles: 40 });
+        let set = with(&[
+            (Parameter::BrakeOpening, 30_001),
+            (Parameter::BrakeClosing, 40_000),
+        ]);
+        assert_eq!(
+            set.settings().unwrap().brake,
+            Brake {
+                open_cycles: 31,
+                close_cycles: 40
+            }
+        );
     }
 
     #[test]
     fn values_that_do_not_go_together_are_refused_with_their_parameter() {
-        let limits = [(Parameter::VelocityLimit, 500_000), (Parameter::AccelerationLimit, 5_000_000)];
+        let limits = [
+            (Parameter::VelocityLimit, 500_000),
+            (Parameter::AccelerationLimit, 5_000_000),
+        ];
         let rows: [(&[(Parameter, i32)], SetError); 14] = [
-            (&[(Parameter::VelocityBandwidth, 300_000)], SetError::WithoutInertia(Parameter::Inertia)),
-            (&[(Parameter::TorqueLimit, 1), limits[1]], SetError::WithoutLimit(Parameter::VelocityLimit)),
-            (&[(Parameter::BacklashGap, 1000), limits[0]], SetError::WithoutLimit(Parameter::AccelerationLimit)),
             (
-                &[(Parameter::TorqueLimit, 1), limits[0], limits[1], (Parameter::SlowDownDeceleration, 5_000_001)],
+                &[(Parameter::VelocityBandwidth, 300_000)],
+                SetError::WithoutInertia(Parameter::Inertia),
+            ),
+            (
+                &[(Parameter::TorqueLimit, 1), limits[1]],
+                SetError::WithoutLimit(Parameter::VelocityLimit),
+            ),
+            (
+                &[(Parameter::BacklashGap, 1000), limits[0]],
+                SetError::WithoutLimit(Parameter::AccelerationLimit),
+            ),
+            (
+                &[
+                    (Parameter::TorqueLimit, 1),
+                    limits[0],
+                    limits[1],
+                    (Parameter::SlowDownDeceleration, 5_000_001),
+                ],
                 SetError::BeyondAcceleration(Parameter::SlowDownDeceleration),
             ),
             // 37 m/s³ at 10 kHz are less than the reference stage can count.
-            (&[(Parameter::CyclePeriod, 100), (Parameter::RampJerk, 37_000)], SetError::TooSmall(Parameter::RampJerk)),
-            (&[(Parameter::PresetTorque, -1)], SetError::BeyondTorqueLimit(Parameter::PresetTorque)),
-            (&[(Parameter::CoulombTorque, 1)], SetError::BeyondTorqueLimit(Parameter::CoulombTorque)),
-            (&[(Parameter::PositionMin, i32::MAX)], SetError::PositionLimitsCrossed(Parameter::PositionMin)),
             (
-                &[(Parameter::FilterB0, i32::MAX), (Parameter::FilterB1, i32::MAX)],
+                &[(Parameter::CyclePeriod, 100), (Parameter::RampJerk, 37_000)],
+                SetError::TooSmall(Parameter::RampJerk),
+            ),
+            (
+                &[(Parameter::PresetTorque, -1)],
+                SetError::BeyondTorqueLimit(Parameter::PresetTorque),
+            ),
+            (
+                &[(Parameter::CoulombTorque, 1)],
+                SetError::BeyondTorqueLimit(Parameter::CoulombTorque),
+            ),
+            (
+                &[(Parameter::PositionMin, i32::MAX)],
+                SetError::PositionLimitsCrossed(Parameter::PositionMin),
+            ),
+            (
+                &[
+                    (Parameter::FilterB0, i32::MAX),
+                    (Parameter::FilterB1, i32::MAX),
+                ],
                 SetError::FilterHeadroom(Parameter::FilterB0),
             ),
             (
-                &[(Parameter::FilterB0, 1 << 28), (Parameter::FilterPeriod, 999)],
+                &[
+                    (Parameter::FilterB0, 1 << 28),
+                    (Parameter::FilterPeriod, 999),
+                ],
                 SetError::FilterPeriod(Parameter::FilterPeriod),
             ),
             // A pole at 1.2: y = 1.2 y1.
-            (&[(Parameter::FilterA1, 644_245_094)], SetError::FilterUnstable(Parameter::FilterA1)),
-            (&[(Parameter::SyncTimeout, 1999)], SetError::TimeoutTooShort(Parameter::SyncTimeout)),
-            (&[(Parameter::HeartbeatTimeout, 199)], SetError::TimeoutTooShort(Parameter::HeartbeatTimeout)),
+            (
+                &[(Parameter::FilterA1, 644_245_094)],
+                SetError::FilterUnstable(Parameter::FilterA1),
+            ),
+            (
+                &[(Parameter::SyncTimeout, 1999)],
+                SetError::TimeoutTooShort(Parameter::SyncTimeout),
+            ),
+            (
+                &[(Parameter::HeartbeatTimeout, 199)],
+                SetError::TimeoutTooShort(Parameter::HeartbeatTimeout),
+            ),
             (
                 &[
                     (Parameter::BrakeOpening, 2_000_000),

@@ -1,4 +1,5 @@
-//! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the deadline, the node's own timer.
+//! What makes a cycle begin and close: SYNC, a frame that shows that the next cycle is on, the
+//! deadline, the node's own timer.
 
 use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::NmtState;
@@ -9,11 +10,13 @@ use crate::axis::{Circumstances, Notices};
 use crate::inbox::Contents;
 use crate::stage::StageOutput;
 
-/// SYNC timeout where the parameter set leaves it open (2131h = 0), in periods: two more than the setpoints and feedbacks that may be missing in a row.
+/// SYNC timeout where the parameter set leaves it open (2131h = 0), in periods: two more than the
+/// setpoints and feedbacks that may be missing in a row.
 const SYNC_TIMEOUT_PERIODS: u16 = 5;
 
 impl Servo {
-    /// Lets time pass: does what is due, at most one cycle's worth. Call again while [`Self::wake_at_us`] is not later.
+    /// Lets time pass: does what is due, at most one cycle's worth. Call again while
+    /// [`Self::wake_at_us`] is not later.
     #[must_use = "the frames have to go on the bus"]
     pub fn on_time(&mut self, now_us: u64) -> &[CanFrame] {
         self.outbox.clear();
@@ -24,27 +27,48 @@ impl Servo {
     /// When something is due next, unless a frame comes before.
     #[must_use]
     pub fn wake_at_us(&self) -> Option<u64> {
-        let heartbeat = self.timing.sync_due_us().is_none().then(|| self.periodic.heartbeat_due_us()).flatten();
-        let cycle = if self.inbox.is_open() { self.timing.deadline_us() } else { self.next_begin_us() };
+        let heartbeat = self
+            .timing
+            .sync_due_us()
+            .is_none()
+            .then(|| self.periodic.heartbeat_due_us())
+            .flatten();
+        let cycle = if self.inbox.is_open() {
+            self.timing.deadline_us()
+        } else {
+            self.next_begin_us()
+        };
         match (cycle, heartbeat) {
             (Some(cycle), Some(heartbeat)) => Some(cycle.min(heartbeat)),
             (cycle, heartbeat) => cycle.or(heartbeat),
         }
     }
 
-    /// When the node begins a cycle without SYNC; without torque it rather waits until SYNC counts as gone.
+    /// When the node begins a cycle without SYNC; without torque it rather waits until SYNC counts
+    /// as gone.
     fn next_begin_us(&self) -> Option<u64> {
         let own = self.timing.own_timer_us()?;
-        if self.axis.drive.is_energised() { Some(own) } else { own.checked_add(self.sync_timeout_us()) }
+        if self.axis.drive.is_energised() {
+            Some(own)
+        } else {
+            own.checked_add(self.sync_timeout_us())
+        }
     }
 
     fn sync_timeout_us(&self) -> u64 {
-        let set = self.active.as_ref().map_or(0, |settings| settings.limits.sync_timeout_us);
-        if set == 0 { self.timing.periods_us(SYNC_TIMEOUT_PERIODS) } else { set }
+        let set = self
+            .active
+            .as_ref()
+            .map_or(0, |settings| settings.limits.sync_timeout_us);
+        if set == 0 {
+            self.timing.periods_us(SYNC_TIMEOUT_PERIODS)
+        } else {
+            set
+        }
     }
 
-    /// Catches up with what was due strictly before a frame arrives; bounded, because a node that was held up for long has a fault to latch and not a
-    /// past to live through.
+    /// Catches up with what was due strictly before a frame arrives; bounded, because a node that
+    /// was held up for long has a fault to latch and not a past to live through.
     pub(crate) fn catch_up(&mut self, now_us: u64) {
         for _ in 0..CATCH_UP_EVENTS {
             match self.wake_at_us() {
@@ -75,12 +99,17 @@ impl Servo {
         self.begin_without_sync(now_us);
     }
 
-    /// The next cycle begins by the own timer, or because a frame shows that it is on although its SYNC did not come.
+    /// The next cycle begins by the own timer, or because a frame shows that it is on although its
+    /// SYNC did not come.
     pub(crate) fn begin_without_sync(&mut self, now_us: u64) {
-        let Some(counter) = self.sync.begin_without_sync() else { return };
+        let Some(counter) = self.sync.begin_without_sync() else {
+            return;
+        };
         self.timing.begin_without_sync(now_us);
         self.open(counter, false);
-        if self.axis.drive.is_energised() && self.timing.sync_is_gone(now_us, self.sync_timeout_us()) {
+        if self.axis.drive.is_energised()
+            && self.timing.sync_is_gone(now_us, self.sync_timeout_us())
+        {
             self.latch(Fault::SyncMissing);
         }
     }
@@ -106,7 +135,10 @@ impl Servo {
         if self.inbox.is_open() {
             self.close(true);
         }
-        let cycles = self.inbox.counter().map_or(1, |before| counter.cycles_since(before));
+        let cycles = self
+            .inbox
+            .counter()
+            .map_or(1, |before| counter.cycles_since(before));
         if cycles <= SYNC_OVERFLOW / 2 {
             (1..cycles).for_each(|_| self.skip());
         }
@@ -124,7 +156,10 @@ impl Servo {
     }
 
     pub(crate) fn close_if_complete(&mut self) {
-        let wants_setpoint = self.active.as_ref().is_none_or(|settings| self.axis.expects_setpoint(settings));
+        let wants_setpoint = self
+            .active
+            .as_ref()
+            .is_none_or(|settings| self.axis.expects_setpoint(settings));
         if self.inbox.is_complete(wants_setpoint) {
             self.close(false);
         }
@@ -156,20 +191,29 @@ impl Servo {
             in_sync: self.in_sync,
         };
         let mut notices = Notices::new();
-        let Some(settings) = self.active.as_ref() else { return StageOutput::default() };
+        let Some(settings) = self.active.as_ref() else {
+            return StageOutput::default();
+        };
         let contents = instead.unwrap_or_else(|| self.inbox.contents());
-        let stage = self.axis.cycle(settings, contents, circumstances, &mut notices);
+        let stage = self
+            .axis
+            .cycle(settings, contents, circumstances, &mut notices);
         self.send_notices(&notices);
         stage
     }
 
-    /// The SYNC period that the master declares and the one that is measured are that of the active set.
+    /// The SYNC period that the master declares and the one that is measured are that of the active
+    /// set.
     fn period_fits(&self) -> bool {
         let declared = self.server.declared_period_us();
-        let set = self.active.as_ref().map_or(0, |settings| settings.period_us);
+        let set = self
+            .active
+            .as_ref()
+            .map_or(0, |settings| settings.period_us);
         declared.is_none_or(|declared| declared == set) && !self.timing.period_is_off()
     }
 }
 
-/// Events of the past that a frame waits for: a deadline and an own timer for each of the cycles until SYNC counts as gone.
+/// Events of the past that a frame waits for: a deadline and an own timer for each of the cycles
+/// until SYNC counts as gone.
 const CATCH_UP_EVENTS: u16 = 2 * SYNC_TIMEOUT_PERIODS;

@@ -1,15 +1,18 @@
 //! The power drive state machine of CiA 402-2 (IEC 61800-7-201 §6), as an enum with data.
 //!
-//! Torque comes and goes in steps that the standard leaves to the drive, and each of them is a state here:
+//! Torque comes and goes in steps that the standard leaves to the drive, and each of them is a
+//! state here:
 //!
 //! ```text
 //! SwitchedOn ─▶ Enabling: stage confirms ─▶ brake opens ─▶ OperationEnabled
-//!                                                              │ disable, shutdown, quick stop, halt, fault with trusted feedback
+//!                                                              │ disable, shutdown, quick stop,
+//!                                                              │ halt, fault with trusted feedback
 //!               rest ◀─ Holding: torque until the brake bites ◀─ Stopping: ramp
 //! ```
 //!
-//! A fault says what was seen; it is latched, and only the edge of a fault reset clears it. Faults with a trustworthy measurement lead to
-//! a ramp and then to the brake, all others to torque zero and brake at once.
+//! A fault says what was seen; it is latched, and only the edge of a fault reset clears it. Faults
+//! with a trustworthy measurement lead to a ramp and then to the brake, all others to torque zero
+//! and brake at once.
 
 use protocol::Fault;
 use protocol::states::{BrakeState, Command, ControlWord, DriveState};
@@ -27,7 +30,8 @@ pub enum Drive {
     ReadyToSwitchOn,
     /// No torque; the stage is told to be ready.
     SwitchedOn,
-    /// The stage is told to enable, then the brake to open; the loop holds the axis where it stands.
+    /// The stage is told to enable, then the brake to open; the loop holds the axis where it
+    /// stands.
     Enabling(Enabling),
     /// The loop follows the setpoint.
     OperationEnabled,
@@ -118,7 +122,8 @@ pub enum Reaction {
     AbortConnection,
 }
 
-/// The reaction to each fault: a controlled stop needs feedback that can be trusted and a stage that delivers.
+/// The reaction to each fault: a controlled stop needs feedback that can be trusted and a stage
+/// that delivers.
 #[must_use]
 pub const fn reaction(fault: Fault) -> Reaction {
     match fault {
@@ -173,8 +178,17 @@ impl Drive {
     pub const fn fault(&self) -> Option<Fault> {
         match self {
             Self::Faulted(fault)
-            | Self::Stopping(Stop { then: Rest::Faulted(fault), .. })
-            | Self::Holding(Stop { then: Rest::Faulted(fault), .. }, _) => Some(*fault),
+            | Self::Stopping(Stop {
+                then: Rest::Faulted(fault),
+                ..
+            })
+            | Self::Holding(
+                Stop {
+                    then: Rest::Faulted(fault),
+                    ..
+                },
+                _,
+            ) => Some(*fault),
             Self::SwitchOnDisabled
             | Self::ReadyToSwitchOn
             | Self::SwitchedOn
@@ -190,10 +204,15 @@ impl Drive {
     #[must_use]
     pub const fn is_energised(&self) -> bool {
         match self {
-            Self::Enabling(_) | Self::OperationEnabled | Self::Stopping(_) | Self::Holding(..) | Self::QuickStopped => {
-                true
-            }
-            Self::SwitchOnDisabled | Self::ReadyToSwitchOn | Self::SwitchedOn | Self::Faulted(_) => false,
+            Self::Enabling(_)
+            | Self::OperationEnabled
+            | Self::Stopping(_)
+            | Self::Holding(..)
+            | Self::QuickStopped => true,
+            Self::SwitchOnDisabled
+            | Self::ReadyToSwitchOn
+            | Self::SwitchedOn
+            | Self::Faulted(_) => false,
         }
     }
 
@@ -214,14 +233,28 @@ impl Drive {
 
     /// Follows a control word; `reset_edge` is true where its fault-reset bit has just risen.
     #[must_use]
-    pub const fn commanded(self, command: Option<Command>, reset_edge: bool, options: &Options) -> Self {
+    pub const fn commanded(
+        self,
+        command: Option<Command>,
+        reset_edge: bool,
+        options: &Options,
+    ) -> Self {
         let Some(command) = command else { return self };
         match (self, command) {
             (Self::Faulted(_), Command::FaultReset) if reset_edge => Self::SwitchOnDisabled,
             (Self::Faulted(_), _) => self,
             (
-                Self::Stopping(Stop { then: Rest::Faulted(_), .. })
-                | Self::Holding(Stop { then: Rest::Faulted(_), .. }, _),
+                Self::Stopping(Stop {
+                    then: Rest::Faulted(_),
+                    ..
+                })
+                | Self::Holding(
+                    Stop {
+                        then: Rest::Faulted(_),
+                        ..
+                    },
+                    _,
+                ),
                 _,
             ) => self,
             (_, Command::DisableVoltage) => Self::SwitchOnDisabled,
@@ -230,9 +263,14 @@ impl Drive {
             (Self::ReadyToSwitchOn, Command::SwitchOn) => Self::SwitchedOn,
             // Transitions 3 and 4 in one, as the standard allows.
             (Self::ReadyToSwitchOn | Self::SwitchedOn, Command::EnableOperation) => {
-                Self::Enabling(Enabling { confirmed: false, waited: 0 })
+                Self::Enabling(Enabling {
+                    confirmed: false,
+                    waited: 0,
+                })
             }
-            (Self::ReadyToSwitchOn | Self::SwitchedOn, Command::QuickStop) => Self::SwitchOnDisabled,
+            (Self::ReadyToSwitchOn | Self::SwitchedOn, Command::QuickStop) => {
+                Self::SwitchOnDisabled
+            }
             (Self::Enabling(_) | Self::OperationEnabled, Command::Shutdown) => {
                 Self::stopped_by(options.shutdown, Rest::ReadyToSwitchOn)
             }
@@ -242,9 +280,13 @@ impl Drive {
             (Self::Enabling(_) | Self::OperationEnabled, Command::QuickStop) => {
                 Self::stopped_by(options.quick_stop, Rest::SwitchOnDisabled)
             }
-            (Self::Stopping(Stop { then: Rest::ReadyToSwitchOn | Rest::SwitchedOn, .. }), Command::QuickStop) => {
-                Self::stopped_by(options.quick_stop, Rest::SwitchOnDisabled)
-            }
+            (
+                Self::Stopping(Stop {
+                    then: Rest::ReadyToSwitchOn | Rest::SwitchedOn,
+                    ..
+                }),
+                Command::QuickStop,
+            ) => Self::stopped_by(options.quick_stop, Rest::SwitchOnDisabled),
             (Self::QuickStopped, Command::EnableOperation) => Self::OperationEnabled,
             (
                 Self::SwitchOnDisabled
@@ -263,12 +305,22 @@ impl Drive {
     const fn stopped_by(option: StopOption, then: Rest) -> Self {
         match option {
             StopOption::DisableAtOnce => then.drive(),
-            StopOption::SlowDown => Self::Stopping(Stop { ramp: RampKind::SlowDown, then }),
-            StopOption::QuickStop => Self::Stopping(Stop { ramp: RampKind::QuickStop, then }),
-            StopOption::SlowDownAndStay => Self::Stopping(Stop { ramp: RampKind::SlowDown, then: Rest::QuickStopped }),
-            StopOption::QuickStopAndStay => {
-                Self::Stopping(Stop { ramp: RampKind::QuickStop, then: Rest::QuickStopped })
-            }
+            StopOption::SlowDown => Self::Stopping(Stop {
+                ramp: RampKind::SlowDown,
+                then,
+            }),
+            StopOption::QuickStop => Self::Stopping(Stop {
+                ramp: RampKind::QuickStop,
+                then,
+            }),
+            StopOption::SlowDownAndStay => Self::Stopping(Stop {
+                ramp: RampKind::SlowDown,
+                then: Rest::QuickStopped,
+            }),
+            StopOption::QuickStopAndStay => Self::Stopping(Stop {
+                ramp: RampKind::QuickStop,
+                then: Rest::QuickStopped,
+            }),
         }
     }
 
@@ -277,13 +329,22 @@ impl Drive {
     pub const fn released(self) -> Self {
         match self {
             Self::Enabling(_) | Self::OperationEnabled | Self::QuickStopped => {
-                Self::Stopping(Stop { ramp: RampKind::QuickStop, then: Rest::SwitchOnDisabled })
+                Self::Stopping(Stop {
+                    ramp: RampKind::QuickStop,
+                    then: Rest::SwitchOnDisabled,
+                })
             }
-            Self::Stopping(Stop { ramp, then: Rest::ReadyToSwitchOn | Rest::SwitchedOn | Rest::QuickStopped }) => {
-                Self::Stopping(Stop { ramp, then: Rest::SwitchOnDisabled })
-            }
+            Self::Stopping(Stop {
+                ramp,
+                then: Rest::ReadyToSwitchOn | Rest::SwitchedOn | Rest::QuickStopped,
+            }) => Self::Stopping(Stop {
+                ramp,
+                then: Rest::SwitchOnDisabled,
+            }),
             Self::ReadyToSwitchOn | Self::SwitchedOn => Self::SwitchOnDisabled,
-            Self::SwitchOnDisabled | Self::Stopping(_) | Self::Holding(..) | Self::Faulted(_) => self,
+            Self::SwitchOnDisabled | Self::Stopping(_) | Self::Holding(..) | Self::Faulted(_) => {
+                self
+            }
         }
     }
 
@@ -305,15 +366,29 @@ impl Drive {
         };
         match (self, how) {
             (Self::Faulted(_), _) => self,
-            // A stop that is on its way needs no connection: a master may fall silent once it has commanded one.
-            (Self::Stopping(_) | Self::Holding(..), _) if matches!(reaction(fault), Reaction::AbortConnection) => self,
-            (Self::SwitchOnDisabled | Self::ReadyToSwitchOn | Self::SwitchedOn, _) => Self::Faulted(first),
+            // A stop that is on its way needs no connection: a master may fall silent once it has
+            // commanded one.
+            (Self::Stopping(_) | Self::Holding(..), _)
+                if matches!(reaction(fault), Reaction::AbortConnection) =>
+            {
+                self
+            }
+            (Self::SwitchOnDisabled | Self::ReadyToSwitchOn | Self::SwitchedOn, _) => {
+                Self::Faulted(first)
+            }
             (_, StopOption::DisableAtOnce) => Self::Faulted(first),
             // A ramp that runs goes on, and so does a brake that closes.
-            (Self::Stopping(stop), _) => Self::Stopping(Stop { ramp: stop.ramp, then: Rest::Faulted(first) }),
-            (Self::Holding(stop, waited), _) => {
-                Self::Holding(Stop { ramp: stop.ramp, then: Rest::Faulted(first) }, waited)
-            }
+            (Self::Stopping(stop), _) => Self::Stopping(Stop {
+                ramp: stop.ramp,
+                then: Rest::Faulted(first),
+            }),
+            (Self::Holding(stop, waited), _) => Self::Holding(
+                Stop {
+                    ramp: stop.ramp,
+                    then: Rest::Faulted(first),
+                },
+                waited,
+            ),
             (Self::Enabling(_) | Self::OperationEnabled | Self::QuickStopped, how) => {
                 Self::stopped_by(how, Rest::Faulted(first)).ending_in(first)
             }
@@ -323,7 +398,10 @@ impl Drive {
     /// A stop that would stay in `quick stop active` ends in a fault all the same.
     const fn ending_in(self, fault: Fault) -> Self {
         match self {
-            Self::Stopping(stop) => Self::Stopping(Stop { ramp: stop.ramp, then: Rest::Faulted(fault) }),
+            Self::Stopping(stop) => Self::Stopping(Stop {
+                ramp: stop.ramp,
+                then: Rest::Faulted(fault),
+            }),
             other => other,
         }
     }
@@ -332,7 +410,12 @@ impl Drive {
     ///
     /// # Errors
     /// The fault where the stage or the brake does not do what it was told.
-    pub const fn advanced(self, stage: StageInput, standing: bool, patience: Patience) -> Result<Self, Fault> {
+    pub const fn advanced(
+        self,
+        stage: StageInput,
+        standing: bool,
+        patience: Patience,
+    ) -> Result<Self, Fault> {
         match self {
             Self::Enabling(enabling) => enabling.advanced(stage, patience),
             Self::OperationEnabled | Self::Stopping(_) | Self::Holding(..) | Self::QuickStopped
@@ -340,7 +423,10 @@ impl Drive {
             {
                 Err(Fault::StageLost)
             }
-            Self::Stopping(Stop { then: Rest::QuickStopped, .. }) if standing => Ok(Self::QuickStopped),
+            Self::Stopping(Stop {
+                then: Rest::QuickStopped,
+                ..
+            }) if standing => Ok(Self::QuickStopped),
             Self::Stopping(stop) if standing => Ok(Self::Holding(stop, 0)),
             Self::Holding(stop, waited) => match stage.brake() {
                 BrakeState::Closed => Ok(stop.then.drive()),
@@ -351,7 +437,9 @@ impl Drive {
                 {
                     Err(Fault::BrakeFailed)
                 }
-                BrakeState::Moving | BrakeState::Open => Ok(Self::Holding(stop, waited.saturating_add(1))),
+                BrakeState::Moving | BrakeState::Open => {
+                    Ok(Self::Holding(stop, waited.saturating_add(1)))
+                }
             },
             Self::SwitchOnDisabled
             | Self::ReadyToSwitchOn
@@ -364,12 +452,14 @@ impl Drive {
     }
 }
 
-/// Cycles that a brake may take longer than its parameter says: its state comes at most one status period (10 cycles) late where the
-/// frame of the change is lost, and twice that is still far below what a person notices.
+/// Cycles that a brake may take longer than its parameter says: its state comes at most one status
+/// period (10 cycles) late where the frame of the change is lost, and twice that is still far below
+/// what a person notices.
 const BRAKE_MARGIN: Cycles = 20;
 
-/// Cycles from the confirmation until the preset acts at the motor: torque k acts from SYNC k + 1 on, and a current loop of half a millisecond needs the cycle after
-/// that. A brake of 0 ms that was told at once let 2500 N drop by 5.7 µm with an exact preset.
+/// Cycles from the confirmation until the preset acts at the motor: torque k acts from SYNC k + 1
+/// on, and a current loop of half a millisecond needs the cycle after that. A brake of 0 ms that
+/// was told at once let 2500 N drop by 5.7 µm with an exact preset.
 const TORQUE_ACTS_AFTER: Cycles = 2;
 
 impl Enabling {
@@ -385,15 +475,27 @@ impl Enabling {
             (true, true, BrakeState::Open) => Ok(Drive::OperationEnabled),
             (true, true, _)
                 if self.waited
-                    > patience.brake_opens.saturating_add(BRAKE_MARGIN).saturating_add(TORQUE_ACTS_AFTER) =>
+                    > patience
+                        .brake_opens
+                        .saturating_add(BRAKE_MARGIN)
+                        .saturating_add(TORQUE_ACTS_AFTER) =>
             {
                 Err(Fault::BrakeFailed)
             }
-            (true, true, _) => Ok(Drive::Enabling(Self { confirmed: true, waited })),
+            (true, true, _) => Ok(Drive::Enabling(Self {
+                confirmed: true,
+                waited,
+            })),
             (true, false, _) => Err(Fault::StageLost),
-            (false, true, _) => Ok(Drive::Enabling(Self { confirmed: true, waited: 0 })),
+            (false, true, _) => Ok(Drive::Enabling(Self {
+                confirmed: true,
+                waited: 0,
+            })),
             (false, false, _) if waited > patience.stage => Err(Fault::StageRefused),
-            (false, false, _) => Ok(Drive::Enabling(Self { confirmed: false, waited })),
+            (false, false, _) => Ok(Drive::Enabling(Self {
+                confirmed: false,
+                waited,
+            })),
         }
     }
 }
@@ -403,14 +505,22 @@ mod tests {
     use super::*;
     use crate::parameters::ParameterSet;
 
-    const PATIENCE: Patience = Patience { stage: 3, brake_opens: 30, brake_closes: 40 };
+    const PATIENCE: Patience = Patience {
+        stage: 3,
+        brake_opens: 30,
+        brake_closes: 40,
+    };
 
     fn options() -> Options {
         ParameterSet::default().settings().unwrap().options
     }
 
     fn stage(enabled: bool, brake: BrakeState) -> StageInput {
-        let state = if enabled { DriveState::OperationEnabled } else { DriveState::SwitchedOn };
+        let state = if enabled {
+            DriveState::OperationEnabled
+        } else {
+            DriveState::SwitchedOn
+        };
         StageInput::new(state, None, brake)
     }
 
@@ -419,44 +529,76 @@ mod tests {
     }
 
     fn advance(drive: Drive, stage: StageInput, standing: bool, cycles: usize) -> Drive {
-        (0..cycles).fold(drive, |drive, _| drive.advanced(stage, standing, PATIENCE).unwrap())
+        (0..cycles).fold(drive, |drive, _| {
+            drive.advanced(stage, standing, PATIENCE).unwrap()
+        })
     }
 
     #[test]
     fn operation_is_enabled_only_after_the_stage_confirmed_and_the_brake_opened() {
         let mut drive = Drive::default();
-        for step in [Command::Shutdown, Command::SwitchOn, Command::EnableOperation] {
+        for step in [
+            Command::Shutdown,
+            Command::SwitchOn,
+            Command::EnableOperation,
+        ] {
             drive = command(drive, step);
         }
         assert_eq!(drive.state(), DriveState::SwitchedOn);
         assert!(!drive.stage_control().has(ControlWord::RELEASE_BRAKE));
         drive = advance(drive, stage(false, BrakeState::Closed), true, 3);
-        assert_eq!(drive.advanced(stage(false, BrakeState::Closed), true, PATIENCE), Err(Fault::StageRefused));
+        assert_eq!(
+            drive.advanced(stage(false, BrakeState::Closed), true, PATIENCE),
+            Err(Fault::StageRefused)
+        );
         drive = advance(drive, stage(true, BrakeState::Closed), true, 2);
-        assert!(!drive.stage_control().has(ControlWord::RELEASE_BRAKE), "the preset does not act yet");
+        assert!(
+            !drive.stage_control().has(ControlWord::RELEASE_BRAKE),
+            "the preset does not act yet"
+        );
         drive = advance(drive, stage(true, BrakeState::Closed), true, 1);
         assert!(drive.stage_control().has(ControlWord::RELEASE_BRAKE));
         drive = advance(drive, stage(true, BrakeState::Moving), true, 30);
         assert_eq!(drive.state(), DriveState::SwitchedOn);
-        assert_eq!(advance(drive, stage(true, BrakeState::Open), true, 1), Drive::OperationEnabled);
+        assert_eq!(
+            advance(drive, stage(true, BrakeState::Open), true, 1),
+            Drive::OperationEnabled
+        );
     }
 
     #[test]
     fn ready_to_switch_on_and_0fh_goes_both_transitions() {
         let drive = command(Drive::ReadyToSwitchOn, Command::EnableOperation);
-        assert_eq!(advance(drive, stage(true, BrakeState::NotFitted), true, 1), Drive::OperationEnabled);
+        assert_eq!(
+            advance(drive, stage(true, BrakeState::NotFitted), true, 1),
+            Drive::OperationEnabled
+        );
     }
 
     #[test]
     fn a_brake_that_does_not_open_is_a_fault() {
-        let confirmed = Drive::Enabling(Enabling { confirmed: true, waited: 53 });
-        assert_eq!(confirmed.advanced(stage(true, BrakeState::Moving), true, PATIENCE), Err(Fault::BrakeFailed));
+        let confirmed = Drive::Enabling(Enabling {
+            confirmed: true,
+            waited: 53,
+        });
+        assert_eq!(
+            confirmed.advanced(stage(true, BrakeState::Moving), true, PATIENCE),
+            Err(Fault::BrakeFailed)
+        );
     }
 
     #[test]
     fn a_stage_that_drops_out_is_a_fault_in_every_state_with_torque() {
-        let stop = Stop { ramp: RampKind::QuickStop, then: Rest::SwitchedOn };
-        for drive in [Drive::OperationEnabled, Drive::Stopping(stop), Drive::Holding(stop, 0), Drive::QuickStopped] {
+        let stop = Stop {
+            ramp: RampKind::QuickStop,
+            then: Rest::SwitchedOn,
+        };
+        for drive in [
+            Drive::OperationEnabled,
+            Drive::Stopping(stop),
+            Drive::Holding(stop, 0),
+            Drive::QuickStopped,
+        ] {
             assert!(drive.is_energised());
             let lost = drive.advanced(stage(false, BrakeState::Open), false, PATIENCE);
             assert_eq!(lost, Err(Fault::StageLost), "{drive:?}");
@@ -472,13 +614,22 @@ mod tests {
         let drive = advance(drive, stage(true, BrakeState::Open), true, 1);
         assert!(drive.is_energised() && !drive.stage_control().has(ControlWord::RELEASE_BRAKE));
         let drive = advance(drive, stage(true, BrakeState::Moving), true, 40);
-        assert_eq!(advance(drive, stage(true, BrakeState::Closed), true, 1), Drive::SwitchedOn);
+        assert_eq!(
+            advance(drive, stage(true, BrakeState::Closed), true, 1),
+            Drive::SwitchedOn
+        );
     }
 
     #[test]
     fn disable_voltage_and_shutdown_take_the_torque_at_once_as_the_standard_has_it() {
-        assert_eq!(command(Drive::OperationEnabled, Command::DisableVoltage), Drive::SwitchOnDisabled);
-        assert_eq!(command(Drive::OperationEnabled, Command::Shutdown), Drive::ReadyToSwitchOn);
+        assert_eq!(
+            command(Drive::OperationEnabled, Command::DisableVoltage),
+            Drive::SwitchOnDisabled
+        );
+        assert_eq!(
+            command(Drive::OperationEnabled, Command::Shutdown),
+            Drive::ReadyToSwitchOn
+        );
     }
 
     #[test]
@@ -490,10 +641,18 @@ mod tests {
                 faulted = advance(faulted, stage(true, BrakeState::Closed), true, 1);
             }
             assert_eq!(faulted, Drive::Faulted(fault));
-            for word in [Command::Shutdown, Command::EnableOperation, Command::DisableVoltage, Command::FaultReset] {
+            for word in [
+                Command::Shutdown,
+                Command::EnableOperation,
+                Command::DisableVoltage,
+                Command::FaultReset,
+            ] {
                 assert_eq!(faulted.commanded(Some(word), false, &options()), faulted);
             }
-            assert_eq!(faulted.commanded(Some(Command::FaultReset), true, &options()), Drive::SwitchOnDisabled);
+            assert_eq!(
+                faulted.commanded(Some(Command::FaultReset), true, &options()),
+                Drive::SwitchOnDisabled
+            );
             assert!(!faulted.is_energised());
         }
     }
@@ -502,14 +661,23 @@ mod tests {
     fn the_first_fault_stays_and_a_worse_one_takes_the_torque() {
         let first = Drive::OperationEnabled.faulted(Fault::SetpointMissing, &options());
         assert!(first.is_energised());
-        assert_eq!(first.faulted(Fault::FeedbackMissing, &options()), Drive::Faulted(Fault::SetpointMissing));
+        assert_eq!(
+            first.faulted(Fault::FeedbackMissing, &options()),
+            Drive::Faulted(Fault::SetpointMissing)
+        );
     }
 
     #[test]
     fn a_master_that_falls_silent_after_it_commanded_a_stop_makes_no_fault() {
         let stopping = command(Drive::OperationEnabled, Command::QuickStop);
-        assert_eq!(stopping.faulted(Fault::SetpointMissing, &options()), stopping);
-        assert_eq!(stopping.faulted(Fault::LimitOverrun, &options()).fault(), Some(Fault::LimitOverrun));
+        assert_eq!(
+            stopping.faulted(Fault::SetpointMissing, &options()),
+            stopping
+        );
+        assert_eq!(
+            stopping.faulted(Fault::LimitOverrun, &options()).fault(),
+            Some(Fault::LimitOverrun)
+        );
     }
 
     #[test]

@@ -1,8 +1,11 @@
-//! From feedback frames to positions: unwrapping, plausibility, and prediction where a feedback is missing.
+//! From feedback frames to positions: unwrapping, plausibility, and prediction where a feedback is
+//! missing.
 //!
-//! The motor encoder counts modulo 2³² and is unwrapped over any way. The load scale tells its low 24 bits of 10 nm (0.168 m); where it stands
-//! is told by the motor and by their relation, a parameter (2103h), and how well the two agree is measured, not assumed. A missing feedback is
-//! predicted with the last velocity and the acceleration of the reference, which is what the axis is doing if the loop does its work.
+//! The motor encoder counts modulo 2³² and is unwrapped over any way. The load scale tells its low
+//! 24 bits of 10 nm (0.168 m); where it stands is told by the motor and by their relation, a
+//! parameter (2103h), and how well the two agree is measured, not assumed. A missing feedback is
+//! predicted with the last velocity and the acceleration of the reference, which is what the axis
+//! is doing if the loop does its work.
 
 use controller::PositionSource;
 use controller::units::{Acceleration, Position, PositionError, Velocity, WayPerIncrement};
@@ -108,20 +111,28 @@ impl Encoders {
     /// Whether scale and motor stand as their relation says; false before the first feedback.
     #[must_use]
     pub fn relation_holds(&self, relation: Relation) -> bool {
-        self.track.is_some_and(|track| track.relation_error.magnitude() <= relation.window)
+        self.track
+            .is_some_and(|track| track.relation_error.magnitude() <= relation.window)
     }
 
     /// Takes a feedback.
     ///
     /// # Errors
-    /// [`Implausible`] where it differs from the expected way by more than the limit, times the cycles since the last good one. A scale that
-    /// does not close the loop is predicted instead and counted.
-    pub fn accept(&mut self, feedback: Feedback, encoding: &Encoding) -> Result<Measured, Implausible> {
+    /// [`Implausible`] where it differs from the expected way by more than the limit, times the
+    /// cycles since the last good one. A scale that does not close the loop is predicted instead
+    /// and counted.
+    pub fn accept(
+        &mut self,
+        feedback: Feedback,
+        encoding: &Encoding,
+    ) -> Result<Measured, Implausible> {
         let next = match self.track {
             None => Track::first(feedback, encoding),
             Some(track) => {
                 let (next, scale_is_true) = track.next(feedback, encoding)?;
-                self.scale_warnings = self.scale_warnings.saturating_add(u32::from(!scale_is_true));
+                self.scale_warnings = self
+                    .scale_warnings
+                    .saturating_add(u32::from(!scale_is_true));
                 next
             }
         };
@@ -129,7 +140,8 @@ impl Encoders {
         Ok(next.at)
     }
 
-    /// The axis goes on as it moved and as the reference accelerates: the position for a cycle without feedback.
+    /// The axis goes on as it moved and as the reference accelerates: the position for a cycle
+    /// without feedback.
     pub fn predict(&mut self, acceleration: Acceleration) -> Option<Measured> {
         let track = self.track.as_mut()?;
         let change = Velocity(acceleration.0);
@@ -148,7 +160,8 @@ impl Encoders {
     }
 }
 
-/// The motor's position is counted from a base that follows when it is this far away, so that the difference never wraps.
+/// The motor's position is counted from a base that follows when it is this far away, so that the
+/// difference never wraps.
 const REBASE_AT: i32 = 1 << 30;
 
 impl Raw {
@@ -165,13 +178,22 @@ impl Raw {
 }
 
 impl Track {
-    /// The load scale is taken to stand nearest to where the relation expects it; how far off that is, is remembered.
+    /// The load scale is taken to stand nearest to where the relation expects it; how far off that
+    /// is, is remembered.
     fn first(feedback: Feedback, encoding: &Encoding) -> Self {
         let motor = encoding.way.times(feedback.motor.0);
         let (load_counts, relation_error) = near_relation(motor, feedback.load, encoding.relation);
-        let at = Measured { motor, load: Position::from_counts(load_counts) };
-        let raw =
-            Raw { motor: feedback.motor, base_counts: feedback.motor.0, base: motor, load: feedback.load, load_counts };
+        let at = Measured {
+            motor,
+            load: Position::from_counts(load_counts),
+        };
+        let raw = Raw {
+            motor: feedback.motor,
+            base_counts: feedback.motor.0,
+            base: motor,
+            load: feedback.load,
+            load_counts,
+        };
         Self {
             at,
             velocity: Pair::default(),
@@ -186,16 +208,32 @@ impl Track {
     fn next(self, feedback: Feedback, encoding: &Encoding) -> Result<(Self, bool), Implausible> {
         let mut raw = self.raw;
         let motor = raw.motor_position(feedback.motor, encoding.way);
-        let load_counts = raw.load_counts.saturating_add(i64::from(raw.load.step_to(feedback.load)));
+        let load_counts = raw
+            .load_counts
+            .saturating_add(i64::from(raw.load.step_to(feedback.load)));
         let load = Position::from_counts(load_counts);
         let cycles = self.predicted_cycles.saturating_add(1);
         let load_cycles = self.load_predicted_cycles.saturating_add(1);
-        let motor_is_true = is_near(motor, self.at.motor.after(self.velocity.motor), encoding.jump, cycles);
-        let load_is_true = is_near(load, self.at.load.after(self.velocity.load), encoding.jump, load_cycles);
+        let motor_is_true = is_near(
+            motor,
+            self.at.motor.after(self.velocity.motor),
+            encoding.jump,
+            cycles,
+        );
+        let load_is_true = is_near(
+            load,
+            self.at.load.after(self.velocity.load),
+            encoding.jump,
+            load_cycles,
+        );
         if !motor_is_true || (!load_is_true && encoding.source == PositionSource::Load) {
             return Err(Implausible);
         }
-        let mut next = Self { raw, predicted_cycles: 0, ..self };
+        let mut next = Self {
+            raw,
+            predicted_cycles: 0,
+            ..self
+        };
         next.velocity.motor = motor.velocity_since(self.good.motor, cycles);
         (next.at.motor, next.good.motor) = (motor, motor);
         if load_is_true {
@@ -213,7 +251,11 @@ impl Track {
 }
 
 /// The scale's counts nearest to where motor and relation expect it, and how far from there.
-fn near_relation(motor: Position, load: LoadIncrements24, relation: Relation) -> (i64, PositionError) {
+fn near_relation(
+    motor: Position,
+    load: LoadIncrements24,
+    relation: Relation,
+) -> (i64, PositionError) {
     let motor_counts: i64 = motor.0.to_num();
     let expected = motor_counts.saturating_add(i64::from(relation.offset));
     let off = LoadIncrements24::from_counts(expected).step_to(load);
@@ -234,8 +276,14 @@ mod tests {
 
     fn encoding(source: PositionSource) -> Encoding {
         Encoding {
-            way: WayPerIncrement { whole: 1, fraction: 0 },
-            relation: Relation { offset: 0, window: window(100_000) },
+            way: WayPerIncrement {
+                whole: 1,
+                fraction: 0,
+            },
+            relation: Relation {
+                offset: 0,
+                window: window(100_000),
+            },
             jump: window(1000),
             source,
         }
@@ -247,11 +295,17 @@ mod tests {
 
     fn feedback(motor: i32, load: i64) -> Feedback {
         let load = LoadIncrements24::from_counts(load);
-        Feedback { motor: MotorIncrements(motor), load, counter: SyncCounter::FIRST }
+        Feedback {
+            motor: MotorIncrements(motor),
+            load,
+            counter: SyncCounter::FIRST,
+        }
     }
 
     fn taken(encoders: &mut Encoders, motor: i32, load: i64) -> Option<(i64, i64)> {
-        let at = encoders.accept(feedback(motor, load), &encoding(PositionSource::Load)).ok()?;
+        let at = encoders
+            .accept(feedback(motor, load), &encoding(PositionSource::Load))
+            .ok()?;
         Some((at.motor.0.to_num(), at.load.0.to_num()))
     }
 
@@ -270,7 +324,12 @@ mod tests {
         let mut encoders = Encoders::default();
         assert!(taken(&mut encoders, 0, 0).is_some() && taken(&mut encoders, 500, 500).is_some());
         assert_eq!(taken(&mut encoders, 90_000, 90_000), None);
-        let predicted: i64 = encoders.predict(Acceleration::default()).unwrap().motor.0.to_num();
+        let predicted: i64 = encoders
+            .predict(Acceleration::default())
+            .unwrap()
+            .motor
+            .0
+            .to_num();
         assert_eq!(predicted, 1000);
         assert_eq!(taken(&mut encoders, 1500, 1500), Some((1500, 1500)));
     }
@@ -281,7 +340,9 @@ mod tests {
         taken(&mut encoders, 0, 0);
         taken(&mut encoders, 500, 500);
         let acceleration = Acceleration(I20F12::from_num(20));
-        let ways: Vec<i64> = (0..3).map(|_| encoders.predict(acceleration).unwrap().load.0.to_num()).collect();
+        let ways: Vec<i64> = (0..3)
+            .map(|_| encoders.predict(acceleration).unwrap().load.0.to_num())
+            .collect();
         assert_eq!(ways, [1020, 1560, 2120]);
     }
 
@@ -289,10 +350,15 @@ mod tests {
     fn a_scale_that_stands_elsewhere_than_its_relation_says_is_noticed_and_with_it_is_right() {
         let at_100_mm = feedback(0, 10_000_000);
         let mut encoders = Encoders::default();
-        encoders.accept(at_100_mm, &encoding(PositionSource::Load)).unwrap();
+        encoders
+            .accept(at_100_mm, &encoding(PositionSource::Load))
+            .unwrap();
         assert!(!encoders.relation_holds(encoding(PositionSource::Load).relation));
         let related = Encoding {
-            relation: Relation { offset: 10_000_000, window: window(100) },
+            relation: Relation {
+                offset: 10_000_000,
+                window: window(100),
+            },
             ..encoding(PositionSource::Load)
         };
         let mut encoders = Encoders::default();
@@ -310,6 +376,10 @@ mod tests {
             assert_eq!(at.load.0.to_num::<i32>(), counts);
         }
         assert_eq!(encoders.scale_warnings(), 1);
-        assert_eq!(taken(&mut encoders, 2000, 900_000), None, "a loop on the scale does not take it");
+        assert_eq!(
+            taken(&mut encoders, 2000, 900_000),
+            None,
+            "a loop on the scale does not take it"
+        );
     }
 }

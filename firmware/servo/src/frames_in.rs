@@ -1,7 +1,9 @@
 //! Frames in: decode once, then only typed values.
 
 use protocol::cob::{FrameKind, NodeId};
-use protocol::message::{self, Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint};
+use protocol::message::{
+    self, Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint,
+};
 use protocol::sdo::Request;
 use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent};
 
@@ -111,7 +113,8 @@ impl Servo {
     fn on_plant_status(&mut self, status: PlantStatus) {
         let mut notices = Notices::new();
         if let Some(settings) = self.active.as_ref() {
-            self.axis.hear_stage(StageInput::from(status), settings, &mut notices);
+            self.axis
+                .hear_stage(StageInput::from(status), settings, &mut notices);
         }
         self.send_notices(&notices);
     }
@@ -127,9 +130,14 @@ impl Servo {
     fn on_plant_emergency(&mut self, emergency: EmergencyMessage) {
         if !emergency.is_error_reset() && self.axis.drive.is_energised() {
             let [code, ..] = emergency.vendor_specific;
-            // A drop-out is said by EMCY before the status: the fault has the name of what happened.
+            // A drop-out is said by EMCY before the status: the fault has the name of what
+            // happened.
             let dropped_out = Fault::from_code(code) == Some(Fault::StageLost);
-            self.latch(if dropped_out { Fault::StageLost } else { Fault::PeerFault });
+            self.latch(if dropped_out {
+                Fault::StageLost
+            } else {
+                Fault::PeerFault
+            });
         }
     }
 
@@ -174,10 +182,15 @@ impl Servo {
         match self.pending_nmt.take() {
             None | Some(NmtCommand::StartRemoteNode) => {}
             Some(NmtCommand::StopRemoteNode) => self.leave_operational(NmtState::Stopped),
-            Some(NmtCommand::EnterPreOperational) => self.leave_operational(NmtState::PreOperational),
+            Some(NmtCommand::EnterPreOperational) => {
+                self.leave_operational(NmtState::PreOperational)
+            }
             Some(NmtCommand::ResetNode | NmtCommand::ResetCommunication) => {
                 let said = core::mem::take(&mut self.outbox);
-                *self = Self { outbox: said, ..Self::new(self.ids) };
+                *self = Self {
+                    outbox: said,
+                    ..Self::new(self.ids)
+                };
                 self.send(BOOT_UP);
             }
         }

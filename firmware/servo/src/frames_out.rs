@@ -1,4 +1,5 @@
-//! Frames out: torque in every cycle, status on change and every tenth cycle, heartbeats by time in every NMT state, EMCY for faults and refusals.
+//! Frames out: torque in every cycle, status on change and every tenth cycle, heartbeats by time in
+//! every NMT state, EMCY for faults and refusals.
 
 use controller::PositionSource;
 use protocol::message::{self, EmergencyMessage, Status};
@@ -26,7 +27,8 @@ pub(crate) struct Periodic {
 impl Periodic {
     /// The first event after reset starts the clock.
     pub(crate) fn start(&mut self, now_us: u64, period_us: u64) {
-        self.heartbeat_due_us.get_or_insert(now_us.saturating_add(period_us));
+        self.heartbeat_due_us
+            .get_or_insert(now_us.saturating_add(period_us));
     }
 
     /// The first cycle carries a heartbeat, so that a run looks the same wherever it is made.
@@ -44,14 +46,20 @@ impl Periodic {
     }
 
     fn plant_is_silent(&self, now_us: u64, allowed_us: u64) -> bool {
-        self.plant_heard_us.is_some_and(|heard| now_us.saturating_sub(heard) > allowed_us)
+        self.plant_heard_us
+            .is_some_and(|heard| now_us.saturating_sub(heard) > allowed_us)
     }
 
     fn status_is_due(&mut self, now: (StatusWord, Option<Fault>)) -> bool {
-        // A warning is no change: it would be said every cycle on a bad bus. It goes with the next status.
+        // A warning is no change: it would be said every cycle on a bad bus. It goes with the next
+        // status.
         let without_warning = (StatusWord(now.0.0 & !StatusWord::WARNING), now.1);
         let due = self.status_in == 0 || self.said != Some(without_warning);
-        self.status_in = if due { STATUS_EVERY_CYCLES.saturating_sub(1) } else { self.status_in.saturating_sub(1) };
+        self.status_in = if due {
+            STATUS_EVERY_CYCLES.saturating_sub(1)
+        } else {
+            self.status_in.saturating_sub(1)
+        };
         self.said = Some(without_warning);
         due
     }
@@ -59,14 +67,21 @@ impl Periodic {
 
 impl Servo {
     pub(crate) fn send(&mut self, message: Message) {
-        // The outbox holds more frames than one event can cause (see `Outbox`); a full one drops the newest.
+        // The outbox holds more frames than one event can cause (see `Outbox`); a full one drops
+        // the newest.
         let _ = self.outbox.push(message.encode(self.ids));
     }
 
     pub(crate) fn send_torque(&mut self, stage: StageOutput) {
-        let Some(counter) = self.inbox.counter() else { return };
+        let Some(counter) = self.inbox.counter() else {
+            return;
+        };
         let torque = TorqueMicroNm(stage.torque.to_micro_nm_lossy());
-        self.send(Message::Torque(message::Torque { torque, control: stage.control, counter }));
+        self.send(Message::Torque(message::Torque {
+            torque,
+            control: stage.control,
+            counter,
+        }));
     }
 
     pub(crate) fn send_periodic(&mut self) {
@@ -83,8 +98,13 @@ impl Servo {
 
     /// Sends the heartbeat when it is due.
     pub(crate) fn beat(&mut self, now_us: u64) {
-        if self.periodic.heartbeat_due_us.is_some_and(|due| due <= now_us) {
-            self.periodic.heartbeat_due_us = Some(now_us.saturating_add(self.heartbeat_period_us()));
+        if self
+            .periodic
+            .heartbeat_due_us
+            .is_some_and(|due| due <= now_us)
+        {
+            self.periodic.heartbeat_due_us =
+                Some(now_us.saturating_add(self.heartbeat_period_us()));
             self.send(Message::ServoHeartbeat(self.nmt));
         }
     }
@@ -100,7 +120,10 @@ impl Servo {
     }
 
     fn watch_plant(&mut self, now_us: u64) {
-        let allowed_us = self.active.as_ref().map_or(0, |settings| settings.limits.heartbeat_us);
+        let allowed_us = self
+            .active
+            .as_ref()
+            .map_or(0, |settings| settings.limits.heartbeat_us);
         if self.axis.drive.is_energised() && self.periodic.plant_is_silent(now_us, allowed_us) {
             self.latch(Fault::HeartbeatLost);
         }
@@ -130,12 +153,23 @@ impl Servo {
 
     fn status(&self) -> Status {
         let last = &self.axis.last;
-        let rated_mnm = self.active.as_ref().map_or(1, |settings| settings.rated_torque_mnm);
-        let per_mille = last.torque.to_micro_nm_lossy().checked_div(rated_mnm).unwrap_or(0);
+        let rated_mnm = self
+            .active
+            .as_ref()
+            .map_or(1, |settings| settings.rated_torque_mnm);
+        let per_mille = last
+            .torque
+            .to_micro_nm_lossy()
+            .checked_div(rated_mnm)
+            .unwrap_or(0);
         Status {
             status: self.status_word(),
             following_error: FollowingError24::saturating(last.following_error.0.to_num()),
-            torque: TorquePerMille(i16::try_from(per_mille).unwrap_or(if per_mille < 0 { i16::MIN } else { i16::MAX })),
+            torque: TorquePerMille(i16::try_from(per_mille).unwrap_or(if per_mille < 0 {
+                i16::MIN
+            } else {
+                i16::MAX
+            })),
             fault: self.axis.drive.fault(),
         }
     }
@@ -154,12 +188,19 @@ impl Servo {
         ];
         bits.into_iter()
             .filter(|(_, is_set)| *is_set)
-            .fold(StatusWord::of(drive.state()), |word, (bit, _)| word.with(bit))
+            .fold(StatusWord::of(drive.state()), |word, (bit, _)| {
+                word.with(bit)
+            })
     }
 
     pub(crate) fn readings(&self) -> Readings {
         let at = self.axis.encoders.position().unwrap_or_default();
-        let source = self.active.as_ref().map_or(PositionSource::Load, |settings| settings.config.position_source);
+        let source = self
+            .active
+            .as_ref()
+            .map_or(PositionSource::Load, |settings| {
+                settings.config.position_source
+            });
         let (emergency_code, cycle) = self.emergency;
         Readings {
             error_register: u8::from(self.axis.drive.fault().is_some()),

@@ -1,8 +1,9 @@
 //! What has come in for the present cycle, told by counter and never by arrival order.
 //!
-//! Cycle k needs the feedback k and the setpoint of cycle k + 1, the preview. Each of them comes or does not; the cycle is complete when
-//! both are in. What comes too late for its cycle is still worth something: a setpoint that arrives one cycle late is the setpoint
-//! of the present cycle, in the place of its extrapolation.
+//! Cycle k needs the feedback k and the setpoint of cycle k + 1, the preview. Each of them comes or
+//! does not; the cycle is complete when both are in. What comes too late for its cycle is still
+//! worth something: a setpoint that arrives one cycle late is the setpoint of the present cycle, in
+//! the place of its extrapolation.
 
 use protocol::SyncCounter;
 use protocol::message::{Feedback, Setpoint};
@@ -47,7 +48,11 @@ pub struct Contents {
 
 impl Contents {
     /// A cycle in which nothing came.
-    pub const NOTHING: Self = Self { feedback: Err(Miss::Absent), preview: Err(Miss::Absent), present: None };
+    pub const NOTHING: Self = Self {
+        feedback: Err(Miss::Absent),
+        preview: Err(Miss::Absent),
+        present: None,
+    };
 }
 
 /// What has come in for the present cycle.
@@ -62,7 +67,12 @@ pub struct Inbox {
 
 impl Default for Inbox {
     fn default() -> Self {
-        Self { counter: None, open: false, contents: Contents::NOTHING, preview_used: false }
+        Self {
+            counter: None,
+            open: false,
+            contents: Contents::NOTHING,
+            preview_used: false,
+        }
     }
 }
 
@@ -82,7 +92,9 @@ impl Inbox {
     /// Whether everything is in; `wants_setpoint` is false in cycles in which none is due.
     #[must_use]
     pub const fn is_complete(&self, wants_setpoint: bool) -> bool {
-        self.open && self.contents.feedback.is_ok() && (self.contents.preview.is_ok() || !wants_setpoint)
+        self.open
+            && self.contents.feedback.is_ok()
+            && (self.contents.preview.is_ok() || !wants_setpoint)
     }
 
     /// What the present cycle has to go by.
@@ -101,8 +113,8 @@ impl Inbox {
         self.preview_used = false;
     }
 
-    /// A preview that came after its cycle was closed is the setpoint of the cycle that begins; before the first SYNC the newest setpoint waits for
-    /// the cycle that it names.
+    /// A preview that came after its cycle was closed is the setpoint of the cycle that begins;
+    /// before the first SYNC the newest setpoint waits for the cycle that it names.
     fn keep_what_is_due(&mut self, counter: SyncCounter) {
         let early = match self.counter {
             None => self.contents.present,
@@ -140,9 +152,16 @@ impl Inbox {
     /// Takes a feedback.
     pub fn feedback(&mut self, feedback: Feedback) -> Taken {
         if self.counter == Some(feedback.counter) {
-            return if self.open { fill(&mut self.contents.feedback, feedback) } else { Taken::Doubled };
+            return if self.open {
+                fill(&mut self.contents.feedback, feedback)
+            } else {
+                Taken::Doubled
+            };
         }
-        if self.counter.is_some_and(|now| now.next() == feedback.counter) {
+        if self
+            .counter
+            .is_some_and(|now| now.next() == feedback.counter)
+        {
             return Taken::NextCycle;
         }
         miss(&mut self.contents.feedback, Miss::Stale);
@@ -187,11 +206,19 @@ mod tests {
     }
 
     fn setpoint(counter: u8) -> Setpoint {
-        Setpoint { control: ControlWord::default(), counter: count(counter), position: SetpointFine::default() }
+        Setpoint {
+            control: ControlWord::default(),
+            counter: count(counter),
+            position: SetpointFine::default(),
+        }
     }
 
     fn feedback(counter: u8) -> Feedback {
-        Feedback { motor: MotorIncrements(0), load: LoadIncrements24::from_counts(0), counter: count(counter) }
+        Feedback {
+            motor: MotorIncrements(0),
+            load: LoadIncrements24::from_counts(0),
+            counter: count(counter),
+        }
     }
 
     fn at(counter: u8) -> Inbox {
@@ -220,7 +247,10 @@ mod tests {
         assert_eq!(inbox.feedback(feedback(3)), Taken::Stale);
         assert_eq!(inbox.setpoint(setpoint(2)), Taken::Stale);
         let contents = inbox.contents();
-        assert_eq!((contents.feedback, contents.preview), (Err(Miss::Stale), Err(Miss::Stale)));
+        assert_eq!(
+            (contents.feedback, contents.preview),
+            (Err(Miss::Stale), Err(Miss::Stale))
+        );
     }
 
     #[test]

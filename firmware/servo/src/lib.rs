@@ -1,17 +1,20 @@
 //! The drive node of one axis, sans-I/O: frames and time go in, frames come out.
 //!
 //! ```text
-//!  frames ─▶ frames_in ─▶ inbox ──┐                      ┌─▶ frames_out ─▶ torque k, status, heartbeat, EMCY, SDO
-//!                                 ├─▶ cycle ─▶ axis ──────┤
+//!  frames ─▶ frames_in ─▶ inbox ──┐                      ┌─▶ frames_out ─▶ torque k, status,
+//!                                 ├─▶ cycle ─▶ axis ──────┘                 heartbeat, EMCY, SDO
 //!  time ───▶ timing ──────────────┘    (drive, encoders, reference, law)
 //! ```
 //!
-//! The contract of a cycle (`docs/frames.md`): cycle k closes when feedback k and the setpoint of cycle k + 1 are in, or at its deadline; then the
-//! law is stepped and torque k goes out, always before the next SYNC. What did not come is predicted or extrapolated. A node with torque that misses
-//! SYNC goes on by its own timer. Time is an argument: the clock, lock-step bus time or virtual time, as the leaf has it.
+//! The contract of a cycle (`docs/frames.md`): cycle k closes when feedback k and the setpoint of
+//! cycle k + 1 are in, or at its deadline; then the law is stepped and torque k goes out, always
+//! before the next SYNC. What did not come is predicted or extrapolated. A node with torque that
+//! misses SYNC goes on by its own timer. Time is an argument: the clock, lock-step bus time or
+//! virtual time, as the leaf has it.
 //!
-//! Where to look: the states of the drive in [`drive`], the power stage in [`stage`], one control cycle in [`axis`], what makes a cycle begin and
-//! close in `cycle`, its times in [`timing`], parameters in [`objects`], [`parameters`], [`conversion`] and [`settings`].
+//! Where to look: the states of the drive in [`drive`], the power stage in [`stage`], one control
+//! cycle in [`axis`], what makes a cycle begin and close in `cycle`, its times in [`timing`],
+//! parameters in [`objects`], [`parameters`], [`conversion`] and [`settings`].
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(
@@ -69,8 +72,9 @@ use settings::Settings;
 use timing::Timing;
 use watchdog::Counts;
 
-/// Frames that one event can cause. The worst is a SYNC that finds the cycle before it still open: that cycle's torque, status, heartbeat and two EMCYs; then an SDO
-/// response never comes with it, and a reset's boot-up neither. Twice five leaves room.
+/// Frames that one event can cause. The worst is a SYNC that finds the cycle before it still open:
+/// that cycle's torque, status, heartbeat and two EMCYs; then an SDO response never comes with it,
+/// and a reset's boot-up neither. Twice five leaves room.
 pub type Outbox = Vec<CanFrame, 10>;
 
 /// The drive node of one axis.
@@ -169,7 +173,11 @@ impl Servo {
 }
 
 const fn emergency(fault: Fault, counter: u8) -> EmergencyMessage {
-    EmergencyMessage::new(fault.emergency_code(), ERROR_REGISTER, [fault.code(), counter, 0, 0, 0])
+    EmergencyMessage::new(
+        fault.emergency_code(),
+        ERROR_REGISTER,
+        [fault.code(), counter, 0, 0, 0],
+    )
 }
 
 const ERROR_REGISTER: protocol::message::ErrorRegister =

@@ -1,11 +1,13 @@
 //! The object dictionary: one table for the SDO server, the parameter set and `docs/objects.md`.
 //!
-//! A person commissions an axis in physical units, so a parameter is an integer number of decimal steps: 5 m/s² is 5 000 000 steps of
-//! 1 µm/s². A write is checked against its range before it is acknowledged and goes into the *staged* set only. [`COMMIT`] turns the
-//! staged set into machine units of its own cycle time ([`crate::conversion`]) and makes it active as a whole.
+//! A person commissions an axis in physical units, so a parameter is an integer number of decimal
+//! steps: 5 m/s² is 5 000 000 steps of 1 µm/s². A write is checked against its range before it is
+//! acknowledged and goes into the *staged* set only. [`COMMIT`] turns the staged set into machine
+//! units of its own cycle time ([`crate::conversion`]) and makes it active as a whole.
 //!
-//! All parameters are INTEGER32, also where CiA 402 has UNSIGNED32, UNSIGNED8 or INTEGER16: a client writes four bytes everywhere. Indices
-//! are those of CiA 301 and CiA 402-2 where these have the object, 2xxxh elsewhere.
+//! All parameters are INTEGER32, also where CiA 402 has UNSIGNED32, UNSIGNED8 or INTEGER16: a
+//! client writes four bytes everywhere. Indices are those of CiA 301 and CiA 402-2 where these have
+//! the object, 2xxxh elsewhere.
 
 use protocol::sdo::Address;
 
@@ -79,7 +81,8 @@ impl Entry {
     /// # Errors
     /// [`Misfit`] where the row does not take the value.
     pub fn check(&self, value: i32) -> Result<(), Misfit> {
-        let reserved = self.parameter == Parameter::QuickStopOption && QUICK_STOP_UNSUPPORTED.contains(&value);
+        let reserved =
+            self.parameter == Parameter::QuickStopOption && QUICK_STOP_UNSUPPORTED.contains(&value);
         match value {
             _ if value < self.min => Err(Misfit::TooLow),
             _ if value > self.max => Err(Misfit::TooHigh),
@@ -94,7 +97,8 @@ const QUICK_STOP_UNSUPPORTED: [i32; 2] = [3, 4];
 
 macro_rules! parameters {
     ($($name:ident = ($index:literal, $subindex:literal), $text:literal, $unit:expr, $range:expr, $default:expr;)*) => {
-        /// A parameter of the drive; its discriminant is its place in a [`crate::parameters::ParameterSet`].
+        /// A parameter of the drive; its discriminant is its place in a
+        /// [`crate::parameters::ParameterSet`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(usize)]
         pub enum Parameter {
@@ -117,7 +121,8 @@ macro_rules! parameters {
         /// Raw values after reset, in the order of the parameters.
         pub const DEFAULTS: &[i32] = &[$($default,)*];
 
-        /// All parameters, in their order. The defaults move nothing: torque limit and gains are zero until a set is committed.
+        /// All parameters, in their order. The defaults move nothing: torque limit and gains are
+        /// zero until a set is committed.
         pub static TABLE: [Entry; PARAMETERS] = [
             $(Entry {
                 address: Address::new($index, $subindex),
@@ -176,7 +181,8 @@ parameters! {
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
     QuickStopDeceleration = (0x6085, 0), "deceleration of the quick-stop ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
     RampJerk = (0x60A4, 1), "jerk of both ramps (0 not limited)", MILLIMETRE_PER_S3, POSITIVE, 0;
-    // The geometric mean of a smooth path (50 m/s^3) and of a step of 5 m/s^2 within 1 ms; fits the machine units at 20 ms too.
+    // The geometric mean of a smooth path (50 m/s^3) and of a step of 5 m/s^2 within 1 ms; fits the
+    // machine units at 20 ms too.
     StepJerk = (0x2114, 0), "jerk of a path above which the acceleration makes a step", MILLIMETRE_PER_S3, (1, i32::MAX), 500_000;
     PositionMin = (0x607D, 1), "software position limit, lower (INTEGER32 minimum: none)", COUNT, EVERY, i32::MIN;
     PositionMax = (0x607D, 2), "software position limit, upper (INTEGER32 maximum: none)", COUNT, EVERY, i32::MAX;
@@ -210,17 +216,20 @@ parameters! {
     FaultReactionOption = (0x605E, 0), "fault reaction: 0 disable, 1 slow down, 2 quick stop", CHOICE, (0, 2), 2;
 }
 
-/// Writing [`COMMIT_KEY`] makes the staged set active at the next cycle; reading gives the number of commits.
+/// Writing [`COMMIT_KEY`] makes the staged set active at the next cycle; reading gives the number
+/// of commits.
 pub const COMMIT: Address = Address::new(0x2F00, 0);
 /// "cmit", as the bytes stand on the bus.
 pub const COMMIT_KEY: u32 = u32::from_le_bytes(*b"cmit");
 /// Which set an upload of a parameter reads: 0 staged, 1 active. UNSIGNED8.
 pub const SET_READ: Address = Address::new(0x2F01, 0);
-/// Row of the parameter that the last commit was refused for, as in `docs/objects.md`; 0 where it was taken.
+/// Row of the parameter that the last commit was refused for, as in `docs/objects.md`; 0 where it
+/// was taken.
 pub const REFUSED_ROW: Address = Address::new(0x2F02, 1);
 /// Why it was refused: [`crate::parameters::SetError::code`].
 pub const REFUSED_REASON: Address = Address::new(0x2F02, 2);
-/// The SYNC period that the master declares, µs; 0: not declared. Not part of the set, active at once.
+/// The SYNC period that the master declares, µs; 0: not declared. Not part of the set, active at
+/// once.
 pub const DECLARED_PERIOD: Address = Address::new(0x2102, 0);
 /// Device type: CiA 402 servo drive.
 pub const DEVICE_TYPE: Address = Address::new(0x1000, 0);
@@ -254,11 +263,17 @@ pub const READINGS: [(Address, &str); 26] = [
     (DEVICE_TYPE, "device type"),
     (ERROR_REGISTER, "error register"),
     (HEARTBEAT_PERIOD, "heartbeat period, ms"),
-    (DECLARED_PERIOD, "SYNC period that the master declares, us; 0 not declared; writable, active at once"),
+    (
+        DECLARED_PERIOD,
+        "SYNC period that the master declares, us; 0 not declared; writable, active at once",
+    ),
     (Address::new(DIAGNOSTICS_INDEX, 1), "cycles computed"),
     (Address::new(DIAGNOSTICS_INDEX, 2), "cycles bridged"),
     (Address::new(DIAGNOSTICS_INDEX, 3), "cycles refused"),
-    (Address::new(DIAGNOSTICS_INDEX, 4), "cycles closed by deadline"),
+    (
+        Address::new(DIAGNOSTICS_INDEX, 4),
+        "cycles closed by deadline",
+    ),
     (Address::new(DIAGNOSTICS_INDEX, 5), "frames stale"),
     (Address::new(DIAGNOSTICS_INDEX, 6), "frames malformed"),
     (Address::new(DIAGNOSTICS_INDEX, 7), "frames implausible"),
@@ -267,19 +282,40 @@ pub const READINGS: [(Address, &str); 26] = [
         Address::new(DIAGNOSTICS_INDEX, 9),
         "implausible values of the load scale while the motor encoder closes the loop",
     ),
-    (MOTOR_POSITION, "motor encoder as a position at the table, 10 nm"),
+    (
+        MOTOR_POSITION,
+        "motor encoder as a position at the table, 10 nm",
+    ),
     (LOAD_POSITION, "load scale, 10 nm"),
     (FAULT_DETAIL, "detail of the last fault"),
-    (COMMIT, "number of commits; writing \"cmit\" (0x74696D63) commits"),
-    (SET_READ, "set that uploads of parameters read: 0 staged, 1 active; writable"),
-    (REFUSED_ROW, "row of the parameter that the last commit was refused for; 0 none"),
+    (
+        COMMIT,
+        "number of commits; writing \"cmit\" (0x74696D63) commits",
+    ),
+    (
+        SET_READ,
+        "set that uploads of parameters read: 0 staged, 1 active; writable",
+    ),
+    (
+        REFUSED_ROW,
+        "row of the parameter that the last commit was refused for; 0 none",
+    ),
     (REFUSED_REASON, "reason of that refusal"),
     (ERROR_CODE, "code of the last EMCY"),
     (STATUS_WORD, "status word"),
-    (MODE_DISPLAY, "mode of operation: 8, cyclic synchronous position"),
-    (POSITION_ACTUAL, "position of the encoder that closes the loop, 10 nm"),
+    (
+        MODE_DISPLAY,
+        "mode of operation: 8, cyclic synchronous position",
+    ),
+    (
+        POSITION_ACTUAL,
+        "position of the encoder that closes the loop, 10 nm",
+    ),
     (FOLLOWING_ERROR, "following error, 10 nm"),
-    (Address::new(DIAGNOSTICS_INDEX, 0), "highest subindex of the counts"),
+    (
+        Address::new(DIAGNOSTICS_INDEX, 0),
+        "highest subindex of the counts",
+    ),
 ];
 
 /// The row at an address.
@@ -291,7 +327,8 @@ pub fn find(address: Address) -> Option<&'static Entry> {
 /// Whether any object has this index.
 #[must_use]
 pub fn index_exists(index: u16) -> bool {
-    READINGS.iter().any(|(address, _)| address.index == index) || TABLE.iter().any(|entry| entry.address.index == index)
+    READINGS.iter().any(|(address, _)| address.index == index)
+        || TABLE.iter().any(|entry| entry.address.index == index)
 }
 
 #[cfg(test)]
@@ -301,7 +338,9 @@ mod tests {
     #[test]
     fn every_object_has_an_address_of_its_own() {
         let parameters = TABLE.iter().map(|entry| entry.address);
-        let mut addresses: Vec<Address> = parameters.chain(READINGS.iter().map(|(address, _)| *address)).collect();
+        let mut addresses: Vec<Address> = parameters
+            .chain(READINGS.iter().map(|(address, _)| *address))
+            .collect();
         addresses.sort_unstable();
         let all = addresses.len();
         addresses.dedup();
@@ -319,8 +358,13 @@ mod tests {
     #[test]
     fn the_option_codes_are_those_that_the_drive_supports() {
         let taken = |parameter: Parameter| -> Vec<i32> {
-            let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
-            (-2..10).filter(|value| entry.check(*value).is_ok()).collect()
+            let entry = TABLE
+                .iter()
+                .find(|entry| entry.parameter == parameter)
+                .unwrap();
+            (-2..10)
+                .filter(|value| entry.check(*value).is_ok())
+                .collect()
         };
         assert_eq!(taken(Parameter::QuickStopOption), [0, 1, 2, 5, 6]);
         assert_eq!(taken(Parameter::ShutdownOption), [0, 1]);

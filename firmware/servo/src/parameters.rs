@@ -11,7 +11,9 @@ pub struct ParameterSet([i32; PARAMETERS]);
 impl Default for ParameterSet {
     fn default() -> Self {
         let mut set = [0; PARAMETERS];
-        set.iter_mut().zip(DEFAULTS).for_each(|(place, default)| *place = *default);
+        set.iter_mut()
+            .zip(DEFAULTS)
+            .for_each(|(place, default)| *place = *default);
         Self(set)
     }
 }
@@ -19,13 +21,19 @@ impl Default for ParameterSet {
 impl ParameterSet {
     /// Raw value of a parameter.
     #[must_use]
-    #[expect(clippy::as_conversions, reason = "repr(usize): the discriminant is the place")]
+    #[expect(
+        clippy::as_conversions,
+        reason = "repr(usize): the discriminant is the place"
+    )]
     pub fn get(&self, parameter: Parameter) -> i32 {
         self.0.get(parameter as usize).copied().unwrap_or(0)
     }
 
     /// Sets a raw value; the range was checked by the caller.
-    #[expect(clippy::as_conversions, reason = "repr(usize): the discriminant is the place")]
+    #[expect(
+        clippy::as_conversions,
+        reason = "repr(usize): the discriminant is the place"
+    )]
     pub fn set(&mut self, parameter: Parameter, value: i32) {
         if let Some(place) = self.0.get_mut(parameter as usize) {
             *place = value;
@@ -35,19 +43,24 @@ impl ParameterSet {
     /// The settings that the set describes, in machine units of its cycle time.
     ///
     /// # Errors
-    /// [`SetError`] where values that are fine one by one do not go together, or do not fit the machine units.
+    /// [`SetError`] where values that are fine one by one do not go together, or do not fit the
+    /// machine units.
     pub fn settings(&self) -> Result<Settings, SetError> {
         conversion::settings(self)
     }
 
-    /// Whether two sets read the encoders alike and run at the same cycle time: only such a set may become active in motion.
+    /// Whether two sets read the encoders alike and run at the same cycle time: only such a set may
+    /// become active in motion.
     #[must_use]
     pub fn measures_like(&self, other: &Self) -> bool {
-        ONLY_WITHOUT_TORQUE.iter().all(|parameter| self.get(*parameter) == other.get(*parameter))
+        ONLY_WITHOUT_TORQUE
+            .iter()
+            .all(|parameter| self.get(*parameter) == other.get(*parameter))
     }
 }
 
-/// What the closed loop stands on: a change of these is a step of the measured position, or of all machine units at once.
+/// What the closed loop stands on: a change of these is a step of the measured position, or of all
+/// machine units at once.
 pub const ONLY_WITHOUT_TORQUE: [Parameter; 7] = [
     Parameter::CyclePeriod,
     Parameter::PositionSource,
@@ -60,7 +73,8 @@ pub const ONLY_WITHOUT_TORQUE: [Parameter; 7] = [
 
 macro_rules! set_errors {
     ($($name:ident = $code:literal, $text:literal;)*) => {
-        /// Why a set as a whole is not valid, though each value is within its range; with the parameter to look at first.
+        /// Why a set as a whole is not valid, though each value is within its range; with the
+        /// parameter to look at first.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum SetError {
             $(#[doc = $text] $name(Parameter),)*

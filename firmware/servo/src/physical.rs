@@ -1,7 +1,9 @@
-//! Arithmetic from physical units to machine units: exact fractions, rounded once, and the exponential.
+//! Arithmetic from physical units to machine units: exact fractions, rounded once, and the
+//! exponential.
 //!
-//! It runs when a parameter set is committed, in the SDO event, never in the control cycle. There are no floats, and no 64-bit division of the
-//! compiler's library either: quotients are made digit by digit, one digit for each bit of the result (at most 64 for a machine number).
+//! It runs when a parameter set is committed, in the SDO event, never in the control cycle. There
+//! are no floats, and no 64-bit division of the compiler's library either: quotients are made digit
+//! by digit, one digit for each bit of the result (at most 64 for a machine number).
 //!
 //! | what | error |
 //! |---|---|
@@ -11,7 +13,8 @@
 
 /// The product of some numbers, over the product of others.
 ///
-/// The callers keep both products below 2¹²⁸; beyond that they have no value, and neither has the fraction.
+/// The callers keep both products below 2¹²⁸; beyond that they have no value, and neither has the
+/// fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fraction {
     numerator: u128,
@@ -35,14 +38,21 @@ impl Fraction {
     /// The fraction; `None` where a product does not fit 128 bits or the denominator is zero.
     #[must_use]
     pub fn new(numerator: &[u64], denominator: &[u64]) -> Option<Self> {
-        let fraction = Self { numerator: product(numerator)?, denominator: product(denominator)? };
+        let fraction = Self {
+            numerator: product(numerator)?,
+            denominator: product(denominator)?,
+        };
         (fraction.denominator > 0).then_some(fraction)
     }
 
     /// Rounded to nearest, halves up; `None` from 2⁶³ on.
     #[must_use]
     pub fn nearest(self) -> Option<u64> {
-        let Quotient { whole, rest, denominator } = self.divided()?;
+        let Quotient {
+            whole,
+            rest,
+            denominator,
+        } = self.divided()?;
         Some(whole.saturating_add(u64::from(rest >= denominator.saturating_sub(rest))))
     }
 
@@ -60,18 +70,25 @@ impl Fraction {
         (rest == 0).then_some(whole)
     }
 
-    /// The same fraction with a denominator of 62 bits at most; the bits that fall off are a 2⁻⁶¹ part of it.
+    /// The same fraction with a denominator of 62 bits at most; the bits that fall off are a 2⁻⁶¹
+    /// part of it.
     fn shortened(self) -> (u128, u64) {
         let bits = u128::BITS.saturating_sub(self.denominator.leading_zeros());
         let off = bits.saturating_sub(DENOMINATOR_BITS);
         let denominator = self.denominator.wrapping_shr(off);
-        (self.numerator.wrapping_shr(off), u64::try_from(denominator).unwrap_or(u64::MAX))
+        (
+            self.numerator.wrapping_shr(off),
+            u64::try_from(denominator).unwrap_or(u64::MAX),
+        )
     }
 
-    /// Long division: the head of the numerator is as long as the denominator; its tail comes down digit by digit. `None` beyond 64 digits.
+    /// Long division: the head of the numerator is as long as the denominator; its tail comes down
+    /// digit by digit. `None` beyond 64 digits.
     fn divided(self) -> Option<Quotient> {
         let (numerator, denominator) = self.shortened();
-        let digits = u128::from(denominator).leading_zeros().saturating_sub(numerator.leading_zeros());
+        let digits = u128::from(denominator)
+            .leading_zeros()
+            .saturating_sub(numerator.leading_zeros());
         if digits >= u64::BITS {
             return None;
         }
@@ -83,7 +100,11 @@ impl Fraction {
             tail = tail.wrapping_shl(1);
             whole = whole.wrapping_shl(1) | digit(&mut rest, denominator);
         }
-        (whole < LARGEST_QUOTIENT).then_some(Quotient { whole, rest, denominator })
+        (whole < LARGEST_QUOTIENT).then_some(Quotient {
+            whole,
+            rest,
+            denominator,
+        })
     }
 }
 
@@ -104,7 +125,9 @@ const fn low(value: u128) -> u64 {
 }
 
 fn product(factors: &[u64]) -> Option<u128> {
-    factors.iter().try_fold(1_u128, |product, factor| product.checked_mul(u128::from(*factor)))
+    factors.iter().try_fold(1_u128, |product, factor| {
+        product.checked_mul(u128::from(*factor))
+    })
 }
 
 /// One in the exponential's own format, 32 fractional bits.
@@ -132,12 +155,14 @@ const RECIPROCALS: [u64; 13] = [
 
 /// `exp(−time / constant)` with 30 fractional bits; zero where the constant is zero.
 ///
-/// The exponent loses as many ln 2 as it holds (each halves the result); what is left, below 0.7, goes into the series
-/// `1 − x(1 − x/2 (1 − x/3 (…)))` from its far end.
+/// The exponent loses as many ln 2 as it holds (each halves the result); what is left, below 0.7,
+/// goes into the series `1 − x(1 − x/2 (1 − x/3 (…)))` from its far end.
 #[must_use]
 pub fn decay(time_ns: u64, constant_ns: u64) -> u32 {
     let exponent = Fraction::new(&[time_ns, ONE], &[constant_ns]).and_then(Fraction::nearest);
-    let Some(mut exponent) = exponent.filter(|exponent| *exponent < LARGEST) else { return 0 };
+    let Some(mut exponent) = exponent.filter(|exponent| *exponent < LARGEST) else {
+        return 0;
+    };
     // 30 of the 32 fractional bits are left in the end.
     let mut halvings = 2_u32;
     while let Some(left) = exponent.checked_sub(LN_2) {
@@ -152,7 +177,8 @@ pub fn decay(time_ns: u64, constant_ns: u64) -> u32 {
     u32::try_from(value.saturating_add(half).wrapping_shr(halvings)).unwrap_or(u32::MAX)
 }
 
-/// Product of two numbers with 32 fractional bits, the first below 1 and the second at most 1: below 2⁶⁴.
+/// Product of two numbers with 32 fractional bits, the first below 1 and the second at most 1:
+/// below 2⁶⁴.
 fn times(a: u64, b: u64) -> u64 {
     a.saturating_mul(b).wrapping_shr(32)
 }
@@ -209,7 +235,11 @@ mod tests {
             (f64::from(decay(hundredth, 1000)) / SCALE - exact).abs()
         };
         let worst = (0..25_000).map(error).fold(0.0, f64::max);
-        assert!((0.4 / SCALE..=1.0 / SCALE).contains(&worst), "{} units", worst * SCALE);
+        assert!(
+            (0.4 / SCALE..=1.0 / SCALE).contains(&worst),
+            "{} units",
+            worst * SCALE
+        );
     }
 
     #[test]
@@ -224,6 +254,9 @@ mod tests {
     fn a_fraction_without_a_value_is_none() {
         assert_eq!(Fraction::new(&[1], &[0]), None);
         assert_eq!(Fraction::new(&[u64::MAX, u64::MAX, 2], &[1]), None);
-        assert_eq!(Fraction::new(&[u64::MAX, u64::MAX], &[1]).and_then(Fraction::nearest), None);
+        assert_eq!(
+            Fraction::new(&[u64::MAX, u64::MAX], &[1]).and_then(Fraction::nearest),
+            None
+        );
     }
 }

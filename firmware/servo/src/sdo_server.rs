@@ -1,7 +1,8 @@
 //! The SDO server: expedited transfers, range checks before acknowledgement, an atomic commit.
 //!
-//! It keeps two parameter sets. Downloads go into the *staged* one; a commit turns it into [`Settings`] and makes it the *active* one. Uploads
-//! read the one that [`objects::SET_READ`] names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
+//! It keeps two parameter sets. Downloads go into the *staged* one; a commit turns it into
+//! [`Settings`] and makes it the *active* one. Uploads read the one that [`objects::SET_READ`]
+//! names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
 //! look at.
 
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
@@ -64,7 +65,10 @@ pub struct SdoServer {
 
 /// What a request did, apart from the answer.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is no heap to put the settings on")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the settings on"
+)]
 pub enum Effect {
     /// Nothing that the drive has to know.
     None,
@@ -73,7 +77,8 @@ pub enum Effect {
 }
 
 impl SdoServer {
-    /// Stages a value that the node itself chooses (what a command line says at start); out of range it is left out.
+    /// Stages a value that the node itself chooses (what a command line says at start); out of
+    /// range it is left out.
     pub fn stage(&mut self, parameter: Parameter, value: i32) {
         let fits = |entry: &&Entry| entry.parameter == parameter && entry.check(value).is_ok();
         if objects::TABLE.iter().find(fits).is_some() {
@@ -106,19 +111,31 @@ impl SdoServer {
         }
     }
 
-    /// Answers a request. `has_torque`: the loop is closed, so that encoders and cycle time must stay.
-    pub fn handle(&mut self, request: Request, readings: &Readings, has_torque: bool) -> (Option<Response>, Effect) {
+    /// Answers a request. `has_torque`: the loop is closed, so that encoders and cycle time must
+    /// stay.
+    pub fn handle(
+        &mut self,
+        request: Request,
+        readings: &Readings,
+        has_torque: bool,
+    ) -> (Option<Response>, Effect) {
         match request {
             Request::Upload(address) => (Some(self.upload(address, readings)), Effect::None),
             Request::Download(objects::COMMIT, data) => self.commit(data, has_torque),
             Request::Download(address, data) => (Some(self.download(address, data)), Effect::None),
-            Request::Unsupported(address) => (Some(aborted(address, AbortCode::CommandUnknown)), Effect::None),
+            Request::Unsupported(address) => (
+                Some(aborted(address, AbortCode::CommandUnknown)),
+                Effect::None,
+            ),
             Request::Abort(_) => (None, Effect::None),
         }
     }
 
     fn upload(&self, address: Address, readings: &Readings) -> Response {
-        let value = self.own(address).or_else(|| reading(address, readings)).or_else(|| self.parameter(address));
+        let value = self
+            .own(address)
+            .or_else(|| reading(address, readings))
+            .or_else(|| self.parameter(address));
         match value {
             Some(value) => Response::Uploaded(address, value),
             None => aborted(address, missing(address)),
@@ -132,9 +149,13 @@ impl SdoServer {
             objects::COMMIT => Expedited::u32(self.commits),
             objects::SET_READ => Expedited::u8(u8::from(self.set_read == SetRead::Active)),
             objects::REFUSED_ROW => Expedited::u32(row),
-            objects::REFUSED_REASON => Expedited::u32(self.refused.map_or(0, |error| u32::from(error.code()))),
+            objects::REFUSED_REASON => {
+                Expedited::u32(self.refused.map_or(0, |error| u32::from(error.code())))
+            }
             objects::DECLARED_PERIOD => Expedited::u32(self.declared_period_us),
-            objects::HEARTBEAT_PERIOD => Expedited::u16(heartbeat_ms(self.active.get(Parameter::CyclePeriod))),
+            objects::HEARTBEAT_PERIOD => {
+                Expedited::u16(heartbeat_ms(self.active.get(Parameter::CyclePeriod)))
+            }
             _ => return None,
         })
     }
@@ -175,7 +196,9 @@ impl SdoServer {
         let (shortest, longest) = objects::PERIOD_US;
         self.declared_period_us = match data.to_u32() {
             period_us if period_us > longest.unsigned_abs() => return Err(AbortCode::ValueTooHigh),
-            period_us if period_us > 0 && period_us < shortest.unsigned_abs() => return Err(AbortCode::ValueTooLow),
+            period_us if period_us > 0 && period_us < shortest.unsigned_abs() => {
+                return Err(AbortCode::ValueTooLow);
+            }
             period_us => period_us,
         };
         Ok(())
@@ -184,7 +207,11 @@ impl SdoServer {
     fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
         let Some(entry) = objects::find(address) else {
             let is_known = objects::READINGS.iter().any(|(known, _)| *known == address);
-            return Err(if is_known { AbortCode::ReadOnly } else { missing(address) });
+            return Err(if is_known {
+                AbortCode::ReadOnly
+            } else {
+                missing(address)
+            });
         };
         self.staged.set(entry.parameter, checked(entry, data)?);
         Ok(())
@@ -193,7 +220,10 @@ impl SdoServer {
     fn commit(&mut self, data: Expedited, has_torque: bool) -> (Option<Response>, Effect) {
         let address = objects::COMMIT;
         match self.committed(data, has_torque) {
-            Ok(settings) => (Some(Response::Downloaded(address)), Effect::Commit(settings)),
+            Ok(settings) => (
+                Some(Response::Downloaded(address)),
+                Effect::Commit(settings),
+            ),
             Err(code) => (Some(aborted(address, code)), Effect::None),
         }
     }
@@ -229,7 +259,10 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
         objects::MOTOR_POSITION => Expedited::i32(readings.motor_position),
         objects::LOAD_POSITION => Expedited::i32(readings.load_position),
         objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
-        Address { index: objects::DIAGNOSTICS_INDEX, subindex } => return count(&readings.counts, subindex),
+        Address {
+            index: objects::DIAGNOSTICS_INDEX,
+            subindex,
+        } => return count(&readings.counts, subindex),
         _ => return None,
     })
 }
@@ -239,15 +272,21 @@ fn checked(entry: &Entry, data: Expedited) -> Result<i32, AbortCode> {
         return Err(AbortCode::LengthTooLow);
     }
     let value = data.to_i32();
-    entry.check(value).map(|()| value).map_err(|misfit| match misfit {
-        Misfit::TooLow => AbortCode::ValueTooLow,
-        Misfit::TooHigh => AbortCode::ValueTooHigh,
-        Misfit::Unsupported => AbortCode::ValueInvalid,
-    })
+    entry
+        .check(value)
+        .map(|()| value)
+        .map_err(|misfit| match misfit {
+            Misfit::TooLow => AbortCode::ValueTooLow,
+            Misfit::TooHigh => AbortCode::ValueTooHigh,
+            Misfit::Unsupported => AbortCode::ValueInvalid,
+        })
 }
 
 /// The row of a parameter in `docs/objects.md`, from 1.
-#[expect(clippy::as_conversions, reason = "repr(usize): the discriminant is the place, far below 2^32")]
+#[expect(
+    clippy::as_conversions,
+    reason = "repr(usize): the discriminant is the place, far below 2^32"
+)]
 const fn row(parameter: Parameter) -> u32 {
     (parameter as u32).saturating_add(1)
 }
@@ -261,11 +300,19 @@ const fn heartbeat_ms(period_us: i32) -> u16 {
 /// A cycle time is at most 20 000 µs.
 #[expect(clippy::as_conversions, reason = "cut to the range of the type")]
 const fn saturated(period_us: i32) -> u16 {
-    if period_us > 65_535 { u16::MAX } else { period_us.unsigned_abs() as u16 }
+    if period_us > 65_535 {
+        u16::MAX
+    } else {
+        period_us.unsigned_abs() as u16
+    }
 }
 
 fn missing(address: Address) -> AbortCode {
-    if objects::index_exists(address.index) { AbortCode::SubindexMissing } else { AbortCode::ObjectMissing }
+    if objects::index_exists(address.index) {
+        AbortCode::SubindexMissing
+    } else {
+        AbortCode::ObjectMissing
+    }
 }
 
 fn aborted(address: Address, code: AbortCode) -> Response {
@@ -304,15 +351,36 @@ mod tests {
     #[test]
     fn a_value_out_of_range_is_refused_before_it_is_acknowledged() {
         let mut server = SdoServer::default();
-        assert_eq!(code(ask(&mut server, write(0x2110, 3, 1_000_001))), AbortCode::ValueTooHigh.value());
-        assert_eq!(code(ask(&mut server, write(0x2100, 3, -1))), AbortCode::ValueTooLow.value());
-        assert_eq!(code(ask(&mut server, write(0x605A, 0, 3))), AbortCode::ValueInvalid.value());
-        assert_eq!(code(ask(&mut server, write(0x2100, 9, 0))), AbortCode::SubindexMissing.value());
-        assert_eq!(code(ask(&mut server, write(0x3000, 0, 0))), AbortCode::ObjectMissing.value());
+        assert_eq!(
+            code(ask(&mut server, write(0x2110, 3, 1_000_001))),
+            AbortCode::ValueTooHigh.value()
+        );
+        assert_eq!(
+            code(ask(&mut server, write(0x2100, 3, -1))),
+            AbortCode::ValueTooLow.value()
+        );
+        assert_eq!(
+            code(ask(&mut server, write(0x605A, 0, 3))),
+            AbortCode::ValueInvalid.value()
+        );
+        assert_eq!(
+            code(ask(&mut server, write(0x2100, 9, 0))),
+            AbortCode::SubindexMissing.value()
+        );
+        assert_eq!(
+            code(ask(&mut server, write(0x3000, 0, 0))),
+            AbortCode::ObjectMissing.value()
+        );
         let short = Request::Download(Address::new(0x2100, 3), Expedited::u16(1));
-        assert_eq!(code(ask(&mut server, short)), AbortCode::LengthTooLow.value());
+        assert_eq!(
+            code(ask(&mut server, short)),
+            AbortCode::LengthTooLow.value()
+        );
         let segmented = Request::Unsupported(Address::new(0x2100, 3));
-        assert_eq!(code(ask(&mut server, segmented)), AbortCode::CommandUnknown.value());
+        assert_eq!(
+            code(ask(&mut server, segmented)),
+            AbortCode::CommandUnknown.value()
+        );
         assert_eq!(server.staged, ParameterSet::default());
     }
 
@@ -333,29 +401,49 @@ mod tests {
     fn nothing_is_active_before_the_commit_and_everything_after_it() {
         let (mut server, delay) = (SdoServer::default(), Address::new(0x2110, 3));
         let (answer, effect) = ask(&mut server, write(0x2110, 3, 7000));
-        assert_eq!((answer, effect), (Some(Response::Downloaded(delay)), Effect::None));
+        assert_eq!(
+            (answer, effect),
+            (Some(Response::Downloaded(delay)), Effect::None)
+        );
         let choose = |set| Request::Download(objects::SET_READ, Expedited::u8(set));
         assert_eq!(read(&mut server, delay), 7000, "staged");
         ask(&mut server, choose(1));
         assert_eq!(read(&mut server, delay), 0, "active");
-        let (_, Effect::Commit(settings)) = ask(&mut server, COMMIT) else { panic!("no commit") };
+        let (_, Effect::Commit(settings)) = ask(&mut server, COMMIT) else {
+            panic!("no commit")
+        };
         assert_eq!(settings.config.pulse.start_delay_cycles, 7);
-        assert_eq!((read(&mut server, delay), read(&mut server, objects::COMMIT)), (7000, 1));
-        assert_eq!(code(ask(&mut server, choose(2))), AbortCode::ValueTooHigh.value());
+        assert_eq!(
+            (read(&mut server, delay), read(&mut server, objects::COMMIT)),
+            (7000, 1)
+        );
+        assert_eq!(
+            code(ask(&mut server, choose(2))),
+            AbortCode::ValueTooHigh.value()
+        );
     }
 
     #[test]
     fn a_set_that_does_not_go_together_is_not_committed_and_says_where() {
         let mut server = SdoServer::default();
         ask(&mut server, write(0x2111, 0, 2560));
-        assert_eq!(code(ask(&mut server, COMMIT)), AbortCode::ParameterIncompatible.value());
+        assert_eq!(
+            code(ask(&mut server, COMMIT)),
+            AbortCode::ParameterIncompatible.value()
+        );
         let row = usize::try_from(read(&mut server, objects::REFUSED_ROW)).unwrap();
         assert_eq!(objects::TABLE[row - 1].parameter, Parameter::VelocityLimit);
         let reason = SetError::WithoutLimit(Parameter::VelocityLimit).code();
-        assert_eq!(read(&mut server, objects::REFUSED_REASON), i32::from(reason));
+        assert_eq!(
+            read(&mut server, objects::REFUSED_REASON),
+            i32::from(reason)
+        );
         assert_eq!(server.active, ParameterSet::default());
         let wrong_key = Request::Download(objects::COMMIT, Expedited::u32(1));
-        assert_eq!(code(ask(&mut server, wrong_key)), AbortCode::ValueInvalid.value());
+        assert_eq!(
+            code(ask(&mut server, wrong_key)),
+            AbortCode::ValueInvalid.value()
+        );
         ask(&mut server, write(0x2111, 0, 0));
         assert!(matches!(ask(&mut server, COMMIT), (_, Effect::Commit(_))));
         assert_eq!(read(&mut server, objects::REFUSED_ROW), 0);
@@ -365,15 +453,29 @@ mod tests {
     fn encoders_and_cycle_time_stay_while_there_is_torque() {
         for parameter in crate::parameters::ONLY_WITHOUT_TORQUE {
             let mut server = SdoServer::default();
-            let entry = objects::TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
-            let other = if entry.default == entry.max { entry.min } else { entry.default + 1 };
+            let entry = objects::TABLE
+                .iter()
+                .find(|entry| entry.parameter == parameter)
+                .unwrap();
+            let other = if entry.default == entry.max {
+                entry.min
+            } else {
+                entry.default + 1
+            };
             server.stage(parameter, other);
             let refused = server.handle(COMMIT, &Readings::default(), true);
-            assert_eq!(code(refused), AbortCode::DeviceState.value(), "{parameter:?}");
+            assert_eq!(
+                code(refused),
+                AbortCode::DeviceState.value(),
+                "{parameter:?}"
+            );
         }
         let mut server = SdoServer::default();
         server.stage(Parameter::PulseStartDelay, 7000);
-        assert!(matches!(server.handle(COMMIT, &Readings::default(), true), (_, Effect::Commit(_))));
+        assert!(matches!(
+            server.handle(COMMIT, &Readings::default(), true),
+            (_, Effect::Commit(_))
+        ));
     }
 
     #[test]
@@ -382,9 +484,21 @@ mod tests {
         assert_eq!(server.declared_period_us(), None);
         let declare = |us| Request::Download(objects::DECLARED_PERIOD, Expedited::u32(us));
         ask(&mut server, declare(2000));
-        assert_eq!((server.declared_period_us(), read(&mut server, objects::DECLARED_PERIOD)), (Some(2000), 2000));
-        assert_eq!(code(ask(&mut server, declare(99))), AbortCode::ValueTooLow.value());
-        assert_eq!(code(ask(&mut server, declare(20_001))), AbortCode::ValueTooHigh.value());
+        assert_eq!(
+            (
+                server.declared_period_us(),
+                read(&mut server, objects::DECLARED_PERIOD)
+            ),
+            (Some(2000), 2000)
+        );
+        assert_eq!(
+            code(ask(&mut server, declare(99))),
+            AbortCode::ValueTooLow.value()
+        );
+        assert_eq!(
+            code(ask(&mut server, declare(20_001))),
+            AbortCode::ValueTooHigh.value()
+        );
         assert_eq!(server.staged, ParameterSet::default());
     }
 
@@ -429,6 +543,8 @@ mod tests {
     }
 
     fn fits(set: &ParameterSet) -> bool {
-        objects::TABLE.iter().all(|entry| entry.check(set.get(entry.parameter)).is_ok())
+        objects::TABLE
+            .iter()
+            .all(|entry| entry.check(set.get(entry.parameter)).is_ok())
     }
 }

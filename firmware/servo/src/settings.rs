@@ -1,6 +1,8 @@
-//! What the drive runs on: one parameter set in machine units of its cycle time, fit to run as a whole.
+//! What the drive runs on: one parameter set in machine units of its cycle time, fit to run as a
+//! whole.
 //!
-//! [`crate::conversion`] makes it from a [`crate::parameters::ParameterSet`] when that is committed; the cycle only reads it.
+//! [`crate::conversion`] makes it from a [`crate::parameters::ParameterSet`] when that is
+//! committed; the cycle only reads it.
 
 use controller::Config;
 use controller::units::{PositionError, Torque, WayPerIncrement};
@@ -83,7 +85,8 @@ pub enum StopOption {
     QuickStopAndStay,
 }
 
-/// What the drive does when the connection to the master is lost. The standard's 0, nothing, is not taken: an axis does not go on without its master.
+/// What the drive does when the connection to the master is lost. The standard's 0, nothing, is not
+/// taken: an axis does not go on without its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AbortConnectionOption {
     /// It latches a fault.

@@ -1,7 +1,9 @@
-//! The power stage as a port of the drive: ready, enabled, fault and brake come in; enable, brake and torque go out.
+//! The power stage as a port of the drive: ready, enabled, fault and brake come in; enable, brake
+//! and torque go out.
 //!
-//! Behind it stands the plant on CAN (a torque drive of CiA 402, [`StageInput::from`] its status frame), or an inverter on the
-//! board. The drive believes only what the stage says of itself: `operation enabled` without its word does not exist.
+//! Behind it stands the plant on CAN (a torque drive of CiA 402, [`StageInput::from`] its status
+//! frame), or an inverter on the board. The drive believes only what the stage says of itself:
+//! `operation enabled` without its word does not exist.
 
 use controller::units::Torque;
 use protocol::Fault;
@@ -26,13 +28,21 @@ impl StageInput {
     /// What a stage says.
     #[must_use]
     pub const fn new(state: DriveState, fault: Option<Fault>, brake: BrakeState) -> Self {
-        Self { state, fault, brake }
+        Self {
+            state,
+            fault,
+            brake,
+        }
     }
 
     /// It is supplied and has no fault.
     #[must_use]
     pub const fn is_ready(self) -> bool {
-        self.fault.is_none() && !matches!(self.state, DriveState::Fault | DriveState::FaultReactionActive)
+        self.fault.is_none()
+            && !matches!(
+                self.state,
+                DriveState::Fault | DriveState::FaultReactionActive
+            )
     }
 
     /// It delivers torque.
@@ -56,7 +66,11 @@ impl StageInput {
 
 impl From<PlantStatus> for StageInput {
     fn from(status: PlantStatus) -> Self {
-        Self::new(status.status.state().unwrap_or(DriveState::Fault), status.fault, status.brake)
+        Self::new(
+            status.status.state().unwrap_or(DriveState::Fault),
+            status.fault,
+            status.brake,
+        )
     }
 }
 
@@ -75,7 +89,11 @@ mod tests {
 
     #[test]
     fn a_stage_with_a_fault_is_neither_ready_nor_enabled_whatever_its_state_says() {
-        let faulty = StageInput::new(DriveState::OperationEnabled, Some(Fault::TorqueMissing), BrakeState::Open);
+        let faulty = StageInput::new(
+            DriveState::OperationEnabled,
+            Some(Fault::TorqueMissing),
+            BrakeState::Open,
+        );
         assert!(!faulty.is_ready() && !faulty.is_enabled());
         assert!(StageInput::default().is_ready() && !StageInput::default().is_enabled());
     }

@@ -6,9 +6,10 @@
 //!  began                 began + 0.6 P           began + P        began + 1.3 P
 //! ```
 //!
-//! P is the period of the active parameter set (1006h). The deadline leaves 0.4 P for the torque to reach the plant before the next SYNC; the
-//! own timer of a node comes 0.3 P after a SYNC that was due, so that a plant that missed SYNC still delivers its feedback before the servo's
-//! deadline (0.3 P before it). All times are bus times in µs, passed in from outside.
+//! P is the period of the active parameter set (1006h). The deadline leaves 0.4 P for the torque to
+//! reach the plant before the next SYNC; the own timer of a node comes 0.3 P after a SYNC that was
+//! due, so that a plant that missed SYNC still delivers its feedback before the servo's deadline
+//! (0.3 P before it). All times are bus times in µs, passed in from outside.
 
 use protocol::SyncCounter;
 
@@ -25,15 +26,21 @@ pub struct Timing {
 const DEADLINE_TENTHS: u32 = 6;
 /// Share of the period by which SYNC may be late before the node goes on without it, in tenths.
 const PATIENCE_TENTHS: u32 = 3;
-/// SYNC intervals in a row that differ from the period by more than a quarter before the node believes that the master has another one:
-/// one is a lost or late SYNC, and three in a row are a bus that is not fit for a closed loop anyway.
+/// SYNC intervals in a row that differ from the period by more than a quarter before the node
+/// believes that the master has another one: one is a lost or late SYNC, and three in a row are a
+/// bus that is not fit for a closed loop anyway.
 const ODD_INTERVALS: u8 = 3;
 
 impl Timing {
     /// A node that has not seen SYNC yet.
     #[must_use]
     pub const fn new(period_us: u32) -> Self {
-        Self { period_us, began_us: None, sync: None, odd_intervals: 0 }
+        Self {
+            period_us,
+            began_us: None,
+            sync: None,
+            odd_intervals: 0,
+        }
     }
 
     /// The same node with the period of another parameter set.
@@ -53,11 +60,15 @@ impl Timing {
         self.began_us = Some(self.sync_due_us().map_or(now_us, |due| due.min(now_us)));
     }
 
-    /// The SYNC of a cycle that was begun without it came after all; it sets the phase where it belongs to this cycle by its time.
+    /// The SYNC of a cycle that was begun without it came after all; it sets the phase where it
+    /// belongs to this cycle by its time.
     pub fn confirm(&mut self, now_us: u64, counter: SyncCounter) {
         self.note_sync(now_us, counter);
         let half = u64::from(self.period_us >> 1);
-        if self.began_us.is_none_or(|began| now_us.saturating_sub(began) < half) {
+        if self
+            .began_us
+            .is_none_or(|began| now_us.saturating_sub(began) < half)
+        {
             self.began_us = Some(now_us);
         }
     }
@@ -68,7 +79,11 @@ impl Timing {
             let wanted = cycles.saturating_mul(u64::from(self.period_us));
             let got = now_us.saturating_sub(last_us);
             let odd = got.abs_diff(wanted) > u64::from(self.period_us >> 2);
-            self.odd_intervals = if odd { self.odd_intervals.saturating_add(1) } else { 0 };
+            self.odd_intervals = if odd {
+                self.odd_intervals.saturating_add(1)
+            } else {
+                0
+            };
         }
         self.sync = Some((now_us, counter));
     }
@@ -88,25 +103,29 @@ impl Timing {
     /// When the present cycle closes without its frames.
     #[must_use]
     pub fn deadline_us(&self) -> Option<u64> {
-        self.began_us.map(|began| began.saturating_add(tenths(self.period_us, DEADLINE_TENTHS)))
+        self.began_us
+            .map(|began| began.saturating_add(tenths(self.period_us, DEADLINE_TENTHS)))
     }
 
     /// When the next SYNC is due.
     #[must_use]
     pub fn sync_due_us(&self) -> Option<u64> {
-        self.began_us.map(|began| began.saturating_add(u64::from(self.period_us)))
+        self.began_us
+            .map(|began| began.saturating_add(u64::from(self.period_us)))
     }
 
     /// When the node goes on without it.
     #[must_use]
     pub fn own_timer_us(&self) -> Option<u64> {
-        self.sync_due_us().map(|due| due.saturating_add(tenths(self.period_us, PATIENCE_TENTHS)))
+        self.sync_due_us()
+            .map(|due| due.saturating_add(tenths(self.period_us, PATIENCE_TENTHS)))
     }
 
     /// Whether the last SYNC frame is longer ago than a timeout.
     #[must_use]
     pub fn sync_is_gone(&self, now_us: u64, timeout_us: u64) -> bool {
-        self.sync.is_some_and(|(last, _)| now_us.saturating_sub(last) > timeout_us)
+        self.sync
+            .is_some_and(|(last, _)| now_us.saturating_sub(last) > timeout_us)
     }
 
     /// So many periods, µs.
@@ -141,7 +160,11 @@ mod tests {
         assert_eq!(timing.deadline_us(), Some(5600));
         assert_eq!(timing.own_timer_us(), Some(6300));
         timing.begin_without_sync(6300);
-        assert_eq!(timing.deadline_us(), Some(6600), "the phase is that of the SYNC that did not come");
+        assert_eq!(
+            timing.deadline_us(),
+            Some(6600),
+            "the phase is that of the SYNC that did not come"
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Watchdogs: how often in a row something was missing, and what that amounts to; and the counts of everything that was odd.
+//! Watchdogs: how often in a row something was missing, and what that amounts to; and the counts of
+//! everything that was odd.
 
 use protocol::Fault;
 
@@ -124,10 +125,19 @@ mod tests {
     #[test]
     fn so_many_misses_in_a_row_are_a_fault_named_after_the_last() {
         let mut watchdog = Watchdog::default();
-        for miss in [Some(Miss::Absent), Some(Miss::Absent), None, Some(Miss::Absent), Some(Miss::Stale)] {
+        for miss in [
+            Some(Miss::Absent),
+            Some(Miss::Absent),
+            None,
+            Some(Miss::Absent),
+            Some(Miss::Stale),
+        ] {
             assert_eq!(watchdog.feedback(miss, 2), None);
         }
-        assert_eq!(watchdog.feedback(Some(Miss::Implausible), 2), Some(Fault::EncoderJump));
+        assert_eq!(
+            watchdog.feedback(Some(Miss::Implausible), 2),
+            Some(Fault::EncoderJump)
+        );
         assert_eq!(watchdog.counts.implausible, 1);
     }
 
@@ -137,7 +147,12 @@ mod tests {
         for (missed, refused) in [(false, false), (true, false), (true, true), (false, true)] {
             watchdog.cycle(missed, refused);
         }
-        let Counts { computed, bridged, refused, .. } = watchdog.counts;
+        let Counts {
+            computed,
+            bridged,
+            refused,
+            ..
+        } = watchdog.counts;
         assert_eq!((computed, bridged, refused), (1, 1, 2));
     }
 }

@@ -1,12 +1,16 @@
-//! Bench sessions with the drive node alone: frames and time in, frames out, each session a claim about what the node does.
+//! Bench sessions with the drive node alone: frames and time in, frames out, each session a claim
+//! about what the node does.
 //!
-//! The bench is a master (SYNC, setpoints), a stage (status with its state and brake, as the control word asks) and an axis that moves exactly as the
-//! commanded reference does. One motor increment is 10 nm, so encoder counts and positions are the same numbers. Any frame can be left out.
+//! The bench is a master (SYNC, setpoints), a stage (status with its state and brake, as the
+//! control word asks) and an axis that moves exactly as the commanded reference does. One motor
+//! increment is 10 nm, so encoder counts and positions are the same numbers. Any frame can be left
+//! out.
 
 use controller::reference::Reference;
 use protocol::cob::AxisIds;
 use protocol::message::{
-    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, Status, Torque, decode,
+    Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint, Status,
+    Torque, decode,
 };
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::states::{BrakeState, Command, ControlWord, DriveState, StatusWord};
@@ -23,7 +27,10 @@ const OWN_TIMER_US: u64 = 300;
 
 /// Frames of a cycle that come.
 #[derive(Clone, Copy)]
-#[expect(clippy::struct_excessive_bools, reason = "each frame comes or does not")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each frame comes or does not"
+)]
 struct Comes {
     sync: bool,
     feedback: bool,
@@ -32,7 +39,12 @@ struct Comes {
     heartbeat: bool,
 }
 
-const ALL: Comes = Comes { sync: true, feedback: true, setpoint: true, heartbeat: true };
+const ALL: Comes = Comes {
+    sync: true,
+    feedback: true,
+    setpoint: true,
+    heartbeat: true,
+};
 
 struct Bench {
     servo: Servo,
@@ -98,7 +110,11 @@ impl Bench {
     }
 
     fn way_up(&mut self) {
-        for control in [ControlWord::SHUTDOWN, ControlWord::SWITCH_ON, ControlWord::ENABLE_OPERATION] {
+        for control in [
+            ControlWord::SHUTDOWN,
+            ControlWord::SWITCH_ON,
+            ControlWord::ENABLE_OPERATION,
+        ] {
             self.control = control;
             self.cycles(3);
         }
@@ -126,18 +142,26 @@ impl Bench {
 
     /// Commanded velocity, counts per cycle.
     fn speed(&self) -> f64 {
-        self.servo.reference().map_or(0.0, |reference| reference.velocity.0.to_num())
+        self.servo
+            .reference()
+            .map_or(0.0, |reference| reference.velocity.0.to_num())
     }
 
     fn set(&mut self, values: &[(Parameter, i32)]) {
         for (parameter, value) in values {
-            assert!(matches!(self.write(*parameter, *value), Response::Downloaded(_)), "{parameter:?} {value}");
+            assert!(
+                matches!(self.write(*parameter, *value), Response::Downloaded(_)),
+                "{parameter:?} {value}"
+            );
         }
         assert!(matches!(self.commit(), Response::Downloaded(_)));
     }
 
     fn write(&mut self, parameter: Parameter, value: i32) -> Response {
-        let entry = TABLE.iter().find(|entry| entry.parameter == parameter).unwrap();
+        let entry = TABLE
+            .iter()
+            .find(|entry| entry.parameter == parameter)
+            .unwrap();
         self.download(entry.address, Expedited::i32(value))
     }
 
@@ -159,13 +183,18 @@ impl Bench {
 
     /// A frame for the node; what it answers is kept.
     fn give(&mut self, message: Message) {
-        let frames = self.servo.on_frame(&message.encode(self.ids), self.now_us).to_vec();
+        let frames = self
+            .servo
+            .on_frame(&message.encode(self.ids), self.now_us)
+            .to_vec();
         self.keep(frames);
     }
 
     fn keep(&mut self, frames: Vec<CanFrame>) {
         for frame in frames {
-            let Ok(Decoded::Message(message)) = decode(self.ids, &frame) else { panic!("{frame:?}") };
+            let Ok(Decoded::Message(message)) = decode(self.ids, &frame) else {
+                panic!("{frame:?}")
+            };
             self.sent.push((self.now_us, message));
             if let Message::Torque(torque) = message {
                 self.on_torque(torque);
@@ -189,19 +218,35 @@ impl Bench {
 
     fn give_setpoint(&mut self) {
         let position = SetpointFine::saturating(self.setpoint * 256);
-        self.give(Message::Setpoint(Setpoint { control: self.control, counter: self.counter.next(), position }));
+        self.give(Message::Setpoint(Setpoint {
+            control: self.control,
+            counter: self.counter.next(),
+            position,
+        }));
     }
 
     fn feedback(&self) -> Message {
-        let (motor, load) = (i32::try_from(self.position).unwrap(), LoadIncrements24::from_counts(self.position));
-        Message::Feedback(Feedback { motor: MotorIncrements(motor), load, counter: self.counter })
+        let (motor, load) = (
+            i32::try_from(self.position).unwrap(),
+            LoadIncrements24::from_counts(self.position),
+        );
+        Message::Feedback(Feedback {
+            motor: MotorIncrements(motor),
+            load,
+            counter: self.counter,
+        })
     }
 
     /// One cycle; a plant that misses SYNC sends its feedback by its own timer.
     fn cycle(&mut self) {
         let begin_us = self.now_us;
         self.setpoint += self.velocity;
-        let Comes { sync, feedback, setpoint, heartbeat } = self.comes;
+        let Comes {
+            sync,
+            feedback,
+            setpoint,
+            heartbeat,
+        } = self.comes;
         if sync {
             self.sync();
         }
@@ -248,7 +293,8 @@ impl Bench {
     }
 
     fn is_released(&self) -> bool {
-        self.brake == BrakeState::Open || self.brake == BrakeState::Moving && self.brake_left & OPENS != 0
+        self.brake == BrakeState::Open
+            || self.brake == BrakeState::Moving && self.brake_left & OPENS != 0
     }
 
     fn brake_opens(&mut self, opens: bool) {
@@ -261,14 +307,23 @@ impl Bench {
         }
         self.brake_left -= 1;
         if self.brake_left & !OPENS == 0 {
-            self.brake = if self.brake_left & OPENS != 0 { BrakeState::Open } else { BrakeState::Closed };
+            self.brake = if self.brake_left & OPENS != 0 {
+                BrakeState::Open
+            } else {
+                BrakeState::Closed
+            };
             self.report();
         }
     }
 
     fn report(&mut self) {
         let status = StatusWord::of(self.stage).with(StatusWord::VOLTAGE_ENABLED);
-        let status = PlantStatus { status, brake: self.brake, fault: None, torque: TorqueMicroNm(0) };
+        let status = PlantStatus {
+            status,
+            brake: self.brake,
+            fault: None,
+            torque: TorqueMicroNm(0),
+        };
         self.give(Message::PlantStatus(status));
     }
 
@@ -295,9 +350,10 @@ impl Bench {
 
     fn emergencies(&mut self) -> Vec<Option<Fault>> {
         let emergency = |(_, message)| match message {
-            Message::ServoEmergency(EmergencyMessage { vendor_specific: [code, ..], .. }) => {
-                Some(Fault::from_code(code))
-            }
+            Message::ServoEmergency(EmergencyMessage {
+                vendor_specific: [code, ..],
+                ..
+            }) => Some(Fault::from_code(code)),
             _ => None,
         };
         self.take_sent().into_iter().filter_map(emergency).collect()
@@ -332,9 +388,19 @@ fn operation_is_enabled_only_after_the_stage_has_confirmed() {
     assert_eq!(bench.state(), DriveState::OperationEnabled);
     let torques = bench.torques();
     let enables = |torque: &Torque| torque.control.command() == Some(Command::EnableOperation);
-    let asked = torques.iter().position(|(_, torque)| enables(torque)).unwrap();
-    let told = torques.iter().position(|(_, torque)| torque.control.has(ControlWord::RELEASE_BRAKE)).unwrap();
-    assert_eq!(told, asked + 1, "the status comes within the cycle in which the stage was asked");
+    let asked = torques
+        .iter()
+        .position(|(_, torque)| enables(torque))
+        .unwrap();
+    let told = torques
+        .iter()
+        .position(|(_, torque)| torque.control.has(ControlWord::RELEASE_BRAKE))
+        .unwrap();
+    assert_eq!(
+        told,
+        asked + 1,
+        "the status comes within the cycle in which the stage was asked"
+    );
 }
 
 #[test]
@@ -359,7 +425,11 @@ fn a_stage_that_refuses_is_a_fault_within_three_cycles() {
     bench.control = ControlWord::ENABLE_OPERATION;
     bench.take_sent();
     bench.cycles(3);
-    assert_eq!(bench.servo.drive().fault(), None, "its patience is three cycles");
+    assert_eq!(
+        bench.servo.drive().fault(),
+        None,
+        "its patience is three cycles"
+    );
     bench.cycles(1);
     assert_eq!(bench.emergencies(), [Some(Fault::StageRefused)]);
     assert_eq!(bench.servo.torque().to_micro_nm_lossy(), 0);
@@ -373,41 +443,83 @@ fn a_stage_that_drops_out_is_a_fault_at_once() {
     assert_eq!(bench.servo.drive().fault(), Some(Fault::StageLost));
     bench.take_sent();
     bench.cycle();
-    let [(_, torque)] = bench.torques()[..] else { panic!("one torque a cycle") };
-    assert_eq!((torque.torque.0, torque.control), (0, ControlWord::DISABLE_VOLTAGE));
+    let [(_, torque)] = bench.torques()[..] else {
+        panic!("one torque a cycle")
+    };
+    assert_eq!(
+        (torque.torque.0, torque.control),
+        (0, ControlWord::DISABLE_VOLTAGE)
+    );
 }
 
 #[test]
 fn the_brake_opens_under_torque_and_torque_stays_until_it_bites() {
-    let brake = [(Parameter::BrakeOpening, 30_000), (Parameter::BrakeClosing, 40_000)];
+    let brake = [
+        (Parameter::BrakeOpening, 30_000),
+        (Parameter::BrakeClosing, 40_000),
+    ];
     let mut bench = Bench::with_brake(&brake, 30);
     bench.way_up();
-    assert_eq!(bench.state(), DriveState::SwitchedOn, "the brake is on its way");
-    assert!(bench.servo.torque().to_micro_nm_lossy() > 900_000, "the preset holds the axis meanwhile");
+    assert_eq!(
+        bench.state(),
+        DriveState::SwitchedOn,
+        "the brake is on its way"
+    );
+    assert!(
+        bench.servo.torque().to_micro_nm_lossy() > 900_000,
+        "the preset holds the axis meanwhile"
+    );
     bench.cycles(40);
-    assert_eq!((bench.state(), bench.brake), (DriveState::OperationEnabled, BrakeState::Open));
+    assert_eq!(
+        (bench.state(), bench.brake),
+        (DriveState::OperationEnabled, BrakeState::Open)
+    );
     bench.control = ControlWord::SWITCH_ON;
     bench.take_sent();
     bench.cycles(20);
-    assert_eq!((bench.stage, bench.brake), (DriveState::OperationEnabled, BrakeState::Moving));
-    assert!(bench.torques().iter().all(|(_, torque)| torque.torque.0 > 900_000));
+    assert_eq!(
+        (bench.stage, bench.brake),
+        (DriveState::OperationEnabled, BrakeState::Moving)
+    );
+    assert!(
+        bench
+            .torques()
+            .iter()
+            .all(|(_, torque)| torque.torque.0 > 900_000)
+    );
     bench.cycles(20);
-    assert_eq!((bench.state(), bench.brake), (DriveState::SwitchedOn, BrakeState::Closed));
+    assert_eq!(
+        (bench.state(), bench.brake),
+        (DriveState::SwitchedOn, BrakeState::Closed)
+    );
     assert_eq!(bench.servo.torque().to_micro_nm_lossy(), 0);
 }
 
 #[test]
 fn without_sync_the_torque_is_there_at_the_deadline_of_the_sync_that_was_due() {
     let mut bench = Bench::enabled(&[]);
-    bench.comes = Comes { sync: false, feedback: false, setpoint: false, ..ALL };
+    bench.comes = Comes {
+        sync: false,
+        feedback: false,
+        setpoint: false,
+        ..ALL
+    };
     bench.take_sent();
     let due_us = bench.now_us;
     bench.cycle();
-    let [(at_us, torque)] = bench.torques()[..] else { panic!("one torque a cycle") };
-    assert_eq!((at_us, torque.control.command()), (due_us + DEADLINE_US, Some(Command::EnableOperation)));
+    let [(at_us, torque)] = bench.torques()[..] else {
+        panic!("one torque a cycle")
+    };
+    assert_eq!(
+        (at_us, torque.control.command()),
+        (due_us + DEADLINE_US, Some(Command::EnableOperation))
+    );
     bench.comes = ALL;
     bench.cycles(10);
-    assert_eq!((bench.state(), bench.servo.bridged()), (DriveState::OperationEnabled, (0, 0)));
+    assert_eq!(
+        (bench.state(), bench.servo.bridged()),
+        (DriveState::OperationEnabled, (0, 0))
+    );
 }
 
 #[test]
@@ -417,8 +529,13 @@ fn without_feedback_the_torque_comes_at_six_tenths_of_the_period() {
     bench.take_sent();
     let begin_us = bench.now_us;
     bench.cycle();
-    let [(at_us, torque)] = bench.torques()[..] else { panic!("one torque a cycle") };
-    assert_eq!((at_us, torque.counter.next()), (begin_us + DEADLINE_US, bench.counter));
+    let [(at_us, torque)] = bench.torques()[..] else {
+        panic!("one torque a cycle")
+    };
+    assert_eq!(
+        (at_us, torque.counter.next()),
+        (begin_us + DEADLINE_US, bench.counter)
+    );
     let counts = bench.servo.counts();
     assert_eq!((counts.bridged, counts.by_deadline), (1, 1));
 }
@@ -426,18 +543,31 @@ fn without_feedback_the_torque_comes_at_six_tenths_of_the_period() {
 #[test]
 fn a_feedback_of_the_next_cycle_begins_it_where_sync_is_lost() {
     let mut bench = Bench::enabled(&[]);
-    bench.comes = Comes { sync: false, setpoint: false, ..ALL };
+    bench.comes = Comes {
+        sync: false,
+        setpoint: false,
+        ..ALL
+    };
     bench.take_sent();
     let due_us = bench.now_us;
     bench.pass_until(due_us + OWN_TIMER_US - 50);
     bench.give(bench.feedback());
     assert!(bench.torques().is_empty(), "the setpoint is not in yet");
     bench.give_setpoint();
-    let [(at_us, torque)] = bench.torques()[..] else { panic!("one torque a cycle") };
-    assert_eq!((at_us, torque.counter), (due_us + OWN_TIMER_US - 50, bench.counter));
+    let [(at_us, torque)] = bench.torques()[..] else {
+        panic!("one torque a cycle")
+    };
+    assert_eq!(
+        (at_us, torque.counter),
+        (due_us + OWN_TIMER_US - 50, bench.counter)
+    );
     let begun_us = bench.now_us;
     bench.sync();
-    assert_eq!(protocol::Station::sync_due_us(&bench.servo), Some(begun_us + PERIOD_US), "a late SYNC sets the phase");
+    assert_eq!(
+        protocol::Station::sync_due_us(&bench.servo),
+        Some(begun_us + PERIOD_US),
+        "a late SYNC sets the phase"
+    );
 }
 
 #[test]
@@ -455,8 +585,15 @@ fn late_doubled_and_stale_frames_change_nothing_and_are_counted() {
     bench.give(bench.feedback());
     assert_eq!(bench.torques().len(), 1, "one torque a cycle");
     let counts = bench.servo.counts();
-    assert_eq!((counts.stale - before.stale, counts.doubled - before.doubled), (1, 2), "{counts:?}");
-    assert_eq!((counts.bridged, counts.refused), (before.bridged, before.refused));
+    assert_eq!(
+        (counts.stale - before.stale, counts.doubled - before.doubled),
+        (1, 2),
+        "{counts:?}"
+    );
+    assert_eq!(
+        (counts.bridged, counts.refused),
+        (before.bridged, before.refused)
+    );
 }
 
 #[test]
@@ -476,7 +613,8 @@ fn heartbeats_come_in_every_nmt_state_by_time() {
     }
     bench.cycles(1000);
     let beats = bench.take_sent().into_iter();
-    let beats = beats.filter(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Operational));
+    let beats =
+        beats.filter(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Operational));
     assert_eq!(beats.count(), 10);
 }
 
@@ -486,13 +624,25 @@ fn an_nmt_stop_while_moving_ramps_down_first() {
     bench.nmt(NmtCommand::StopRemoteNode);
     assert_eq!(bench.state(), DriveState::QuickStopActive);
     bench.cycles(10);
-    assert!((5_000.0..6_000.0).contains(&bench.speed()), "5 m/s² take 500 counts a cycle off: {}", bench.speed());
+    assert!(
+        (5_000.0..6_000.0).contains(&bench.speed()),
+        "5 m/s² take 500 counts a cycle off: {}",
+        bench.speed()
+    );
     bench.cycles(15);
-    assert_eq!((bench.state(), bench.servo.reference()), (DriveState::SwitchOnDisabled, None));
+    assert_eq!(
+        (bench.state(), bench.servo.reference()),
+        (DriveState::SwitchOnDisabled, None)
+    );
     bench.take_sent();
     bench.cycles(200);
     let after = bench.take_sent();
-    assert!(after.iter().all(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Stopped)), "{after:?}");
+    assert!(
+        after
+            .iter()
+            .all(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Stopped)),
+        "{after:?}"
+    );
 }
 
 #[test]
@@ -502,10 +652,25 @@ fn an_nmt_reset_while_moving_ramps_down_and_then_boots() {
     bench.nmt(NmtCommand::ResetNode);
     bench.cycles(40);
     let sent = bench.take_sent();
-    let boot = sent.iter().position(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Initialising));
-    let torques = sent[..boot.unwrap()].iter().filter(|(_, message)| matches!(message, Message::Torque(_))).count();
+    let boot = sent
+        .iter()
+        .position(|(_, message)| *message == Message::ServoHeartbeat(NmtState::Initialising));
+    let torques = sent[..boot.unwrap()]
+        .iter()
+        .filter(|(_, message)| matches!(message, Message::Torque(_)))
+        .count();
     assert!((20..=25).contains(&torques), "{torques} cycles of ramp");
-    assert_eq!(bench.servo.settings().unwrap().config.cascade.torque_limit.to_micro_nm_lossy(), 0);
+    assert_eq!(
+        bench
+            .servo
+            .settings()
+            .unwrap()
+            .config
+            .cascade
+            .torque_limit
+            .to_micro_nm_lossy(),
+        0
+    );
 }
 
 #[test]
@@ -519,7 +684,9 @@ fn the_status_comes_at_once_on_a_change_and_else_every_tenth_cycle() {
     assert_eq!(times[1] - times[0], 10 * PERIOD_US);
     bench.control = ControlWord::DISABLE_VOLTAGE;
     bench.cycle();
-    let [(_, status)] = bench.statuses()[..] else { panic!("a status in the cycle of the change") };
+    let [(_, status)] = bench.statuses()[..] else {
+        panic!("a status in the cycle of the change")
+    };
     assert_eq!(status.status.state(), Some(DriveState::SwitchOnDisabled));
 }
 
@@ -533,18 +700,31 @@ fn bits_4_9_10_and_12_say_supply_remote_standing_and_following() {
     };
     let has = |word: StatusWord, bits: u16| word.0 & bits == bits;
     let following = word(&mut bench);
-    assert!(has(following, StatusWord::VOLTAGE_ENABLED | StatusWord::REMOTE | StatusWord::FOLLOWS_SETPOINT));
+    assert!(has(
+        following,
+        StatusWord::VOLTAGE_ENABLED | StatusWord::REMOTE | StatusWord::FOLLOWS_SETPOINT
+    ));
     assert!(!has(following, StatusWord::TARGET_REACHED));
     bench.control = ControlWord::ENABLE_OPERATION.with(ControlWord::HALT);
     let halting = word(&mut bench);
-    assert!(!has(halting, StatusWord::FOLLOWS_SETPOINT) && !has(halting, StatusWord::TARGET_REACHED));
+    assert!(
+        !has(halting, StatusWord::FOLLOWS_SETPOINT) && !has(halting, StatusWord::TARGET_REACHED)
+    );
     bench.cycles(20);
-    assert!(has(word(&mut bench), StatusWord::TARGET_REACHED), "halted and standing");
+    assert!(
+        has(word(&mut bench), StatusWord::TARGET_REACHED),
+        "halted and standing"
+    );
     bench.nmt(NmtCommand::StopRemoteNode);
     bench.take_sent();
     bench.cycle();
-    let [(_, status)] = bench.statuses()[..] else { panic!("a status at once") };
-    assert!(!has(status.status, StatusWord::REMOTE), "control words do not count any more");
+    let [(_, status)] = bench.statuses()[..] else {
+        panic!("a status at once")
+    };
+    assert!(
+        !has(status.status, StatusWord::REMOTE),
+        "control words do not count any more"
+    );
 }
 
 #[test]
@@ -554,7 +734,10 @@ fn a_refusal_is_said_once_and_again_on_the_next_command() {
     bench.way_up();
     bench.cycles(50);
     assert_eq!(bench.emergencies(), [Some(Fault::ReferenceTooFar)]);
-    assert_eq!((bench.state(), bench.servo.drive().fault()), (DriveState::SwitchedOn, None));
+    assert_eq!(
+        (bench.state(), bench.servo.drive().fault()),
+        (DriveState::SwitchedOn, None)
+    );
     bench.control = ControlWord::SWITCH_ON;
     bench.cycles(2);
     bench.control = ControlWord::ENABLE_OPERATION;
@@ -571,7 +754,11 @@ fn only_the_rising_edge_of_a_fault_reset_resets() {
     bench.cycles(5);
     bench.comes.feedback = true;
     bench.cycles(20);
-    assert_eq!(bench.servo.drive().fault(), Some(Fault::FeedbackMissing), "the bit stood before the fault");
+    assert_eq!(
+        bench.servo.drive().fault(),
+        Some(Fault::FeedbackMissing),
+        "the bit stood before the fault"
+    );
     bench.control = ControlWord::DISABLE_VOLTAGE;
     bench.cycles(3);
     assert_eq!(bench.state(), DriveState::Fault);
@@ -588,10 +775,18 @@ fn a_set_that_is_committed_while_moving_acts_as_a_whole_in_the_next_cycle() {
     assert_eq!(bench.speed(), 10_000.0, "written, not committed");
     assert!(matches!(bench.commit(), Response::Downloaded(_)));
     bench.cycles(3);
-    assert_eq!(bench.servo.drive().fault(), Some(Fault::LimitOverrun), "faster than the new limit");
+    assert_eq!(
+        bench.servo.drive().fault(),
+        Some(Fault::LimitOverrun),
+        "faster than the new limit"
+    );
     let before = bench.speed();
     bench.cycle();
-    assert_eq!(before - bench.speed(), 500.0, "and down with the acceleration of the axis");
+    assert_eq!(
+        before - bench.speed(),
+        500.0,
+        "and down with the acceleration of the axis"
+    );
 }
 
 #[test]
@@ -623,12 +818,18 @@ fn a_row_of_lost_setpoints_is_ridden_out_and_a_longer_one_ramps_down() {
     let mut bench = Bench::moving();
     bench.comes.setpoint = false;
     bench.cycles(3);
-    assert_eq!((bench.state(), bench.speed()), (DriveState::OperationEnabled, 10_000.0));
+    assert_eq!(
+        (bench.state(), bench.speed()),
+        (DriveState::OperationEnabled, 10_000.0)
+    );
     bench.cycles(1);
     assert_eq!(bench.servo.drive().fault(), Some(Fault::SetpointMissing));
     assert_eq!(bench.state(), DriveState::FaultReactionActive);
     bench.cycles(30);
-    assert_eq!((bench.state(), bench.servo.torque().to_micro_nm_lossy()), (DriveState::Fault, 0));
+    assert_eq!(
+        (bench.state(), bench.servo.torque().to_micro_nm_lossy()),
+        (DriveState::Fault, 0)
+    );
 }
 
 #[test]
@@ -642,7 +843,10 @@ fn halt_stops_and_its_end_goes_on_from_where_the_axis_stands() {
     bench.control = ControlWord::ENABLE_OPERATION;
     bench.cycles(200);
     let target: f64 = bench.reference().position.0.to_num();
-    assert_eq!((bench.state(), target), (DriveState::OperationEnabled, bench.setpoint as f64));
+    assert_eq!(
+        (bench.state(), target),
+        (DriveState::OperationEnabled, bench.setpoint as f64)
+    );
 }
 
 #[test]
@@ -664,16 +868,25 @@ fn a_sync_that_is_gone_is_a_fault_also_where_setpoints_and_feedback_still_show_t
     bench.comes.sync = false;
     bench.take_sent();
     bench.cycles(5);
-    assert_eq!((bench.state(), bench.speed()), (DriveState::OperationEnabled, 10_000.0));
+    assert_eq!(
+        (bench.state(), bench.speed()),
+        (DriveState::OperationEnabled, 10_000.0)
+    );
     bench.cycles(2);
     assert_eq!(bench.emergencies(), [Some(Fault::SyncMissing)]);
     bench.cycles(25);
-    assert_eq!((bench.state(), bench.servo.torque().to_micro_nm_lossy()), (DriveState::Fault, 0));
+    assert_eq!(
+        (bench.state(), bench.servo.torque().to_micro_nm_lossy()),
+        (DriveState::Fault, 0)
+    );
 }
 
 #[test]
 fn an_emergency_of_the_plant_stops_the_axis_and_a_drop_out_keeps_its_name() {
-    for (of_the_plant, fault) in [(Fault::TorqueMissing, Fault::PeerFault), (Fault::StageLost, Fault::StageLost)] {
+    for (of_the_plant, fault) in [
+        (Fault::TorqueMissing, Fault::PeerFault),
+        (Fault::StageLost, Fault::StageLost),
+    ] {
         let mut bench = Bench::enabled(&[]);
         let detail = [of_the_plant.code(), 1, 0, 0, 0];
         let register = protocol::message::ErrorRegister(protocol::message::ErrorRegister::GENERIC);
@@ -689,18 +902,33 @@ fn the_brake_is_told_to_open_when_the_preset_acts_two_cycles_after_the_stage_con
     bench.way_up();
     bench.cycles(5);
     let torques = bench.torques();
-    let place = |control: u16| torques.iter().position(|(_, torque)| torque.control.has(control)).unwrap();
-    let (enabled, released) = (place(ControlWord::ENABLE_OPERATION.0), place(ControlWord::RELEASE_BRAKE));
+    let place = |control: u16| {
+        torques
+            .iter()
+            .position(|(_, torque)| torque.control.has(control))
+            .unwrap()
+    };
+    let (enabled, released) = (
+        place(ControlWord::ENABLE_OPERATION.0),
+        place(ControlWord::RELEASE_BRAKE),
+    );
     // One cycle until the status is there, two until the torque acts.
     assert_eq!(released - enabled, 3);
 }
 
 #[test]
 fn an_axis_that_moves_is_taken_over_as_it_moves_and_ramps_from_there() {
-    let mut bench = Bench::new(&[(Parameter::EnableWindow, 100_000), (Parameter::PresetTorque, 0)]);
+    let mut bench = Bench::new(&[
+        (Parameter::EnableWindow, 100_000),
+        (Parameter::PresetTorque, 0),
+    ]);
     let coast = |bench: &mut Bench, cycles: u32| {
         for _ in 0..cycles {
-            bench.position += if bench.servo.reference().is_none() { 5_000 } else { 0 };
+            bench.position += if bench.servo.reference().is_none() {
+                5_000
+            } else {
+                0
+            };
             bench.setpoint = bench.position;
             bench.cycle();
         }
@@ -713,10 +941,16 @@ fn an_axis_that_moves_is_taken_over_as_it_moves_and_ramps_from_there() {
     coast(&mut bench, 1);
     assert_eq!(bench.speed(), 5_000.0);
     let torque = bench.servo.torque().to_micro_nm_lossy();
-    assert!(torque.abs() < 9_000_000, "5 m/s\u{b2} of 931.65 kg at 10 mm of lead are 7.4 N m: {torque}");
+    assert!(
+        torque.abs() < 9_000_000,
+        "5 m/s\u{b2} of 931.65 kg at 10 mm of lead are 7.4 N m: {torque}"
+    );
     let before = bench.speed();
     coast(&mut bench, 1);
     assert!((before - bench.speed()).abs() <= 500.0);
     coast(&mut bench, 100);
-    assert_eq!((bench.state(), bench.servo.drive().fault()), (DriveState::OperationEnabled, None));
+    assert_eq!(
+        (bench.state(), bench.servo.drive().fault()),
+        (DriveState::OperationEnabled, None)
+    );
 }

@@ -1,5 +1,6 @@
-//! Mass of the load where it moves otherwise than the motor: `M2·(a2 − a1)`. No effect of its own: it comes with a gap or a compliance that a load scale
-//! shows, and makes the total `M1·a1 + M2·a2`.
+//! Mass of the load where it moves otherwise than the motor: `M2·(a2 − a1)`. No effect of its own:
+//! it comes with a gap or a compliance that a load scale shows, and makes the total `M1·a1 +
+//! M2·a2`.
 
 use super::{Action, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;
@@ -17,7 +18,12 @@ impl Effect for LoadInertia {
     }
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
-        vec![motion.load_acceleration.clone().unwrap_or_else(|| vec![0.0; motion.len()])]
+        vec![
+            motion
+                .load_acceleration
+                .clone()
+                .unwrap_or_else(|| vec![0.0; motion.len()]),
+        ]
     }
 
     fn action(&self, _: &Instant, _: f64, _: &[f64]) -> Action {
@@ -25,6 +31,10 @@ impl Effect for LoadInertia {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        vec![naming.coefficient("load_inertia", 0, naming.effort_unit(&format!(" s^2/{}", naming.length())))]
+        vec![naming.coefficient(
+            "load_inertia",
+            0,
+            naming.effort_unit(&format!(" s^2/{}", naming.length())),
+        )]
     }
 }

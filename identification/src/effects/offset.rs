@@ -1,4 +1,5 @@
-//! Offset: a constant force. Coulomb friction that differs by direction is the same force: `Fc ± ΔF` is `Fc sign(v)` and a constant.
+//! Offset: a constant force. Coulomb friction that differs by direction is the same force: `Fc ±
+//! ΔF` is `Fc sign(v)` and a constant.
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming};
 use crate::record::Dataset;

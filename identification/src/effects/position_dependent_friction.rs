@@ -1,4 +1,5 @@
-//! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1 over the travel of the training record.
+//! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1
+//! over the travel of the training record.
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::record::Dataset;
@@ -9,14 +10,21 @@ pub struct PositionDependentFriction;
 /// `a u + b u²`, as far as there are coefficients.
 #[must_use]
 pub fn polynomial(own: &[f64], u: f64) -> f64 {
-    own.iter().rev().fold(0.0, |sum, coefficient| u * (coefficient + sum))
+    own.iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| u * (coefficient + sum))
 }
 
-/// Position scaled to the travel of the training record, so that a validation record uses the same scale.
+/// Position scaled to the travel of the training record, so that a validation record uses the same
+/// scale.
 #[must_use]
 pub fn scaled(motion: &Kinematics, dataset: &Dataset) -> Vec<f64> {
     let (middle, half) = dataset.travel();
-    motion.position_lp.iter().map(|x| (x - middle) / half).collect()
+    motion
+        .position_lp
+        .iter()
+        .map(|x| (x - middle) / half)
+        .collect()
 }
 
 impl Effect for PositionDependentFriction {
@@ -30,8 +38,17 @@ impl Effect for PositionDependentFriction {
 
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
         let u = scaled(motion, dataset);
-        let power = |n: i32| u.iter().zip(&motion.direction).map(|(u, d)| d * u.powi(n)).collect();
-        if terms > 1.5 { vec![power(1), power(2)] } else { vec![power(1)] }
+        let power = |n: i32| {
+            u.iter()
+                .zip(&motion.direction)
+                .map(|(u, d)| d * u.powi(n))
+                .collect()
+        };
+        if terms > 1.5 {
+            vec![power(1), power(2)]
+        } else {
+            vec![power(1)]
+        }
     }
 
     fn width(&self, terms: f64) -> usize {
@@ -55,10 +72,15 @@ impl Effect for PositionDependentFriction {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        let name = ["position_dependent_friction_linear", "position_dependent_friction_quadratic"];
+        let name = [
+            "position_dependent_friction_linear",
+            "position_dependent_friction_quadratic",
+        ];
         let known = name.iter().enumerate().take(naming.coefficients.len());
         known
-            .map(|(place, name)| naming.coefficient(name, place, naming.effort_unit(" over half the travel")))
+            .map(|(place, name)| {
+                naming.coefficient(name, place, naming.effort_unit(" over half the travel"))
+            })
             .collect()
     }
 }

@@ -1,4 +1,5 @@
-//! A force that depends on position alone: no effect of the list, but it must not be absorbed by one.
+//! A force that depends on position alone: no effect of the list, but it must not be absorbed by
+//! one.
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::effects::position_dependent_friction::{polynomial, scaled};
@@ -19,7 +20,11 @@ impl Effect for Spring {
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
         let u = scaled(motion, dataset);
         let power = |n: i32| u.iter().map(|u| u.powi(n)).collect();
-        if terms > 1.5 { vec![power(1), power(2)] } else { vec![power(1)] }
+        if terms > 1.5 {
+            vec![power(1), power(2)]
+        } else {
+            vec![power(1)]
+        }
     }
 
     fn width(&self, terms: f64) -> usize {
@@ -43,6 +48,10 @@ impl Effect for Spring {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        vec![naming.coefficient("force_over_position", 0, naming.effort_unit(" over half the travel"))]
+        vec![naming.coefficient(
+            "force_over_position",
+            0,
+            naming.effort_unit(" over half the travel"),
+        )]
     }
 }

@@ -1,4 +1,5 @@
-//! Stribeck fall: friction above the Coulomb level at low speed, `c·sign(v)·exp(−(v / vs)²)` (Bo and Pavelescu 1982).
+//! Stribeck fall: friction above the Coulomb level at low speed, `c·sign(v)·exp(−(v / vs)²)` (Bo
+//! and Pavelescu 1982).
 
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, geometric};
 use crate::record::Dataset;
@@ -20,7 +21,10 @@ impl Effect for Stribeck {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, vs: f64) -> Vec<Vec<f64>> {
         let fall = motion.velocity_lp.iter().zip(&motion.direction);
-        vec![fall.map(|(v, direction)| direction * (-(v / vs).powi(2)).exp()).collect()]
+        vec![
+            fall.map(|(v, direction)| direction * (-(v / vs).powi(2)).exp())
+                .collect(),
+        ]
     }
 
     fn is_tuned(&self) -> bool {
@@ -45,18 +49,28 @@ impl Effect for Stribeck {
     }
 
     fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
-        let fastest = motion.velocity_lp.iter().fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
+        let fastest = motion
+            .velocity_lp
+            .iter()
+            .fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
         (1.0e-3 * fastest, 0.5 * fastest)
     }
 
     fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
-        fitted.own.first().is_some_and(|c| *c > 0.0 && *c < LARGEST_RATIO * fitted.coulomb)
+        fitted
+            .own
+            .first()
+            .is_some_and(|c| *c > 0.0 && *c < LARGEST_RATIO * fitted.coulomb)
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![
             naming.coefficient("stribeck_excess", 0, naming.effort_unit("")),
-            naming.nonlinear("stribeck_velocity", naming.parameter, format!("{}/s", naming.length())),
+            naming.nonlinear(
+                "stribeck_velocity",
+                naming.parameter,
+                format!("{}/s", naming.length()),
+            ),
         ]
     }
 }

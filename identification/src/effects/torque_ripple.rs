@@ -1,6 +1,7 @@
 //! Torque ripple: a force periodic in motor position, `a cos(2π k x) + b sin(2π k x)`.
 //!
-//! The period is searched, so the lead need not be known; where it is, the order per revolution is reported.
+//! The period is searched, so the lead need not be known; where it is, the order per revolution is
+//! reported.
 
 use std::f64::consts::TAU;
 
@@ -29,7 +30,10 @@ impl Effect for TorqueRipple {
     fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
         let angle = |x: &f64| TAU * k * x;
         let x = &motion.position_lp;
-        vec![x.iter().map(|x| angle(x).cos()).collect(), x.iter().map(|x| angle(x).sin()).collect()]
+        vec![
+            x.iter().map(|x| angle(x).cos()).collect(),
+            x.iter().map(|x| angle(x).sin()).collect(),
+        ]
     }
 
     fn width(&self, _: f64) -> usize {
@@ -57,7 +61,9 @@ impl Effect for TorqueRipple {
         let (low, high) = motion.span();
         let step = 0.25 / (high - low);
         let best = strongest(motion, setting, FEWEST_PERIODS * 4.0 * step, step);
-        best.iter().flat_map(|k| (-3..=3).map(move |i| k + 0.25 * step * f64::from(i))).collect()
+        best.iter()
+            .flat_map(|k| (-3..=3).map(move |i| k + 0.25 * step * f64::from(i)))
+            .collect()
     }
 
     fn refine_step(&self, motion: &Kinematics, _: f64) -> f64 {
@@ -75,8 +81,14 @@ impl Effect for TorqueRipple {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        let (a, b) = (naming.coefficient("", 0, String::new()), naming.coefficient("", 1, String::new()));
-        let half_width = a.half_width.unwrap_or(0.0).hypot(b.half_width.unwrap_or(0.0));
+        let (a, b) = (
+            naming.coefficient("", 0, String::new()),
+            naming.coefficient("", 1, String::new()),
+        );
+        let half_width = a
+            .half_width
+            .unwrap_or(0.0)
+            .hypot(b.half_width.unwrap_or(0.0));
         let amplitude = Named {
             name: "torque_ripple_amplitude".into(),
             value: a.value.hypot(b.value),
@@ -88,7 +100,8 @@ impl Effect for TorqueRipple {
             AxisKind::Linear => naming.dataset.lead_m_per_rev.map(|lead| k * lead),
             AxisKind::Rotary => Some(k * TAU),
         };
-        let order = per_rev.map(|order| naming.nonlinear("torque_ripple_order", order, "per rev".into()));
+        let order =
+            per_rev.map(|order| naming.nonlinear("torque_ripple_order", order, "per rev".into()));
         let period = naming.nonlinear("torque_ripple_period", 1.0 / k, naming.length().into());
         // a cos θ + b sin θ = A sin(θ + φ).
         let phase = Named {
@@ -97,7 +110,10 @@ impl Effect for TorqueRipple {
             half_width: Some(half_width / a.value.hypot(b.value).max(f64::MIN_POSITIVE)),
             unit: "rad".into(),
         };
-        [Some(amplitude), Some(period), order, Some(phase)].into_iter().flatten().collect()
+        [Some(amplitude), Some(period), order, Some(phase)]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 }
 
@@ -107,16 +123,24 @@ fn strongest(motion: &Kinematics, setting: &Setting<'_>, from: f64, step: f64) -
         .step_by(STRIDE)
         .filter(|at| motion.moving[*at])
         .map(|at| {
-            (motion.position_lp[at], motion.velocity_lp[at].abs(), setting.residual.get(at).copied().unwrap_or(0.0))
+            (
+                motion.position_lp[at],
+                motion.velocity_lp[at].abs(),
+                setting.residual.get(at).copied().unwrap_or(0.0),
+            )
         })
         .collect();
     let mut speeds: Vec<f64> = samples.iter().map(|(_, v, _)| *v).collect();
     speeds.sort_by(f64::total_cmp);
-    let Some(median) = speeds.get(speeds.len() / 2) else { return Vec::new() };
+    let Some(median) = speeds.get(speeds.len() / 2) else {
+        return Vec::new();
+    };
     let to = (60.0 / median).min(4000.0 * 1.0e-3 / setting.dataset.kind.moving_velocity());
     let count = ((to - from) / step).clamp(0.0, 20_000.0) as usize;
-    let mut scored: Vec<(f64, f64)> =
-        (0..count).map(|i| from + step * i as f64).map(|k| (projection(&samples, k), k)).collect();
+    let mut scored: Vec<(f64, f64)> = (0..count)
+        .map(|i| from + step * i as f64)
+        .map(|k| (projection(&samples, k), k))
+        .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut best: Vec<f64> = Vec::new();
     for (_, k) in scored {
@@ -142,5 +166,9 @@ fn projection(samples: &[(f64, f64, f64)], k: f64) -> f64 {
         se += sin * e;
     }
     let determinant = cc * ss - cs * cs;
-    if determinant <= 1.0e-3 * cc * ss { 0.0 } else { (ce * ce * ss - 2.0 * ce * se * cs + se * se * cc) / determinant }
+    if determinant <= 1.0e-3 * cc * ss {
+        0.0
+    } else {
+        (ce * ce * ss - 2.0 * ce * se * cs + se * se * cc) / determinant
+    }
 }

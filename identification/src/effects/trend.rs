@@ -1,4 +1,5 @@
-//! A force that drifts with time: no effect of the list (temperature of a sensor, a load that changes), but it must not be absorbed by one.
+//! A force that drifts with time: no effect of the list (temperature of a sensor, a load that
+//! changes), but it must not be absorbed by one.
 
 use super::position_dependent_friction::polynomial;
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
@@ -22,8 +23,18 @@ impl Effect for Trend {
     }
 
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
-        let power = |n: i32| motion.time_s.iter().map(|t| scaled(*t, dataset).powi(n)).collect();
-        if terms > 1.5 { vec![power(1), power(2)] } else { vec![power(1)] }
+        let power = |n: i32| {
+            motion
+                .time_s
+                .iter()
+                .map(|t| scaled(*t, dataset).powi(n))
+                .collect()
+        };
+        if terms > 1.5 {
+            vec![power(1), power(2)]
+        } else {
+            vec![power(1)]
+        }
     }
 
     fn width(&self, terms: f64) -> usize {
@@ -47,6 +58,10 @@ impl Effect for Trend {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        vec![naming.coefficient("drifting_force", 0, naming.effort_unit(" over the training record"))]
+        vec![naming.coefficient(
+            "drifting_force",
+            0,
+            naming.effort_unit(" over the training record"),
+        )]
     }
 }

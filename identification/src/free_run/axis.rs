@@ -1,8 +1,9 @@
 //! A simulated axis of an identified model: one mass, or a motor and a load behind a gap.
 //!
-//! Friction is solved for, not looked up: over a sub-step it takes away what momentum there is, at most its level (Moreau's time stepping), so that
-//! standstill is exact. A bristle (Dahl 1968, with the micro-damping of LuGre) replaces that by a force over displacement. In a gap the motor and the load
-//! move alone until they meet; impacts follow Newton's law, contact can only push.
+//! Friction is solved for, not looked up: over a sub-step it takes away what momentum there is, at
+//! most its level (Moreau's time stepping), so that standstill is exact. A bristle (Dahl 1968, with
+//! the micro-damping of LuGre) replaces that by a force over displacement. In a gap the motor and
+//! the load move alone until they meet; impacts follow Newton's law, contact can only push.
 
 /// What makes a reversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,13 +63,25 @@ impl Axis {
     #[must_use]
     pub const fn at(x: f64, v: f64) -> Self {
         let body = Body { x, v };
-        Self { motor: body, load: body, bristle: 0.0, contact: 0.0 }
+        Self {
+            motor: body,
+            load: body,
+            bristle: 0.0,
+            contact: 0.0,
+        }
     }
 
     /// One sub-step.
     pub fn advance(&mut self, acting: Acting, mass: f64, shape: &Shape, h: f64) {
         if shape.gap <= 0.0 {
-            let body = self.friction_step(self.motor, acting.motor - acting.load, acting.level, mass, shape, h);
+            let body = self.friction_step(
+                self.motor,
+                acting.motor - acting.load,
+                acting.level,
+                mass,
+                shape,
+                h,
+            );
             (self.motor, self.load) = (body, body);
         } else if self.contact == 0.0 || !self.advance_together(acting, mass, shape, h) {
             self.advance_apart(acting, mass, shape, h);
@@ -78,20 +91,34 @@ impl Axis {
     /// Both as one body; false, and nothing moved, where the contact would have to pull.
     fn advance_together(&mut self, acting: Acting, mass: f64, shape: &Shape, h: f64) -> bool {
         let before = *self;
-        let body = self.friction_step(self.motor, acting.motor - acting.load, acting.level, mass, shape, h);
+        let body = self.friction_step(
+            self.motor,
+            acting.motor - acting.load,
+            acting.level,
+            mass,
+            shape,
+            h,
+        );
         let push = if body.v == 0.0 && before.motor.v == 0.0 {
             let held = shape.motor_friction * acting.level;
             acting.motor - acting.motor.clamp(-held, held)
         } else {
-            let friction = (1.0 - shape.motor_friction) * acting.level * (body.v + before.motor.v).signum();
+            let friction =
+                (1.0 - shape.motor_friction) * acting.level * (body.v + before.motor.v).signum();
             shape.load_share * mass * (body.v - before.motor.v) / h + acting.load + friction
         };
         if push * self.contact < 0.0 {
-            *self = Self { contact: 0.0, ..before };
+            *self = Self {
+                contact: 0.0,
+                ..before
+            };
             return false;
         }
         self.motor = body;
-        self.load = Body { x: body.x - 0.5 * shape.gap * self.contact, v: body.v };
+        self.load = Body {
+            x: body.x - 0.5 * shape.gap * self.contact,
+            v: body.v,
+        };
         true
     }
 
@@ -122,7 +149,15 @@ impl Axis {
     }
 
     /// A body under a force and the friction law.
-    fn friction_step(&mut self, body: Body, force: f64, level: f64, mass: f64, shape: &Shape, h: f64) -> Body {
+    fn friction_step(
+        &mut self,
+        body: Body,
+        force: f64,
+        level: f64,
+        mass: f64,
+        shape: &Shape,
+        h: f64,
+    ) -> Body {
         if shape.deflection <= 0.0 {
             return rigid_step(body, force, level, mass, h);
         }
@@ -137,7 +172,10 @@ impl Axis {
             let sign = step.signum();
             self.bristle = sign + (self.bristle - sign) * (-step.abs() / shape.deflection).exp();
         }
-        Body { x: body.x + step, v }
+        Body {
+            x: body.x + step,
+            v,
+        }
     }
 }
 
@@ -146,9 +184,17 @@ fn rigid_step(body: Body, force: f64, level: f64, mass: f64, h: f64) -> Body {
     let free = body.v + h * force / mass;
     let most = h * level.max(0.0) / mass;
     let v = free - free.clamp(-most, most);
-    // Friction opposes the motion that there is: where the velocity changes sign within the sub-step, it first stops.
-    let v = if v * body.v < 0.0 && free.abs() < body.v.abs() { 0.0 } else { v };
-    Body { x: body.x + 0.5 * h * (body.v + v), v }
+    // Friction opposes the motion that there is: where the velocity changes sign within the
+    // sub-step, it first stops.
+    let v = if v * body.v < 0.0 && free.abs() < body.v.abs() {
+        0.0
+    } else {
+        v
+    };
+    Body {
+        x: body.x + 0.5 * h * (body.v + v),
+        v,
+    }
 }
 
 #[cfg(test)]
@@ -162,34 +208,76 @@ mod tests {
         // 0.1 m/s, 1 kg, 2 N: v²/2a = 2.5 mm.
         let mut axis = Axis::at(0.0, 0.1);
         for _ in 0..4000 {
-            axis.advance(Acting { motor: 0.5, load: 0.5, level: 2.0 }, 1.0, &Shape::default(), H);
+            axis.advance(
+                Acting {
+                    motor: 0.5,
+                    load: 0.5,
+                    level: 2.0,
+                },
+                1.0,
+                &Shape::default(),
+                H,
+            );
         }
-        assert!((axis.motor.x - 2.5e-3).abs() < 1.0e-5 && axis.motor.v == 0.0, "{axis:?}");
+        assert!(
+            (axis.motor.x - 2.5e-3).abs() < 1.0e-5 && axis.motor.v == 0.0,
+            "{axis:?}"
+        );
     }
 
     #[test]
     fn a_motor_crosses_its_gap_without_the_load_and_then_pushes_it() {
-        let shape = Shape { gap: 1.0e-3, load_share: 0.5, restitution: 0.5, ..Shape::default() };
+        let shape = Shape {
+            gap: 1.0e-3,
+            load_share: 0.5,
+            restitution: 0.5,
+            ..Shape::default()
+        };
         let mut axis = Axis::at(0.0, 0.0);
         let mut moved_alone = false;
         for _ in 0..8000 {
-            axis.advance(Acting { motor: 3.0, load: 0.0, level: 2.0 }, 2.0, &shape, H);
+            axis.advance(
+                Acting {
+                    motor: 3.0,
+                    load: 0.0,
+                    level: 2.0,
+                },
+                2.0,
+                &shape,
+                H,
+            );
             moved_alone |= axis.motor.x > 1.0e-4 && axis.load.x == 0.0;
         }
         assert!(moved_alone);
-        assert!((axis.motor.x - axis.load.x - 0.5e-3).abs() < 1.0e-9, "{axis:?}");
+        assert!(
+            (axis.motor.x - axis.load.x - 0.5e-3).abs() < 1.0e-9,
+            "{axis:?}"
+        );
         // One body in the end: (3 − 2) N on 2 kg over 2 s, less the little that the impacts cost.
         assert!((axis.motor.v - 1.0).abs() < 0.02, "{axis:?}");
     }
 
     #[test]
     fn a_bristle_gives_way_and_springs_back() {
-        let shape = Shape { deflection: 10.0e-6, damping: 500.0, ..Shape::default() };
+        let shape = Shape {
+            deflection: 10.0e-6,
+            damping: 500.0,
+            ..Shape::default()
+        };
         let mut axis = Axis::at(0.0, 0.0);
         let mut ramp = |from: f64, to: f64| {
             for step in 0..=8000 {
                 let motor = from + (to - from) * f64::from(step) / 8000.0;
-                axis.advance(Acting { motor, load: 0.0, level: 100.0 }, 10.0, &shape, H);
+                axis.advance(
+                    Acting {
+                        motor,
+                        load: 0.0,
+                        level: 100.0,
+                    },
+                    10.0,
+                    &shape,
+                    H,
+                );
             }
             axis.motor.x
         };
@@ -198,6 +286,9 @@ mod tests {
         assert!((there - 10.0e-6 * 2.0_f64.ln()).abs() < 0.1e-6, "{there}");
         // Back along dF/dx = (G + F)/δ: x falls by δ ln 1.5.
         let back = ramp(50.0, 0.0);
-        assert!((there - back - 10.0e-6 * 1.5_f64.ln()).abs() < 0.1e-6, "{back}");
+        assert!(
+            (there - back - 10.0e-6 * 1.5_f64.ln()).abs() < 0.1e-6,
+            "{back}"
+        );
     }
 }

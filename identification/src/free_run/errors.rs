@@ -12,24 +12,42 @@ use crate::report::{FreeRun, FreeRunErrors, ReversalShapes};
 
 const MICRO: f64 = 1.0e6;
 
-/// Free runs of the declared and of the extended model, both fitted to the positions of the training record.
-pub(crate) fn report(findings: &Findings<'_>, reversals: &Reversals) -> Option<(FreeRun, Vec<[f64; 3]>)> {
+/// Free runs of the declared and of the extended model, both fitted to the positions of the
+/// training record.
+pub(crate) fn report(
+    findings: &Findings<'_>,
+    reversals: &Reversals,
+) -> Option<(FreeRun, Vec<[f64; 3]>)> {
     let dataset = findings.dataset;
     let record = &dataset.train;
     let drive = reversals.drive;
     let extended = &reversals.best().model;
     let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
     let shape = Shape {
-        deflection: if declares("presliding") { extended.shape.deflection } else { 0.0 },
-        gap: if declares("backlash") { extended.shape.gap } else { 0.0 },
+        deflection: if declares("presliding") {
+            extended.shape.deflection
+        } else {
+            0.0
+        },
+        gap: if declares("backlash") {
+            extended.shape.gap
+        } else {
+            0.0
+        },
         ..extended.shape
     };
     let declared = &findings.declared;
-    let start = Simulated::new(dataset, record.period_s, &declared.model, &declared.coefficients, shape)?;
+    let start = Simulated::new(
+        dataset,
+        record.period_s,
+        &declared.model,
+        &declared.coefficients,
+        shape,
+    )?;
     let before = fit(&start, &drive, record, &|_| true);
     let errors = |record: &Record| {
-        let [before, after] =
-            [&before, extended].map(|model| MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true));
+        let [before, after] = [&before, extended]
+            .map(|model| MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true));
         let tracking = tracking_rms(record).map(|rms| MICRO * rms);
         FreeRunErrors {
             position_error_um_before: before,
@@ -68,7 +86,14 @@ fn curve(record: &Record, runs: &[super::Run; 2]) -> Vec<[f64; 3]> {
     let stride = (record.len() / 6000).max(1);
     let rows = (SETTLING_ROWS..record.len()).step_by(stride);
     let error = |run: &super::Run, row: usize| MICRO * (run.motor[row] - record.position[row]);
-    rows.map(|row| [record.time_s[row], error(&runs[0], row), error(&runs[1], row)]).collect()
+    rows.map(|row| {
+        [
+            record.time_s[row],
+            error(&runs[0], row),
+            error(&runs[1], row),
+        ]
+    })
+    .collect()
 }
 
 /// Rms of setpoint − position.

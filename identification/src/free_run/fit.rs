@@ -29,7 +29,14 @@ impl Problem<'_> {
         let values: Vec<f64> = at
             .iter()
             .zip(&self.entries)
-            .map(|(value, entry)| entry.scale * if entry.positive { value.abs().max(1.0e-4) } else { *value })
+            .map(|(value, entry)| {
+                entry.scale
+                    * if entry.positive {
+                        value.abs().max(1.0e-4)
+                    } else {
+                        *value
+                    }
+            })
             .collect();
         self.start.with(&values)
     }
@@ -88,35 +95,91 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
 /// The model fitted to the rows of a mask.
 #[must_use]
-pub fn fit(start: &Simulated, drive: &Drive, record: &Record, mask: &dyn Fn(usize) -> bool) -> Simulated {
+pub fn fit(
+    start: &Simulated,
+    drive: &Drive,
+    record: &Record,
+    mask: &dyn Fn(usize) -> bool,
+) -> Simulated {
     let entries = start.entries();
     let values = start.values();
-    let at =
-        DVector::from_iterator(values.len(), values.iter().zip(&entries).map(|(value, entry)| value / entry.scale));
+    let at = DVector::from_iterator(
+        values.len(),
+        values
+            .iter()
+            .zip(&entries)
+            .map(|(value, entry)| value / entry.scale),
+    );
     let inside = |row: &usize| mask(*row) && !record.interpolated[*row];
-    let rows: Vec<usize> = (SETTLING_ROWS..record.len()).step_by(STRIDE).filter(inside).collect();
-    let scale = super::position_rms(&simulate(start, drive, record), record, mask).max(f64::MIN_POSITIVE);
-    let problem = Problem { start, drive, record, rows, entries, scale, at };
-    let solver = LevenbergMarquardt::new().with_ftol(1.0e-4).with_xtol(1.0e-5).with_gtol(1.0e-6);
-    let (problem, _) = solver.with_stepbound(1.0).with_patience(PATIENCE).minimize(problem);
+    let rows: Vec<usize> = (SETTLING_ROWS..record.len())
+        .step_by(STRIDE)
+        .filter(inside)
+        .collect();
+    let scale =
+        super::position_rms(&simulate(start, drive, record), record, mask).max(f64::MIN_POSITIVE);
+    let problem = Problem {
+        start,
+        drive,
+        record,
+        rows,
+        entries,
+        scale,
+        at,
+    };
+    let solver = LevenbergMarquardt::new()
+        .with_ftol(1.0e-4)
+        .with_xtol(1.0e-5)
+        .with_gtol(1.0e-6);
+    let (problem, _) = solver
+        .with_stepbound(1.0)
+        .with_patience(PATIENCE)
+        .minimize(problem);
     problem.model(&problem.at)
 }
 
-/// Half widths of 95 % intervals of a fitted model's parameters: jackknife over blocks, one Gauss–Newton step each.
+/// Half widths of 95 % intervals of a fitted model's parameters: jackknife over blocks, one
+/// Gauss–Newton step each.
 #[must_use]
 pub fn half_widths(model: &Simulated, drive: &Drive, record: &Record) -> Vec<f64> {
     let entries = model.entries();
     let values = model.values();
-    let scaled = values.iter().zip(&entries).map(|(value, entry)| value / entry.scale);
+    let scaled = values
+        .iter()
+        .zip(&entries)
+        .map(|(value, entry)| value / entry.scale);
     let at = DVector::from_iterator(values.len(), scaled);
     let rows: Vec<usize> = (SETTLING_ROWS..record.len()).step_by(STRIDE).collect();
-    let problem = Problem { start: model, drive, record, rows, entries, scale: 1.0, at };
-    let (residual, jacobian) = (problem.residual_at(&problem.at), problem.jacobian_at(&problem.at));
-    let columns: Vec<Vec<f64>> = jacobian.column_iter().map(|column| column.iter().copied().collect()).collect();
+    let problem = Problem {
+        start: model,
+        drive,
+        record,
+        rows,
+        entries,
+        scale: 1.0,
+        at,
+    };
+    let (residual, jacobian) = (
+        problem.residual_at(&problem.at),
+        problem.jacobian_at(&problem.at),
+    );
+    let columns: Vec<Vec<f64>> = jacobian
+        .column_iter()
+        .map(|column| column.iter().copied().collect())
+        .collect();
     let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     let period_s = record.period_s * STRIDE as f64;
-    let blocks = Blocks::new(&views, residual.as_slice(), &vec![true; residual.len()], period_s);
-    blocks.half_widths().iter().zip(&problem.entries).map(|(half, entry)| half * entry.scale).collect()
+    let blocks = Blocks::new(
+        &views,
+        residual.as_slice(),
+        &vec![true; residual.len()],
+        period_s,
+    );
+    blocks
+        .half_widths()
+        .iter()
+        .zip(&problem.entries)
+        .map(|(half, entry)| half * entry.scale)
+        .collect()
 }
 
 #[cfg(test)]
@@ -172,15 +235,21 @@ mod tests {
         }
     }
 
-    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from `acceleration` of the rows'
-    /// second differences.
+    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from
+    /// `acceleration` of the rows' second differences.
     fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
         let mut dataset = dataset();
-        let form = crate::record::ControllerForm { position_sensor: None, ..controller() };
+        let form = crate::record::ControllerForm {
+            position_sensor: None,
+            ..controller()
+        };
         dataset.controller = Some(form);
         let record = &mut dataset.train;
         let (x, period_s) = (record.reference.clone().unwrap(), record.period_s);
-        record.position = x.iter().scan(x[0], |held, now| Some(std::mem::replace(held, *now))).collect();
+        record.position = x
+            .iter()
+            .scan(x[0], |held, now| Some(std::mem::replace(held, *now)))
+            .collect();
         let difference = |path: &[f64], row: usize| (path[row] - path[row.max(1) - 1]) / period_s;
         for row in 3..x.len() - 1 {
             let about = |row: usize| (x[row + 1] - 2.0 * x[row] + x[row - 1]) / period_s / period_s;
@@ -194,19 +263,29 @@ mod tests {
     #[test]
     fn whenever_the_drive_takes_its_acceleration_the_law_is_known() {
         // Shares of the newest second difference and of the one before it.
-        for (name, now, before) in
-            [("half a row back", 0.5, 0.5), ("a row back", 0.0, 1.0), ("one and a half ahead", 2.5, -1.5)]
-        {
+        for (name, now, before) in [
+            ("half a row back", 0.5, 0.5),
+            ("a row back", 0.0, 1.0),
+            ("one and a half ahead", 2.5, -1.5),
+        ] {
             let dataset = recorded_with(|newest, older| now * newest + before * older);
             let misfit = crate::free_run::controller::Law::of(&dataset).map(|law| law.misfit);
-            assert!(misfit.is_some_and(|misfit| misfit < 1.0e-9), "{name}: {misfit:?}");
+            assert!(
+                misfit.is_some_and(|misfit| misfit < 1.0e-9),
+                "{name}: {misfit:?}"
+            );
         }
     }
 
     fn model(dataset: &Dataset, coefficients: [f64; 4]) -> Simulated {
-        let terms = ["inertia", "viscous", "coulomb", "offset"]
-            .map(|name| Term { effect: crate::effects::find(name).unwrap(), parameter: 0.0 });
-        let model = Model { terms: terms.to_vec(), ..Model::default() };
+        let terms = ["inertia", "viscous", "coulomb", "offset"].map(|name| Term {
+            effect: crate::effects::find(name).unwrap(),
+            parameter: 0.0,
+        });
+        let model = Model {
+            terms: terms.to_vec(),
+            ..Model::default()
+        };
         Simulated::new(dataset, 1.0e-3, &model, &coefficients, Shape::default()).unwrap()
     }
 
@@ -217,12 +296,23 @@ mod tests {
         assert!(matches!(drive, Drive::Known(_)));
         let truth = [90.0, 200.0, 25.0, -4.0];
         dataset.train.position = simulate(&model(&dataset, truth), &drive, &dataset.train).motor;
-        let fitted = fit(&model(&dataset, [80.0, 250.0, 20.0, 0.0]), &drive, &dataset.train, &|_| true);
+        let fitted = fit(
+            &model(&dataset, [80.0, 250.0, 20.0, 0.0]),
+            &drive,
+            &dataset.train,
+            &|_| true,
+        );
         for (value, wanted) in fitted.values().into_iter().zip(truth) {
             assert!((value / wanted - 1.0).abs() < 0.01, "{value} {wanted}");
         }
         let widths = half_widths(&fitted, &drive, &dataset.train);
-        assert!(widths.iter().zip(truth).all(|(half, wanted)| *half < 0.05 * wanted.abs()), "{widths:?}");
+        assert!(
+            widths
+                .iter()
+                .zip(truth)
+                .all(|(half, wanted)| *half < 0.05 * wanted.abs()),
+            "{widths:?}"
+        );
     }
 
     #[test]
@@ -230,10 +320,25 @@ mod tests {
         let dataset = dataset();
         let start = model(&dataset, [90.0, 200.0, 25.0, -4.0]);
         let entries = start.entries();
-        let at = DVector::from_iterator(4, start.values().iter().zip(&entries).map(|(v, e)| v / e.scale));
+        let at = DVector::from_iterator(
+            4,
+            start
+                .values()
+                .iter()
+                .zip(&entries)
+                .map(|(v, e)| v / e.scale),
+        );
         let rows = (300..6000).step_by(50).collect();
         let (drive, record) = (Drive::Followed, &dataset.train);
-        let problem = Problem { start: &start, drive: &drive, record, rows, entries, scale: 1.0, at };
+        let problem = Problem {
+            start: &start,
+            drive: &drive,
+            record,
+            rows,
+            entries,
+            scale: 1.0,
+            at,
+        };
         let forward = problem.jacobian_at(&problem.at);
         for place in 0..4 {
             let moved = |step: f64| {

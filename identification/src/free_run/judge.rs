@@ -1,8 +1,10 @@
 //! Stick, bristle or gap: which of them lets the simulated axis run like the recorded one.
 //!
-//! On a circle all three give the same burst. In a free run they do not: the whole history between reversals counts (how far a bristle springs back at
-//! rest, where the load was left in its gap), not the peak. Each shape is fitted to every second block of the training record and judged on the
-//! others; a shape is accepted where it leaves clearly less than rigid friction *and* than its rival.
+//! On a circle all three give the same burst. In a free run they do not: the whole history between
+//! reversals counts (how far a bristle springs back at rest, where the load was left in its gap),
+//! not the peak. Each shape is fitted to every second block of the training record and judged on
+//! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
+//! rival.
 
 use super::axis::Shape;
 use super::fit::{fit, half_widths};
@@ -20,7 +22,8 @@ const FEWEST_BLOCKS: usize = 6;
 const RATIO: f64 = 0.6;
 /// And at most this share of what its rival leaves.
 const RIVAL: f64 = 0.75;
-/// A gap is looked for where rigid friction leaves more than so many times the rounding of the encoder, or a bristle helps.
+/// A gap is looked for where rigid friction leaves more than so many times the rounding of the
+/// encoder, or a bristle helps.
 const VISIBLE: f64 = 3.0;
 /// How much a bristle must help for that.
 const HELPS: f64 = 0.9;
@@ -97,14 +100,25 @@ impl Judge<'_> {
         let held_out = position_rms(&run, self.record, &|row| !self.is_fitted(row));
         let all = position_rms(&run, self.record, &|_| true);
         let judged = (1..self.record.len() / self.block_rows).step_by(2);
-        let on_block = |block: usize| position_rms(&run, self.record, &|row| row / self.block_rows == block).powi(2);
-        Judged { model, held_out, all, blocks: judged.map(on_block).collect() }
+        let on_block = |block: usize| {
+            position_rms(&run, self.record, &|row| row / self.block_rows == block).powi(2)
+        };
+        Judged {
+            model,
+            held_out,
+            all,
+            blocks: judged.map(on_block).collect(),
+        }
     }
 
     /// The best fit from the best of several starts.
     fn best(&self, mut starts: Vec<Simulated>, count: usize) -> Option<Judged> {
         let error = |model: &Simulated| {
-            position_rms(&simulate(model, &self.drive, self.record), self.record, &|row| self.is_fitted(row))
+            position_rms(
+                &simulate(model, &self.drive, self.record),
+                self.record,
+                &|row| self.is_fitted(row),
+            )
         };
         starts.sort_by_cached_key(|model| ordered(error(model)));
         let fitted = starts.iter().take(count).map(|start| self.fitted(start));
@@ -117,58 +131,92 @@ const fn ordered(value: f64) -> u64 {
     value.abs().to_bits()
 }
 
-/// Judges the reversals of a training record with an inverse model to start from; `None` where that has no mass or friction.
+/// Judges the reversals of a training record with an inverse model to start from; `None` where that
+/// has no mass or friction.
 #[must_use]
 pub fn reversals(dataset: &Dataset, model: &Model, coefficients: &[f64]) -> Option<Reversals> {
     let record = &dataset.train;
     let drive = Drive::of(dataset);
     let smallest = FEWEST_COUNTS * dataset.resolution;
-    let block_rows = ((BLOCK_S / record.period_s) as usize).min(record.len() / FEWEST_BLOCKS).max(1);
-    let judge = Judge { drive, record, block_rows, smallest };
+    let block_rows = ((BLOCK_S / record.period_s) as usize)
+        .min(record.len() / FEWEST_BLOCKS)
+        .max(1);
+    let judge = Judge {
+        drive,
+        record,
+        block_rows,
+        smallest,
+    };
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, record.period_s, model, coefficients, shape);
     let rigid = judge.fitted(&start(Shape::default())?);
     let damping = 30.0 * rigid.model.mass;
     let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
-    let bristles =
-        bristles.into_iter().filter_map(|deflection| start(Shape { deflection, damping, ..Shape::default() }));
+    let bristles = bristles.into_iter().filter_map(|deflection| {
+        start(Shape {
+            deflection,
+            damping,
+            ..Shape::default()
+        })
+    });
     let bristle = judge.best(bristles.collect(), 1)?;
     let rounding = ROUNDING * dataset.resolution;
-    let worth =
-        rigid.all > VISIBLE * rounding || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
-    let gap = worth.then(|| judge.best(gaps(unit, start), STARTS)).flatten();
+    let worth = rigid.all > VISIBLE * rounding
+        || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
+    let gap = worth
+        .then(|| judge.best(gaps(unit, start), STARTS))
+        .flatten();
     let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
     let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
     if let Some(both) = &both {
         accepted = judge.add(accepted, &bristle, gap.as_ref(), both);
     }
-    Some(Reversals { drive, rigid, bristle, gap, both, accepted })
+    Some(Reversals {
+        drive,
+        rigid,
+        bristle,
+        gap,
+        both,
+        accepted,
+    })
 }
 
 fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
     let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
-    let kinds = RESTITUTIONS.into_iter().flat_map(|restitution| MOTOR_SHARES.map(|share| (restitution, share)));
+    let kinds = RESTITUTIONS
+        .into_iter()
+        .flat_map(|restitution| MOTOR_SHARES.map(|share| (restitution, share)));
     let kinds: Vec<(f64, f64)> = kinds.collect();
     let shapes = widths.into_iter().flat_map(|gap| {
-        kinds.iter().map(move |&(restitution, motor_friction)| Shape {
-            gap,
-            load_share: 0.45,
-            motor_friction,
-            restitution,
-            ..Shape::default()
-        })
+        kinds
+            .iter()
+            .map(move |&(restitution, motor_friction)| Shape {
+                gap,
+                load_share: 0.45,
+                motor_friction,
+                restitution,
+                ..Shape::default()
+            })
     });
     shapes.filter_map(start).collect()
 }
 
 impl Judge<'_> {
     fn decide(&self, rigid: &Judged, bristle: &Judged, gap: Option<&Judged>) -> Accepted {
-        let is_bristle = bristle.model.shape.deflection >= self.smallest && bristle.is_below(rigid, RATIO);
-        let is_gap = gap.is_some_and(|gap| gap.model.shape.gap >= self.smallest && gap.is_below(rigid, RATIO));
-        let wins = |one: &Judged, other: Option<&Judged>| other.is_none_or(|other| one.is_below(other, RIVAL));
+        let is_bristle =
+            bristle.model.shape.deflection >= self.smallest && bristle.is_below(rigid, RATIO);
+        let is_gap = gap
+            .is_some_and(|gap| gap.model.shape.gap >= self.smallest && gap.is_below(rigid, RATIO));
+        let wins = |one: &Judged, other: Option<&Judged>| {
+            other.is_none_or(|other| one.is_below(other, RIVAL))
+        };
         let presliding = is_bristle && wins(bristle, gap);
         let backlash = is_gap && gap.is_some_and(|gap| wins(gap, Some(bristle)));
-        Accepted { presliding, backlash, undecided: (is_bristle || is_gap) && !presliding && !backlash }
+        Accepted {
+            presliding,
+            backlash,
+            undecided: (is_bristle || is_gap) && !presliding && !backlash,
+        }
     }
 
     /// A bristle behind a gap, from what was accepted of them.
@@ -182,7 +230,11 @@ impl Judge<'_> {
     ) -> Option<Judged> {
         let gap = gap.filter(|_| accepted.presliding || accepted.backlash || accepted.undecided)?;
         let (bristle, gap) = (bristle.model.shape, gap.model.shape);
-        let Shape { deflection, damping, .. } = bristle;
+        let Shape {
+            deflection,
+            damping,
+            ..
+        } = bristle;
         let of = |width: f64, share: f64| {
             start(Shape {
                 gap: width,
@@ -193,18 +245,35 @@ impl Judge<'_> {
                 restitution: 0.5,
             })
         };
-        let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8).into_iter().chain([gap.gap]);
+        let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8)
+            .into_iter()
+            .chain([gap.gap]);
         let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
-        self.best(starts.filter_map(|(width, share)| of(width, share)).collect(), 1)
+        self.best(
+            starts
+                .filter_map(|(width, share)| of(width, share))
+                .collect(),
+            1,
+        )
     }
 
     /// What a bristle and a gap together add to one of them.
-    fn add(&self, accepted: Accepted, bristle: &Judged, gap: Option<&Judged>, both: &Judged) -> Accepted {
+    fn add(
+        &self,
+        accepted: Accepted,
+        bristle: &Judged,
+        gap: Option<&Judged>,
+        both: &Judged,
+    ) -> Accepted {
         let shape = both.model.shape;
         let beats = |other: &Judged| both.is_below(other, RATIO);
         let visible = shape.gap >= self.smallest && shape.deflection >= self.smallest;
         if visible && beats(bristle) && gap.is_none_or(beats) {
-            return Accepted { presliding: true, backlash: true, undecided: false };
+            return Accepted {
+                presliding: true,
+                backlash: true,
+                undecided: false,
+            };
         }
         accepted
     }
@@ -220,14 +289,23 @@ impl Reversals {
     /// Takes over what was decided with the inverse model's word beside the free run's.
     pub fn settle(&mut self, presliding: bool, backlash: bool) {
         let undecided = self.accepted.undecided && !presliding && !backlash;
-        self.accepted = Accepted { presliding, backlash, undecided };
+        self.accepted = Accepted {
+            presliding,
+            backlash,
+            undecided,
+        };
     }
 
     /// Mean over standard error of the gain per block that a shape brings over rigid friction.
     #[must_use]
     pub fn t(&self, judged: &Judged) -> f64 {
-        let gains: Vec<f64> =
-            self.rigid.blocks.iter().zip(&judged.blocks).map(|(before, after)| before - after).collect();
+        let gains: Vec<f64> = self
+            .rigid
+            .blocks
+            .iter()
+            .zip(&judged.blocks)
+            .map(|(before, after)| before - after)
+            .collect();
         crate::regression::t_of(&gains)
     }
 

@@ -1,11 +1,12 @@
 //! Free-run simulation of the whole axis in closed loop, and the output-error fit.
 //!
-//! The simulation gets the setpoints of a record and nothing else; its controller is that of `dataset.toml` where it is known ([`controller`]). Where it
-//! is not, the recorded effort is applied and a soft controller of our own keeps the simulation near the record: good enough to compare structures, but no
-//! free run, and not reported as one.
+//! The simulation gets the setpoints of a record and nothing else; its controller is that of
+//! `dataset.toml` where it is known ([`controller`]). Where it is not, the recorded effort is
+//! applied and a soft controller of our own keeps the simulation near the record: good enough to
+//! compare structures, but no free run, and not reported as one.
 //!
-//! Its states (stick, bristle, gap) are what the inverse model cannot have. Parameters start from the inverse model and are fitted by
-//! Levenberg–Marquardt to the recorded position ([`fit`]).
+//! Its states (stick, bristle, gap) are what the inverse model cannot have. Parameters start from
+//! the inverse model and are fitted by Levenberg–Marquardt to the recorded position ([`fit`]).
 
 pub mod axis;
 pub mod controller;
@@ -70,15 +71,24 @@ pub fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
         Drive::Known(law) => law.start(record),
         Drive::Followed => controller::Memory::default(),
     };
-    let mut efforts =
-        vec![record.effort.first().copied().unwrap_or(0.0); (model.delay_s / period_s).ceil() as usize + 2];
-    let mut run = Run { motor: Vec::with_capacity(rows), load: Vec::with_capacity(rows) };
+    let mut efforts = vec![
+        record.effort.first().copied().unwrap_or(0.0);
+        (model.delay_s / period_s).ceil() as usize + 2
+    ];
+    let mut run = Run {
+        motor: Vec::with_capacity(rows),
+        load: Vec::with_capacity(rows),
+    };
     for row in 0..rows {
         run.motor.push(axis.motor.x);
         run.load.push(axis.load.x);
         let effort = match drive {
             Drive::Known(law) => {
-                let measured = if law.on_load { axis.load.x } else { axis.motor.x };
+                let measured = if law.on_load {
+                    axis.load.x
+                } else {
+                    axis.motor.x
+                };
                 law.step(record, &mut memory, row, measured)
             }
             Drive::Followed => {
@@ -94,7 +104,11 @@ pub fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
         let time_s = record.time_s[row];
         for step in 0..steps as usize {
             let since = (step as f64 + 0.5) * h;
-            let commanded = held(&efforts, (since - 0.5 * h - model.delay_s) / period_s, h / period_s);
+            let commanded = held(
+                &efforts,
+                (since - 0.5 * h - model.delay_s) / period_s,
+                h / period_s,
+            );
             let middle = axis.motor.x + 0.5 * h * axis.motor.v;
             let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
             axis.advance(acting, model.mass, &model.shape, h);
@@ -111,11 +125,16 @@ fn held(efforts: &[f64], from: f64, length: f64) -> f64 {
     before * late(from) + (1.0 - before) * late(edge)
 }
 
-/// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position; also of the load, where both are there.
+/// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position;
+/// also of the load, where both are there.
 #[must_use]
 pub fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> bool) -> f64 {
     let rows = (SETTLING_ROWS..record.len()).filter(|row| mask(*row) && !record.interpolated[*row]);
-    let (sum, count) =
-        rows.fold((0.0, 0.0), |(sum, count), row| (sum + (run.motor[row] - record.position[row]).powi(2), count + 1.0));
+    let (sum, count) = rows.fold((0.0, 0.0), |(sum, count), row| {
+        (
+            sum + (run.motor[row] - record.position[row]).powi(2),
+            count + 1.0,
+        )
+    });
     (sum / f64::max(count, 1.0)).sqrt()
 }

@@ -55,11 +55,20 @@ impl Entry {
 impl Simulated {
     /// The simulation of an inverse model; `None` where it has no mass.
     #[must_use]
-    pub fn new(dataset: &Dataset, period_s: f64, model: &Model, coefficients: &[f64], shape: Shape) -> Option<Self> {
+    pub fn new(
+        dataset: &Dataset,
+        period_s: f64,
+        model: &Model,
+        coefficients: &[f64],
+        shape: Shape,
+    ) -> Option<Self> {
         let mut rest = coefficients.iter().copied();
         let (mut mass, mut terms) = (0.0, Vec::new());
         for term in &model.terms {
-            let own: Vec<f64> = rest.by_ref().take(term.effect.width(term.parameter)).collect();
+            let own: Vec<f64> = rest
+                .by_ref()
+                .take(term.effect.width(term.parameter))
+                .collect();
             if own.is_empty() {
                 return None;
             }
@@ -69,21 +78,43 @@ impl Simulated {
                 terms.push(Active { term: *term, own });
             }
         }
-        // A simulated effort is held from its row on; an instantaneous record sees half a period of that as delay.
-        let hold_s = if dataset.hold == EffortHold::Instant { 0.5 * period_s } else { 0.0 };
+        // A simulated effort is held from its row on; an instantaneous record sees half a period of
+        // that as delay.
+        let hold_s = if dataset.hold == EffortHold::Instant {
+            0.5 * period_s
+        } else {
+            0.0
+        };
         let delay_s = (model.delay_s - hold_s).max(0.0);
         let saturation = model.saturation.per_effort;
         let duration_s = dataset.train.period_s * dataset.train.len() as f64;
-        (mass > 0.0).then_some(Self { mass, terms, saturation, delay_s, shape, travel: dataset.travel(), duration_s })
+        (mass > 0.0).then_some(Self {
+            mass,
+            terms,
+            saturation,
+            delay_s,
+            shape,
+            travel: dataset.travel(),
+            duration_s,
+        })
     }
 
     /// What acts at an instant under a commanded effort.
     #[must_use]
     pub fn acting(&self, position: f64, velocity: f64, time_s: f64, commanded: f64) -> Acting {
         let scaled = (position - self.travel.0) / self.travel.1;
-        let at = Instant { position, scaled, velocity, time_s, time_share: time_s / self.duration_s };
+        let at = Instant {
+            position,
+            scaled,
+            velocity,
+            time_s,
+            time_share: time_s / self.duration_s,
+        };
         let delivered = commanded / (1.0 + self.saturation * commanded.abs());
-        let mut acting = Acting { motor: delivered, ..Acting::default() };
+        let mut acting = Acting {
+            motor: delivered,
+            ..Acting::default()
+        };
         for Active { term, own } in &self.terms {
             let Action { level, force } = term.effect.action(&at, term.parameter, own);
             acting.level += level;
@@ -99,22 +130,50 @@ impl Simulated {
     /// The entries of the parameter vector.
     #[must_use]
     pub fn entries(&self) -> Vec<Entry> {
-        let coulomb = self.terms.iter().find(|active| active.term.effect.name() == "coulomb");
-        let force = coulomb.map_or(self.mass, |active| active.own[0].abs()).max(f64::MIN_POSITIVE);
-        let free = |scale: f64| Entry { scale, step: STEP, positive: false };
-        let positive = |scale: f64| Entry { positive: true, ..free(scale) };
-        let jagged = |scale: f64| Entry { step: JAGGED_STEP, ..positive(scale) };
+        let coulomb = self
+            .terms
+            .iter()
+            .find(|active| active.term.effect.name() == "coulomb");
+        let force = coulomb
+            .map_or(self.mass, |active| active.own[0].abs())
+            .max(f64::MIN_POSITIVE);
+        let free = |scale: f64| Entry {
+            scale,
+            step: STEP,
+            positive: false,
+        };
+        let positive = |scale: f64| Entry {
+            positive: true,
+            ..free(scale)
+        };
+        let jagged = |scale: f64| Entry {
+            step: JAGGED_STEP,
+            ..positive(scale)
+        };
         let mut entries = vec![positive(self.mass)];
         for Active { term, own } in &self.terms {
             let is_coulomb = term.effect.name() == "coulomb";
             let scales = own.iter().map(|value| value.abs().max(0.05 * force));
-            entries.extend(scales.map(|scale| if is_coulomb { positive(scale) } else { free(scale) }));
-            entries.extend(term.effect.is_tuned().then(|| positive(term.parameter.abs())));
+            entries.extend(scales.map(|scale| {
+                if is_coulomb {
+                    positive(scale)
+                } else {
+                    free(scale)
+                }
+            }));
+            entries.extend(
+                term.effect
+                    .is_tuned()
+                    .then(|| positive(term.parameter.abs())),
+            );
         }
         entries.extend((self.saturation != 0.0).then(|| positive(self.saturation)));
         entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
         if self.shape.deflection > 0.0 {
-            entries.extend([positive(self.shape.deflection), positive(self.shape.damping.max(2.0 * self.mass))]);
+            entries.extend([
+                positive(self.shape.deflection),
+                positive(self.shape.damping.max(2.0 * self.mass)),
+            ]);
         }
         if self.shape.gap > 0.0 {
             entries.extend([self.shape.gap, 1.0, 1.0, 1.0].map(jagged));
@@ -156,30 +215,69 @@ impl Simulated {
             half_width: Some(half),
             unit,
         };
-        let mut named = vec![plain("inertia", self.mass, next(), unit(&format!(" s^2/{length}")))];
+        let mut named = vec![plain(
+            "inertia",
+            self.mass,
+            next(),
+            unit(&format!(" s^2/{length}")),
+        )];
         for Active { term, own } in &self.terms {
             let coefficients: Vec<(f64, f64)> = own.iter().map(|value| (*value, next())).collect();
             let parameter_half_width = term.effect.is_tuned().then(&mut next);
-            let naming =
-                Naming { parameter: term.parameter, parameter_half_width, coefficients: &coefficients, dataset };
+            let naming = Naming {
+                parameter: term.parameter,
+                parameter_half_width,
+                coefficients: &coefficients,
+                dataset,
+            };
             named.extend(term.effect.parameters(&naming));
         }
         if self.saturation != 0.0 {
-            named.push(plain("torque_saturation", self.saturation, next(), format!("1/{}", dataset.effort.unit())));
+            named.push(plain(
+                "torque_saturation",
+                self.saturation,
+                next(),
+                format!("1/{}", dataset.effort.unit()),
+            ));
         }
         if self.delay_s != 0.0 {
             named.push(plain("delay_beyond_hold", self.delay_s, next(), "s".into()));
         }
         let shape = &self.shape;
         if shape.deflection > 0.0 {
-            named.push(plain("presliding_deflection", shape.deflection, next(), length.into()));
-            named.push(plain("presliding_damping", shape.damping, next(), unit(&format!(" s/{length}"))));
+            named.push(plain(
+                "presliding_deflection",
+                shape.deflection,
+                next(),
+                length.into(),
+            ));
+            named.push(plain(
+                "presliding_damping",
+                shape.damping,
+                next(),
+                unit(&format!(" s/{length}")),
+            ));
         }
         if shape.gap > 0.0 {
             named.push(plain("backlash_gap", shape.gap, next(), length.into()));
-            named.push(plain("backlash_load_share", shape.load_share, next(), "of the moved mass".into()));
-            named.push(plain("backlash_motor_friction", shape.motor_friction, next(), "of the friction".into()));
-            named.push(plain("backlash_restitution", shape.restitution, next(), "of the velocity".into()));
+            named.push(plain(
+                "backlash_load_share",
+                shape.load_share,
+                next(),
+                "of the moved mass".into(),
+            ));
+            named.push(plain(
+                "backlash_motor_friction",
+                shape.motor_friction,
+                next(),
+                "of the friction".into(),
+            ));
+            named.push(plain(
+                "backlash_restitution",
+                shape.restitution,
+                next(),
+                "of the velocity".into(),
+            ));
         }
         named
     }

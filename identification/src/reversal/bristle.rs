@@ -4,7 +4,8 @@ use super::{Observed, rms};
 use crate::kinematics::Kinematics;
 use crate::search::golden;
 
-/// Deflections that are searched, in moving-velocity units times a second: 0.3 to 300 µm on a linear axis.
+/// Deflections that are searched, in moving-velocity units times a second: 0.3 to 300 µm on a
+/// linear axis.
 const SMALLEST: f64 = 3.0e-4;
 const LARGEST: f64 = 0.3;
 
@@ -40,14 +41,29 @@ pub fn best(observed: &Observed<'_>, unit: f64) -> (f64, Vec<f64>) {
 #[must_use]
 pub fn error(observed: &Observed<'_>, deflection: f64) -> Vec<f64> {
     let state = state(&observed.motion.friction_position, deflection);
-    let force: Vec<f64> = observed.level.iter().zip(state).map(|(level, state)| level * state).collect();
-    observed.motion.filter.apply(&force).iter().zip(&observed.friction).map(|(force, seen)| seen - force).collect()
+    let force: Vec<f64> = observed
+        .level
+        .iter()
+        .zip(state)
+        .map(|(level, state)| level * state)
+        .collect();
+    observed
+        .motion
+        .filter
+        .apply(&force)
+        .iter()
+        .zip(&observed.friction)
+        .map(|(force, seen)| seen - force)
+        .collect()
 }
 
 /// Motion whose direction columns follow Dahl's state instead of the sign.
 #[must_use]
 pub fn motion(motion: &Kinematics, deflection: f64) -> Kinematics {
-    Kinematics { direction: state(&motion.friction_position, deflection), ..motion.clone() }
+    Kinematics {
+        direction: state(&motion.friction_position, deflection),
+        ..motion.clone()
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! What happens about reversals, in the inverse model: stick or bristle.
 //!
-//! Moving samples hardly show presliding. Judged here is the friction that is observed about reversals, effort − everything but the sign columns,
-//! against two models of the same level G(v): [`stick`], rigid Coulomb friction that holds whatever there is at standstill, and [`bristle`], Dahl's
-//! hysteresis, without that freedom. A gap cannot be judged this way (its impacts are not in the low-passed effort): see [`crate::free_run::judge`].
+//! Moving samples hardly show presliding. Judged here is the friction that is observed about
+//! reversals, effort − everything but the sign columns, against two models of the same level G(v):
+//! [`stick`], rigid Coulomb friction that holds whatever there is at standstill, and [`bristle`],
+//! Dahl's hysteresis, without that freedom. A gap cannot be judged this way (its impacts are not in
+//! the low-passed effort): see [`crate::free_run::judge`].
 
 pub mod bristle;
 pub mod stick;
@@ -11,8 +13,8 @@ use crate::bench::{Bench, Model};
 use crate::kinematics::Kinematics;
 use crate::record::Dataset;
 
-/// Rms ratio of Dahl to rigid Coulomb friction, at most. On 128 simulated records: 0.05 to 0.34 with presliding, 0.88 and more with a gap, 2 and more
-/// with neither.
+/// Rms ratio of Dahl to rigid Coulomb friction, at most. On 128 simulated records: 0.05 to 0.34
+/// with presliding, 0.88 and more with a gap, 2 and more with neither.
 pub const RATIO: f64 = 0.7;
 /// Above this ratio nothing is suspected at reversals.
 pub const SUSPICION: f64 = 0.85;
@@ -48,7 +50,8 @@ pub struct Presliding {
     pub accepted: bool,
 }
 
-/// Judges presliding for a model; `None` where the model has no Coulomb friction or the record no reversals.
+/// Judges presliding for a model; `None` where the model has no Coulomb friction or the record no
+/// reversals.
 #[must_use]
 pub fn presliding(bench: &Bench<'_>, model: &Model, coefficients: &[f64]) -> Option<Presliding> {
     let motion = bench.motion;
@@ -61,12 +64,24 @@ pub fn presliding(bench: &Bench<'_>, model: &Model, coefficients: &[f64]) -> Opt
     let t = block_t(&motion.slow, &rigid, &bristle);
     let (rigid, dahl) = (rms(&rigid, &motion.slow), rms(&bristle, &motion.slow));
     let accepted = dahl <= RATIO * rigid && t >= T && deflection >= resolution(bench.dataset);
-    Some(Presliding { rigid, dahl, deflection, t, accepted })
+    Some(Presliding {
+        rigid,
+        dahl,
+        deflection,
+        t,
+        accepted,
+    })
 }
 
-/// Rms of the effort about reversals that a model does not explain: with a bristle of the given deflection, else with rigid stick.
+/// Rms of the effort about reversals that a model does not explain: with a bristle of the given
+/// deflection, else with rigid stick.
 #[must_use]
-pub fn error_rms(bench: &Bench<'_>, model: &Model, coefficients: &[f64], deflection: Option<f64>) -> Option<f64> {
+pub fn error_rms(
+    bench: &Bench<'_>,
+    model: &Model,
+    coefficients: &[f64],
+    deflection: Option<f64>,
+) -> Option<f64> {
     let observed = Observed::new(bench, model, coefficients)?;
     let error = match deflection {
         Some(deflection) => bristle::error(&observed, deflection),
@@ -83,7 +98,11 @@ pub fn resolution(dataset: &Dataset) -> f64 {
 
 /// Resolution of the encoder where friction acts: the load scale if there is one.
 fn encoder_resolution(dataset: &Dataset) -> f64 {
-    if dataset.train.load.is_some() { dataset.load_resolution } else { dataset.resolution }
+    if dataset.train.load.is_some() {
+        dataset.load_resolution
+    } else {
+        dataset.resolution
+    }
 }
 
 impl<'a> Observed<'a> {
@@ -99,16 +118,32 @@ impl<'a> Observed<'a> {
                 let coefficient = rest.next()?;
                 if term.effect.is_level() {
                     let signed = column.iter().zip(&motion.direction);
-                    level.iter_mut().zip(signed).for_each(|(level, (c, d))| *level += coefficient * c * d);
+                    level
+                        .iter_mut()
+                        .zip(signed)
+                        .for_each(|(level, (c, d))| *level += coefficient * c * d);
                 } else {
                     let column = motion.filter.apply(&column);
-                    others.iter_mut().zip(column).for_each(|(others, c)| *others += coefficient * c);
+                    others
+                        .iter_mut()
+                        .zip(column)
+                        .for_each(|(others, c)| *others += coefficient * c);
                 }
             }
         }
-        let friction = motion.effort_lp.iter().zip(others).map(|(effort, others)| effort - others).collect();
+        let friction = motion
+            .effort_lp
+            .iter()
+            .zip(others)
+            .map(|(effort, others)| effort - others)
+            .collect();
         let resolution = encoder_resolution(bench.dataset);
-        has_coulomb.then_some(Self { motion, level, friction, resolution })
+        has_coulomb.then_some(Self {
+            motion,
+            level,
+            friction,
+            resolution,
+        })
     }
 }
 
@@ -116,7 +151,9 @@ impl<'a> Observed<'a> {
 #[must_use]
 pub fn rms(error: &[f64], mask: &[bool]) -> f64 {
     let inside = error.iter().zip(mask).filter(|(_, inside)| **inside);
-    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (e, _)| (sum + e * e, count + 1.0));
+    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (e, _)| {
+        (sum + e * e, count + 1.0)
+    });
     (sum / f64::max(count, 1.0)).sqrt()
 }
 

@@ -10,7 +10,12 @@ const STICK_COUNTS: f64 = 1.5;
 pub fn error(observed: &Observed<'_>) -> Vec<f64> {
     let motion = observed.motion;
     let x = &motion.friction_position;
-    let slipping: Vec<f64> = observed.level.iter().zip(&motion.direction).map(|(level, d)| level * d).collect();
+    let slipping: Vec<f64> = observed
+        .level
+        .iter()
+        .zip(&motion.direction)
+        .map(|(level, d)| level * d)
+        .collect();
     let slipping = motion.filter.apply(&slipping);
     (0..motion.len())
         .map(|at| {

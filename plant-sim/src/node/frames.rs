@@ -1,4 +1,5 @@
-//! What a frame does to the plant: torque, NMT commands, and what follows from the state of the power stage.
+//! What a frame does to the plant: torque, NMT commands, and what follows from the state of the
+//! power stage.
 
 use protocol::cob::NodeId;
 use protocol::message::{EmergencyMessage, ErrorRegister, NmtCommand, NmtState, Torque};
@@ -27,7 +28,9 @@ impl PlantNode {
     }
 
     fn on_torque(&mut self, torque: Torque, now_us: u64, send: Send<'_>) {
-        let Some(now) = self.sync.now().filter(|_| self.is_operational()) else { return };
+        let Some(now) = self.sync.now().filter(|_| self.is_operational()) else {
+            return;
+        };
         if torque.counter == now.next() {
             self.begin_without_sync(now_us, send);
         }
@@ -37,14 +40,18 @@ impl PlantNode {
         self.notice_dropout(send);
         let fault = self.stage.fault();
         self.stage.obey(torque.control);
-        self.torque.take(f64::from(torque.torque.0) * self.newton_per_micro_nm, self.stage.is_enabled());
+        self.torque.take(
+            f64::from(torque.torque.0) * self.newton_per_micro_nm,
+            self.stage.is_enabled(),
+        );
         if fault.is_some() && self.stage.fault().is_none() {
             send(Message::PlantEmergency(EmergencyMessage::error_reset()).encode(self.ids));
         }
         self.settle(now_us, send);
     }
 
-    /// What follows from the state of the power stage: brake, status, an NMT command that waited for it.
+    /// What follows from the state of the power stage: brake, status, an NMT command that waited
+    /// for it.
     pub(super) fn settle(&mut self, now_us: u64, send: Send<'_>) {
         self.axis.command_brake(self.stage.releases_brake());
         self.report(send);
@@ -65,8 +72,18 @@ impl PlantNode {
         self.stage.fail(fault);
         self.torque.zero();
         self.axis.command_brake(false);
-        let detail = [fault.code(), self.sync.now().map_or(0, SyncCounter::get), 0, 0, 0];
-        let emergency = EmergencyMessage::new(fault.emergency_code(), ErrorRegister(ErrorRegister::GENERIC), detail);
+        let detail = [
+            fault.code(),
+            self.sync.now().map_or(0, SyncCounter::get),
+            0,
+            0,
+            0,
+        ];
+        let emergency = EmergencyMessage::new(
+            fault.emergency_code(),
+            ErrorRegister(ErrorRegister::GENERIC),
+            detail,
+        );
         send(Message::PlantEmergency(emergency).encode(self.ids));
     }
 
@@ -79,7 +96,11 @@ impl PlantNode {
             self.deferred = Some(command);
             return;
         }
-        if matches!(command, NmtCommand::ResetNode | NmtCommand::ResetCommunication) && !self.moves() {
+        if matches!(
+            command,
+            NmtCommand::ResetNode | NmtCommand::ResetCommunication
+        ) && !self.moves()
+        {
             self.axis.start_over();
             self.slow_s = STANDING_S;
         }

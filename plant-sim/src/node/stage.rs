@@ -1,15 +1,15 @@
 //! The power stage: a CiA 402 torque drive that the servo switches.
 //!
 //! ```text
-//! SwitchOnDisabled ──shutdown──▶ ReadyToSwitchOn ──switch on──▶ SwitchedOn ──enable operation──▶ OperationEnabled
-//!        ▲                            ▲    └─────────── enable operation: both steps ──────────────────▲
-//!        └── disable voltage, quick stop ── from every state but Fault                    torque acts only here
-//! Fault ──fault reset (rising edge)──▶ SwitchOnDisabled          Fault ──shutdown──▶ ReadyToSwitchOn
+//! SwitchOnDisabled ─shutdown─▶ ReadyToSwitchOn ─switch on─▶ SwitchedOn ─enable─▶ OperationEnabled
+//!        ▲                          └──────── enable operation: both steps ──────────────▲
+//!        └── disable voltage, quick stop: from every state but Fault      torque acts only here
+//! Fault ─fault reset (rising edge)─▶ SwitchOnDisabled        Fault ─shutdown─▶ ReadyToSwitchOn
 //! ```
 //!
-//! Transitions after CiA 402-2 §4.2 (numbers 2 to 10, 12, 15, 16). Ours, stated: a torque drive has no ramp, so a quick
-//! stop is the end of torque; and a `shutdown` leaves `Fault` too, because a servo that left its own fault state starts
-//! over with it.
+//! Transitions after CiA 402-2 §4.2 (numbers 2 to 10, 12, 15, 16). Ours, stated: a torque drive has
+//! no ramp, so a quick stop is the end of torque; and a `shutdown` leaves `Fault` too, because a
+//! servo that left its own fault state starts over with it.
 
 use protocol::Fault;
 use protocol::states::{Command, ControlWord, DriveState, StatusWord};
@@ -96,7 +96,11 @@ impl PowerStage {
             TorqueDrive::OperationEnabled => DriveState::OperationEnabled,
             TorqueDrive::Fault(_) => DriveState::Fault,
         };
-        let voltage = if self.supplied { StatusWord::VOLTAGE_ENABLED } else { 0 };
+        let voltage = if self.supplied {
+            StatusWord::VOLTAGE_ENABLED
+        } else {
+            0
+        };
         let remote = if operational { StatusWord::REMOTE } else { 0 };
         StatusWord::of(state).with(voltage | remote)
     }
@@ -113,7 +117,9 @@ impl PowerStage {
     /// What supply and hooks let through.
     const fn permitted(self, wanted: TorqueDrive) -> TorqueDrive {
         match wanted {
-            TorqueDrive::SwitchedOn | TorqueDrive::OperationEnabled if !self.supplied => TorqueDrive::ReadyToSwitchOn,
+            TorqueDrive::SwitchedOn | TorqueDrive::OperationEnabled if !self.supplied => {
+                TorqueDrive::ReadyToSwitchOn
+            }
             TorqueDrive::OperationEnabled if self.refuses => TorqueDrive::SwitchedOn,
             TorqueDrive::SwitchOnDisabled
             | TorqueDrive::ReadyToSwitchOn
@@ -138,7 +144,11 @@ impl PowerStage {
 
     /// As after power-up, the supply and the hooks of tests excepted: the node was reset.
     pub fn reset(&mut self) {
-        *self = Self { supplied: self.supplied, refuses: self.refuses, ..Self::default() };
+        *self = Self {
+            supplied: self.supplied,
+            refuses: self.refuses,
+            ..Self::default()
+        };
     }
 
     /// For tests: from now on it does (not) go to `OperationEnabled`.
@@ -164,7 +174,9 @@ const fn next(drive: TorqueDrive, command: Command, reset_edge: bool) -> TorqueD
         (_, Command::Shutdown) => ReadyToSwitchOn,
         (SwitchOnDisabled, Command::SwitchOn | Command::EnableOperation) => SwitchOnDisabled,
         (ReadyToSwitchOn | SwitchedOn | OperationEnabled, Command::SwitchOn) => SwitchedOn,
-        (ReadyToSwitchOn | SwitchedOn | OperationEnabled, Command::EnableOperation) => OperationEnabled,
+        (ReadyToSwitchOn | SwitchedOn | OperationEnabled, Command::EnableOperation) => {
+            OperationEnabled
+        }
     }
 }
 
@@ -187,11 +199,26 @@ mod tests {
         assert_eq!(after(&[C::ENABLE_OPERATION]), TorqueDrive::SwitchOnDisabled);
         assert_eq!(after(&[C::SWITCH_ON]), TorqueDrive::SwitchOnDisabled);
         assert_eq!(after(&[C::SHUTDOWN, C::SWITCH_ON]), TorqueDrive::SwitchedOn);
-        assert_eq!(after(&[C::SHUTDOWN, C::ENABLE_OPERATION]), TorqueDrive::OperationEnabled);
-        assert_eq!(after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::SWITCH_ON]), TorqueDrive::SwitchedOn);
-        assert_eq!(after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::SHUTDOWN]), TorqueDrive::ReadyToSwitchOn);
-        assert_eq!(after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::QUICK_STOP]), TorqueDrive::SwitchOnDisabled);
-        assert_eq!(after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::DISABLE_VOLTAGE]), TorqueDrive::SwitchOnDisabled);
+        assert_eq!(
+            after(&[C::SHUTDOWN, C::ENABLE_OPERATION]),
+            TorqueDrive::OperationEnabled
+        );
+        assert_eq!(
+            after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::SWITCH_ON]),
+            TorqueDrive::SwitchedOn
+        );
+        assert_eq!(
+            after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::SHUTDOWN]),
+            TorqueDrive::ReadyToSwitchOn
+        );
+        assert_eq!(
+            after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::QUICK_STOP]),
+            TorqueDrive::SwitchOnDisabled
+        );
+        assert_eq!(
+            after(&[C::SHUTDOWN, C::ENABLE_OPERATION, C::DISABLE_VOLTAGE]),
+            TorqueDrive::SwitchOnDisabled
+        );
     }
 
     #[test]
@@ -206,10 +233,18 @@ mod tests {
             stage.drive()
         };
         let fault = TorqueDrive::Fault(Fault::TorqueMissing);
-        for held in [&[C::FAULT_RESET][..], &[C::ENABLE_OPERATION], &[C::SWITCH_ON], &[C::DISABLE_VOLTAGE]] {
+        for held in [
+            &[C::FAULT_RESET][..],
+            &[C::ENABLE_OPERATION],
+            &[C::SWITCH_ON],
+            &[C::DISABLE_VOLTAGE],
+        ] {
             assert_eq!(failed(held), fault, "{held:?}");
         }
-        assert_eq!(failed(&[C::DISABLE_VOLTAGE, C::FAULT_RESET]), TorqueDrive::SwitchOnDisabled);
+        assert_eq!(
+            failed(&[C::DISABLE_VOLTAGE, C::FAULT_RESET]),
+            TorqueDrive::SwitchOnDisabled
+        );
         assert_eq!(failed(&[C::SHUTDOWN]), TorqueDrive::ReadyToSwitchOn);
     }
 

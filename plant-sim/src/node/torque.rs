@@ -1,14 +1,15 @@
 //! Torque commands on their way to the motor, and what became of each cycle's.
 //!
-//! Torque k comes during cycle k and acts from SYNC k + 1 on, as a synchronous RPDO does. A cycle whose torque does not
-//! come is *bridged*: the last one is held. That is what a drive in cyclic synchronous torque does; extrapolating would
-//! multiply the noise of the velocity loop by √5 and cost a full correction at every step of it.
+//! Torque k comes during cycle k and acts from SYNC k + 1 on, as a synchronous RPDO does. A cycle
+//! whose torque does not come is *bridged*: the last one is held. That is what a drive in cyclic
+//! synchronous torque does; extrapolating would multiply the noise of the velocity loop by √5 and
+//! cost a full correction at every step of it.
 
 /// Cycles in a row that the plant bridges with the last torque.
 pub const TORQUE_MISSES_ALLOWED: u16 = 3;
 
-/// What the plant did in the cycles since its start. `cycles` are those that are over; the present one is not counted
-/// yet.
+/// What the plant did in the cycles since its start. `cycles` are those that are over; the present
+/// one is not counted yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Cycles that are over: `computed + bridged + refused`.
@@ -19,8 +20,8 @@ pub struct Counters {
     pub bridged: u32,
     /// Only torque frames came that were malformed or carried another cycle's counter.
     pub refused: u32,
-    /// Cycles (the present one included) that were begun without SYNC: by the own timer, or because a torque frame
-    /// showed that they were on.
+    /// Cycles (the present one included) that were begun without SYNC: by the own timer, or because
+    /// a torque frame showed that they were on.
     pub by_deadline: u32,
 }
 

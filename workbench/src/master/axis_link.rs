@@ -1,7 +1,7 @@
 //! What the workbench knows of one axis: what it sent last, and what its servo and plant said.
 //!
-//! Feedback k and torque k fill the row of cycle k. Status and EMCY tell state and fault: a status comes on change of state and every tenth cycle,
-//! an EMCY at once.
+//! Feedback k and torque k fill the row of cycle k. Status and EMCY tell state and fault: a status
+//! comes on change of state and every tenth cycle, an EMCY at once.
 
 use plant_sim::Machine;
 use plant_sim::machine::PositionSensor;
@@ -16,10 +16,12 @@ use crate::drive::{self, COUNT_M, FINE_PER_COUNT};
 use crate::error::{Failure, Outcome};
 use crate::link::{Link, axis_ids};
 
-/// Cycles without a torque frame after which a servo counts as silent: as many as the nodes bridge (`TORQUE_MISSES_ALLOWED` of the plant).
+/// Cycles without a torque frame after which a servo counts as silent: as many as the nodes bridge
+/// (`TORQUE_MISSES_ALLOWED` of the plant).
 pub const SILENT_CYCLES: u32 = 3;
 
-/// An axis stands where its motor is slower than this: on a ramp of 5 m/s² that is 0.4 ms and 0.4 µm before its end.
+/// An axis stands where its motor is slower than this: on a ramp of 5 m/s² that is 0.4 ms and 0.4
+/// µm before its end.
 const STANDS_M_PER_S: f64 = 2.0e-3;
 /// A motor that stands may still tell two neighbouring encoder counts in turn.
 const STANDS_COUNTS: f64 = 1.5;
@@ -33,7 +35,8 @@ pub struct AxisCycle {
     pub motor_m: f64,
     /// Load scale, m.
     pub load_m: f64,
-    /// Force that is active from this cycle to the next: the torque command of the cycle before, at the table, N.
+    /// Force that is active from this cycle to the next: the torque command of the cycle before, at
+    /// the table, N.
     pub force_n: f64,
     /// What an instrument at the machine saw.
     pub truth: Option<Truth>,
@@ -71,12 +74,15 @@ pub(super) struct AxisLink {
 impl AxisLink {
     /// The axes of a machine, on the buses of a link.
     pub(super) fn of_machine(machine: &Machine, link: &impl Link) -> Outcome<Vec<Self>> {
-        (0..machine.axes.len()).map(|index| Self::of_axis(machine, index, link.bus_of(index))).collect()
+        (0..machine.axes.len())
+            .map(|index| Self::of_axis(machine, index, link.bus_of(index)))
+            .collect()
     }
 
     fn of_axis(machine: &Machine, index: usize, bus: usize) -> Outcome<Self> {
         let axis = &machine.axes[index];
-        let way_m = axis.actual.lead_m_per_rev / f64::from(axis.actual.motor_encoder_counts_per_rev);
+        let way_m =
+            axis.actual.lead_m_per_rev / f64::from(axis.actual.motor_encoder_counts_per_rev);
         Ok(Self {
             ids: axis_ids(index)?,
             bus,
@@ -100,7 +106,8 @@ impl AxisLink {
         })
     }
 
-    /// A cycle begins: the setpoint that was sent early is due now, and so is the torque of the cycle before.
+    /// A cycle begins: the setpoint that was sent early is due now, and so is the torque of the
+    /// cycle before.
     pub(super) fn begin(&mut self, next_m: f64) {
         self.now.reference_m = fine_m(self.next);
         self.now.force_n = self.torque_n;
@@ -112,15 +119,25 @@ impl AxisLink {
     /// A cycle ends, with what an instrument saw of it.
     pub(super) fn end(&mut self, truth: Option<Truth>) {
         self.now.truth = truth;
-        self.silent_cycles = if self.torque_seen { 0 } else { self.silent_cycles.saturating_add(1) };
+        self.silent_cycles = if self.torque_seen {
+            0
+        } else {
+            self.silent_cycles.saturating_add(1)
+        };
         let stands = (self.now.motor_m - self.motor_before_m).abs() <= self.stands_m;
-        self.standing_cycles = if stands { self.standing_cycles.saturating_add(1) } else { 0 };
+        self.standing_cycles = if stands {
+            self.standing_cycles.saturating_add(1)
+        } else {
+            0
+        };
     }
 
     /// Takes what came on the bus in cycle `counter`.
     pub(super) fn take(&mut self, message: Message, counter: SyncCounter) {
         match message {
-            Message::Feedback(feedback) if feedback.counter == counter => self.take_feedback(feedback),
+            Message::Feedback(feedback) if feedback.counter == counter => {
+                self.take_feedback(feedback)
+            }
             Message::Torque(torque) if torque.counter == counter => {
                 self.torque_n = f64::from(torque.torque.0) * self.newton_per_micro_nm;
                 self.torque_seen = true;
@@ -129,7 +146,9 @@ impl AxisLink {
                 self.state = status.status.state();
                 self.fault = status.fault.or(self.fault);
             }
-            Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency) => self.take_emergency(emergency),
+            Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency) => {
+                self.take_emergency(emergency)
+            }
             _ => {}
         }
     }
@@ -141,7 +160,8 @@ impl AxisLink {
         self.now.load_m = counts as f64 * COUNT_M;
     }
 
-    /// The code 0 is the EMCY of a fault that was reset (CiA 301 table 26); it takes nothing back here: what began a stop has to stay known.
+    /// The code 0 is the EMCY of a fault that was reset (CiA 301 table 26); it takes nothing back
+    /// here: what began a stop has to stay known.
     fn take_emergency(&mut self, emergency: EmergencyMessage) {
         self.fault = Fault::from_code(emergency.vendor_specific[0]).or(self.fault);
         if self.fault.is_none() && emergency.error_code != 0 {
@@ -149,8 +169,8 @@ impl AxisLink {
         }
     }
 
-    /// The load scale tells its low 24 bits; the first reading is taken to stand nearest to where the motor and the relation of both encoders
-    /// expect it, as the drive does (2103h).
+    /// The load scale tells its low 24 bits; the first reading is taken to stand nearest to where
+    /// the motor and the relation of both encoders expect it, as the drive does (2103h).
     fn unwrap(&self, load: LoadIncrements24) -> i64 {
         let (raw, counts) = self.load.unwrap_or_else(|| {
             let counts = (self.now.motor_m / COUNT_M).round() as i64 + self.relation_counts;
@@ -213,12 +233,19 @@ impl AxisLink {
             )));
         }
         let is_well = self.state == Some(DriveState::OperationEnabled) && !self.has_reported();
-        (!is_well).then(|| Failure::new(format!("axis {name}: the drive is not enabled ({})", self.account())))
+        (!is_well).then(|| {
+            Failure::new(format!(
+                "axis {name}: the drive is not enabled ({})",
+                self.account()
+            ))
+        })
     }
 
     /// State and fault, in words.
     pub(super) fn account(&self) -> String {
-        let state = self.state.map_or_else(|| "no status seen".to_owned(), |state| format!("{state:?}"));
+        let state = self
+            .state
+            .map_or_else(|| "no status seen".to_owned(), |state| format!("{state:?}"));
         let why = match (self.fault, self.emergency) {
             (Some(fault), _) => format!("{fault:?}: {}", fault.text()),
             (None, Some(code)) => format!("EMCY {code:04X}h"),

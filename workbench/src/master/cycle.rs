@@ -1,10 +1,13 @@
-//! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for the torque k of every axis.
+//! One cycle k in lock-step: SYNC k on every bus, setpoints k + 1 (one cycle early), then wait for
+//! the torque k of every axis.
 //!
-//! A wait ends with the torques, with the patience of the link (in process and at clock pace the end of the cycle, in lock-step over interfaces one
-//! and a half deadlines of the nodes), or with evidence that a node has begun the next cycle by its own timer.
+//! A wait ends with the torques, with the patience of the link (in process and at clock pace the
+//! end of the cycle, in lock-step over interfaces one and a half deadlines of the nodes), or with
+//! evidence that a node has begun the next cycle by its own timer.
 //!
-//! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the others must not starve
-//! while they are being stopped, and the cycle keeps its pace where nobody answers at all.
+//! An axis that has been silent for `SILENT_CYCLES` is waited for no longer than a period: the
+//! others must not starve while they are being stopped, and the cycle keeps its pace where nobody
+//! answers at all.
 
 use protocol::message::{Decoded, Setpoint, decode};
 use protocol::{CanFrame, Message, SyncCounter};
@@ -36,7 +39,10 @@ impl<L: Link> Master<L> {
         let counter = self.counter;
         let sync = Message::Sync(counter).encode(axis_ids(0)?);
         (0..self.link.buses()).try_for_each(|bus| self.link.send(bus, sync))?;
-        self.axes.iter_mut().zip(next_m).for_each(|(axis, next)| axis.begin(*next));
+        self.axes
+            .iter_mut()
+            .zip(next_m)
+            .for_each(|(axis, next)| axis.begin(*next));
         self.send_setpoints(counter.next())?;
         (0..self.link.buses()).try_for_each(|bus| self.collect(bus, counter))?;
         for (index, axis) in self.axes.iter_mut().enumerate() {
@@ -51,15 +57,26 @@ impl<L: Link> Master<L> {
     pub(super) fn send_setpoints(&mut self, counter: SyncCounter) -> Outcome<()> {
         (0..self.axes.len()).try_for_each(|index| {
             let position = self.axes[index].next;
-            self.send(index, Message::Setpoint(Setpoint { control: self.control, counter, position }))
+            self.send(
+                index,
+                Message::Setpoint(Setpoint {
+                    control: self.control,
+                    counter,
+                    position,
+                }),
+            )
         })
     }
 
     fn collect(&mut self, bus: usize, counter: SyncCounter) -> Outcome<()> {
         for _ in 0..MOST_FRAMES {
-            let Some(missing) = self.missing(bus) else { return Ok(()) };
+            let Some(missing) = self.missing(bus) else {
+                return Ok(());
+            };
             let most = (missing == Missing::OnlySilent).then_some(self.period);
-            let Some(frame) = self.link.receive_in_cycle(bus, most)? else { break };
+            let Some(frame) = self.link.receive_in_cycle(bus, most)? else {
+                break;
+            };
             if self.hear(bus, &frame, counter) {
                 break;
             }
@@ -70,16 +87,26 @@ impl<L: Link> Master<L> {
 
     /// Whose torques are still missing on a bus; `None` where all have come.
     fn missing(&self, bus: usize) -> Option<Missing> {
-        let mut missing = self.axes.iter().filter(|axis| axis.bus == bus && !axis.has_answered()).peekable();
+        let mut missing = self
+            .axes
+            .iter()
+            .filter(|axis| axis.bus == bus && !axis.has_answered())
+            .peekable();
         missing.peek()?;
-        Some(if missing.all(AxisLink::is_silent) { Missing::OnlySilent } else { Missing::Expected })
+        Some(if missing.all(AxisLink::is_silent) {
+            Missing::OnlySilent
+        } else {
+            Missing::Expected
+        })
     }
 
-    /// Takes a frame; tells whether it shows that the next cycle is on already: a node goes on by its own timer, and SYNC is overdue.
+    /// Takes a frame; tells whether it shows that the next cycle is on already: a node goes on by
+    /// its own timer, and SYNC is overdue.
     fn hear(&mut self, bus: usize, frame: &CanFrame, counter: SyncCounter) -> bool {
         let mut is_overdue = false;
         for axis in self.axes.iter_mut().filter(|axis| axis.bus == bus) {
-            // Frames that cannot be decoded are the nodes' business; the workbench only listens here.
+            // Frames that cannot be decoded are the nodes' business; the workbench only listens
+            // here.
             if let Ok(Decoded::Message(message)) = decode(axis.ids, frame) {
                 is_overdue |= cycle_of(&message) == Some(counter.next());
                 axis.take(message, counter);

@@ -1,9 +1,11 @@
-//! The machine stops as one: trouble of one axis, or the wish of the operator, brings all axes to rest.
+//! The machine stops as one: trouble of one axis, or the wish of the operator, brings all axes to
+//! rest.
 //!
-//! Trouble is a fault or an EMCY, a drive that left `operation enabled`, or a servo that sent no torque for
-//! `SILENT_CYCLES`. All drives get `quick stop` with the next setpoints, so within a cycle of noticing: an EMCY is noticed at once, silence after
-//! three cycles, a mere change of state with the status, at most ten cycles later. Setpoints stay where they are; the cycle goes on until every
-//! motor stands and no drive is ramping any more, then the drives are disabled.
+//! Trouble is a fault or an EMCY, a drive that left `operation enabled`, or a servo that sent no
+//! torque for `SILENT_CYCLES`. All drives get `quick stop` with the next setpoints, so within a
+//! cycle of noticing: an EMCY is noticed at once, silence after three cycles, a mere change of
+//! state with the status, at most ten cycles later. Setpoints stay where they are; the cycle goes
+//! on until every motor stands and no drive is ramping any more, then the drives are disabled.
 
 use protocol::states::ControlWord;
 use protocol::table::STATUS_EVERY_CYCLES;
@@ -14,7 +16,8 @@ use super::way::{Hold, is_without_torque};
 use crate::error::{Failure, Outcome};
 use crate::link::Link;
 
-/// Patience with a stop: an axis that coasts from 0.4 m/s stands after half a second, one that ramps at 5 m/s² after a tenth.
+/// Patience with a stop: an axis that coasts from 0.4 m/s stands after half a second, one that
+/// ramps at 5 m/s² after a tenth.
 const REST_S: f64 = 2.0;
 /// Standstill has to last for a status period: a reversal stands for a moment too.
 const STANDING_CYCLES: u32 = STATUS_EVERY_CYCLES as u32;
@@ -25,7 +28,10 @@ impl<L: Link> Master<L> {
     /// # Errors
     /// Axis, state and fault.
     pub fn expect_enabled(&self) -> Outcome<()> {
-        self.axes.iter().find_map(AxisLink::trouble).map_or(Ok(()), Err)
+        self.axes
+            .iter()
+            .find_map(AxisLink::trouble)
+            .map_or(Ok(()), Err)
     }
 
     /// Whether some servo has been silent for so long that going on makes no sense.
@@ -44,11 +50,14 @@ impl<L: Link> Master<L> {
     #[must_use]
     pub fn stop(&mut self) -> Failure {
         let reason = self.reason();
-        match self.quick_stop().and_then(|moving| self.disable().map(|()| moving)) {
+        match self
+            .quick_stop()
+            .and_then(|moving| self.disable().map(|()| moving))
+        {
             Ok(None) => reason,
-            Ok(Some(moving)) => {
-                Failure::new(format!("{reason}; axis {moving} was not seen to come to rest in {REST_S} s"))
-            }
+            Ok(Some(moving)) => Failure::new(format!(
+                "{reason}; axis {moving} was not seen to come to rest in {REST_S} s"
+            )),
             Err(failure) => Failure::new(format!("{reason}; and while stopping: {failure}")),
         }
     }
@@ -59,7 +68,9 @@ impl<L: Link> Master<L> {
 
     fn reason(&self) -> Failure {
         match self.axes.iter().find_map(AxisLink::trouble) {
-            Some(trouble) if self.axes.len() > 1 => Failure::new(format!("{trouble}; the other axes were stopped")),
+            Some(trouble) if self.axes.len() > 1 => {
+                Failure::new(format!("{trouble}; the other axes were stopped"))
+            }
             Some(trouble) => trouble,
             None => self.interrupt.failure("all axes were stopped and disabled"),
         }
@@ -71,12 +82,17 @@ impl<L: Link> Master<L> {
         let rested = self.confirm(ControlWord::QUICK_STOP, Hold::Last, patience, |master| {
             master.axes.iter().all(has_come_to_rest)
         })?;
-        let moving = self.axes.iter().find(|axis| !rested && !has_come_to_rest(axis));
+        let moving = self
+            .axes
+            .iter()
+            .find(|axis| !rested && !has_come_to_rest(axis));
         Ok(moving.map(|axis| axis.name.clone()))
     }
 }
 
-/// A silent servo tells no state, but its plant may still tell where the motor is; a motor of which nothing is heard cannot be waited for.
+/// A silent servo tells no state, but its plant may still tell where the motor is; a motor of which
+/// nothing is heard cannot be waited for.
 fn has_come_to_rest(axis: &AxisLink) -> bool {
-    axis.has_stood_for(STANDING_CYCLES) && (axis.is_silent() || axis.state.is_some_and(is_without_torque))
+    axis.has_stood_for(STANDING_CYCLES)
+        && (axis.is_silent() || axis.state.is_some_and(is_without_torque))
 }

@@ -1,6 +1,8 @@
-//! SDO client: one expedited request at a time to the servo of an axis, and the parameter sets that go that way.
+//! SDO client: one expedited request at a time to the servo of an axis, and the parameter sets that
+//! go that way.
 //!
-//! A set is staged object by object and becomes active as a whole with the commit object; nothing of it acts before.
+//! A set is staged object by object and becomes active as a whole with the commit object; nothing
+//! of it acts before.
 
 use plant_sim::Machine;
 use protocol::Message;
@@ -41,8 +43,13 @@ impl<L: Link> Master<L> {
     /// Downloads the parameters of all axes and makes each set active as a whole.
     ///
     /// # Errors
-    /// Where a value does not fit, or the drive refuses it or the whole set: with its parameter and reason.
-    pub fn configure(&mut self, machine: &Machine, compensation: &[AxisCompensation]) -> Outcome<()> {
+    /// Where a value does not fit, or the drive refuses it or the whole set: with its parameter and
+    /// reason.
+    pub fn configure(
+        &mut self,
+        machine: &Machine,
+        compensation: &[AxisCompensation],
+    ) -> Outcome<()> {
         let period_us = u32::try_from(self.period.as_micros()).unwrap_or(u32::MAX);
         for (index, axis) in machine.axes.iter().enumerate() {
             self.download(index, objects::DECLARED_PERIOD, Expedited::u32(period_us))?;
@@ -55,7 +62,8 @@ impl<L: Link> Master<L> {
         Ok(())
     }
 
-    /// Makes the staged set active. A set that does not go together is refused as a whole, and 2F02h says why.
+    /// Makes the staged set active. A set that does not go together is refused as a whole, and
+    /// 2F02h says why.
     fn commit(&mut self, index: usize) -> Outcome<()> {
         let request = Request::Download(objects::COMMIT, Expedited::u32(objects::COMMIT_KEY));
         match self.ask(index, request)? {
@@ -64,7 +72,9 @@ impl<L: Link> Master<L> {
                 let row = self.upload(index, objects::REFUSED_ROW)?.to_u32();
                 let reason = self.upload(index, objects::REFUSED_REASON)?.to_u32();
                 let (name, why) = (&self.axes[index].name, refusal(row, reason));
-                Err(Failure::new(format!("axis {name}: the drive refuses the parameter set: {why}")))
+                Err(Failure::new(format!(
+                    "axis {name}: the drive refuses the parameter set: {why}"
+                )))
             }
             other => Err(self.refused(index, objects::COMMIT, other)),
         }
@@ -75,7 +85,9 @@ impl<L: Link> Master<L> {
         let (bus, ids) = (self.axes[index].bus, self.axes[index].ids);
         let mut patience = Patience::begin();
         while patience.lasts() {
-            let Some(frame) = self.link.receive(bus, ANSWER)? else { break };
+            let Some(frame) = self.link.receive(bus, ANSWER)? else {
+                break;
+            };
             if let Ok(Decoded::Message(Message::SdoResponse(response))) = decode(ids, &frame) {
                 return Ok(response);
             }
@@ -96,19 +108,38 @@ impl<L: Link> Master<L> {
             Response::Aborted(_, code) => format!("{} (abort {code:#010x})", AbortCode::text(code)),
             other => format!("unexpected answer {other:?}"),
         };
-        let Address { index: object, subindex } = address;
-        Failure::new(format!("axis {}: object {object:04X}h:{subindex}: {why}", self.axes[index].name))
+        let Address {
+            index: object,
+            subindex,
+        } = address;
+        Failure::new(format!(
+            "axis {}: object {object:04X}h:{subindex}: {why}",
+            self.axes[index].name
+        ))
     }
 }
 
-/// The parameter and the reason of a refused commit, in words: rows of `docs/objects.md` count from 1, reasons are those of [`SetError`].
+/// The parameter and the reason of a refused commit, in words: rows of `docs/objects.md` count from
+/// 1, reasons are those of [`SetError`].
 fn refusal(row: u32, reason: u32) -> String {
     let place = usize::try_from(row).ok().and_then(|row| row.checked_sub(1));
-    let parameter = place.and_then(|place| objects::TABLE.get(place)).map_or_else(
-        || format!("row {row} of its object table"),
-        |Entry { address, name, .. }| format!("object {:04X}h:{} ({name})", address.index, address.subindex),
+    let parameter = place
+        .and_then(|place| objects::TABLE.get(place))
+        .map_or_else(
+            || format!("row {row} of its object table"),
+            |Entry { address, name, .. }| {
+                format!(
+                    "object {:04X}h:{} ({name})",
+                    address.index, address.subindex
+                )
+            },
+        );
+    let text = SetError::REASONS
+        .iter()
+        .find(|(code, _)| u32::from(*code) == reason);
+    let text = text.map_or_else(
+        || format!("reason {reason}"),
+        |(_, text)| (*text).to_owned(),
     );
-    let text = SetError::REASONS.iter().find(|(code, _)| u32::from(*code) == reason);
-    let text = text.map_or_else(|| format!("reason {reason}"), |(_, text)| (*text).to_owned());
     format!("{parameter}: {text}")
 }

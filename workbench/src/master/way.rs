@@ -1,4 +1,5 @@
-//! The way up to `operation enabled` and down again, CiA 402-2 §4.2, each step confirmed by the status of every drive.
+//! The way up to `operation enabled` and down again, CiA 402-2 §4.2, each step confirmed by the
+//! status of every drive.
 //!
 //! ```text
 //! up:    disable voltage (fault reset) ─▶ shutdown ─▶ switch on ─▶ enable operation
@@ -7,8 +8,9 @@
 //!          SwitchedOn            ReadyToSwitchOn  SwitchOnDisabled
 //! ```
 //!
-//! A status comes on change of state, and every tenth cycle at the latest. What a drive said before a step began confirms nothing: its state counts
-//! as unknown then. Patience is counted in cycles and derived from seconds, because brakes and ramps take time, not cycles.
+//! A status comes on change of state, and every tenth cycle at the latest. What a drive said before
+//! a step began confirms nothing: its state counts as unknown then. Patience is counted in cycles
+//! and derived from seconds, because brakes and ramps take time, not cycles.
 
 use protocol::message::NmtCommand;
 use protocol::states::{ControlWord, DriveState};
@@ -19,11 +21,14 @@ use super::axis_link::AxisLink;
 use crate::error::{Failure, Outcome};
 use crate::link::Link;
 
-/// A step without motion is confirmed by the next status; a status may be lost, nine in a row are not.
+/// A step without motion is confirmed by the next status; a status may be lost, nine in a row are
+/// not.
 const STEP_CYCLES: u32 = 10 * STATUS_EVERY_CYCLES as u32;
-/// Enabling waits for the power stage and for a brake: the slowest of our machine files opens in 30 ms, catalogues go up to some 100 ms.
+/// Enabling waits for the power stage and for a brake: the slowest of our machine files opens in 30
+/// ms, catalogues go up to some 100 ms.
 const ENABLE_S: f64 = 1.0;
-/// Disabling ramps down (0.5 m/s at 5 m/s² take 0.1 s; the longest ramp that a drive accepts is below a second) and holds until the brake bites.
+/// Disabling ramps down (0.5 m/s at 5 m/s² take 0.1 s; the longest ramp that a drive accepts is
+/// below a second) and holds until the brake bites.
 const DISABLE_S: f64 = 1.5;
 
 /// Which setpoints go out while the drives change their state.
@@ -39,7 +44,8 @@ pub(super) enum Hold {
 struct Step(ControlWord, Hold, DriveState, u32);
 
 impl<L: Link> Master<L> {
-    /// NMT start, and the drives up to `operation enabled` where they stand. Where one does not come up, all go down again.
+    /// NMT start, and the drives up to `operation enabled` where they stand. Where one does not
+    /// come up, all go down again.
     ///
     /// # Errors
     /// Axis, state and the fault or EMCY with which a drive refused; an interruption.
@@ -57,37 +63,64 @@ impl<L: Link> Master<L> {
     fn climb(&mut self) -> Outcome<()> {
         self.reset_fault()?;
         for Step(control, hold, wanted, patience) in [
-            Step(ControlWord::SHUTDOWN, Hold::Actual, DriveState::ReadyToSwitchOn, STEP_CYCLES),
-            Step(ControlWord::SWITCH_ON, Hold::Actual, DriveState::SwitchedOn, STEP_CYCLES),
-            Step(ControlWord::ENABLE_OPERATION, Hold::Last, DriveState::OperationEnabled, self.cycles_in(ENABLE_S)),
+            Step(
+                ControlWord::SHUTDOWN,
+                Hold::Actual,
+                DriveState::ReadyToSwitchOn,
+                STEP_CYCLES,
+            ),
+            Step(
+                ControlWord::SWITCH_ON,
+                Hold::Actual,
+                DriveState::SwitchedOn,
+                STEP_CYCLES,
+            ),
+            Step(
+                ControlWord::ENABLE_OPERATION,
+                Hold::Last,
+                DriveState::OperationEnabled,
+                self.cycles_in(ENABLE_S),
+            ),
         ] {
             let is_up = |axis: &AxisLink| axis.state == Some(wanted);
             self.confirm(control, hold, patience, |master| {
-                master.axes.iter().all(is_up) || master.axes.iter().any(has_refused) || master.is_interrupted()
+                master.axes.iter().all(is_up)
+                    || master.axes.iter().any(has_refused)
+                    || master.is_interrupted()
             })?;
             if self.is_interrupted() {
                 return Err(self.interrupt.failure("the drives were not enabled"));
             }
-            if let Some(axis) = self.axes.iter().find(|axis| has_refused(axis) || !is_up(axis)) {
+            if let Some(axis) = self
+                .axes
+                .iter()
+                .find(|axis| has_refused(axis) || !is_up(axis))
+            {
                 return Err(refusal(axis, wanted));
             }
         }
         Ok(())
     }
 
-    /// Disables the drives: disable operation (they ramp down and hold until their brakes bite), shutdown, disable voltage.
+    /// Disables the drives: disable operation (they ramp down and hold until their brakes bite),
+    /// shutdown, disable voltage.
     ///
     /// # Errors
     /// Where an interface is gone, or a drive does not confirm that its torque is off.
     pub fn disable(&mut self) -> Outcome<()> {
         if !self.all(is_down) {
-            self.descend(ControlWord::SWITCH_ON, self.cycles_in(DISABLE_S), is_without_torque)?;
+            self.descend(
+                ControlWord::SWITCH_ON,
+                self.cycles_in(DISABLE_S),
+                is_without_torque,
+            )?;
             self.descend(ControlWord::SHUTDOWN, STEP_CYCLES, |state| {
                 is_without_torque(state) && state != DriveState::SwitchedOn
             })?;
         }
         self.descend(ControlWord::DISABLE_VOLTAGE, STEP_CYCLES, is_down)?;
-        let torque_is_off = |axis: &AxisLink| axis.is_silent() || axis.state.is_some_and(is_without_torque);
+        let torque_is_off =
+            |axis: &AxisLink| axis.is_silent() || axis.state.is_some_and(is_without_torque);
         match self.axes.iter().find(|axis| !torque_is_off(axis)) {
             None => Ok(()),
             Some(axis) => Err(Failure::new(format!(
@@ -98,41 +131,72 @@ impl<L: Link> Master<L> {
         }
     }
 
-    /// Resets faults; the drives are disabled afterwards, those that were in operation in a controlled way.
+    /// Resets faults; the drives are disabled afterwards, those that were in operation in a
+    /// controlled way.
     ///
     /// # Errors
     /// Where an interface is gone, or a drive does not confirm that its torque is off.
     pub fn reset_fault(&mut self) -> Outcome<()> {
-        let is_energised = |axis: &AxisLink| axis.state.is_some_and(|state| !is_without_torque(state));
+        let is_energised =
+            |axis: &AxisLink| axis.state.is_some_and(|state| !is_without_torque(state));
         if self.axes.iter().any(is_energised) {
             self.disable()?;
         }
         let rests = |axis: &AxisLink| axis.state.is_some_and(is_down);
-        self.confirm(ControlWord::DISABLE_VOLTAGE, Hold::Actual, self.cycles_in(DISABLE_S), |master| {
-            master.axes.iter().all(|axis| rests(axis) || axis.is_silent())
-        })?;
-        if self.axes.iter().any(|axis| axis.state == Some(DriveState::Fault)) {
-            let is_reset = |axis: &AxisLink| axis.state == Some(DriveState::SwitchOnDisabled) || axis.is_silent();
-            self.confirm(ControlWord::FAULT_RESET, Hold::Actual, STEP_CYCLES, |master| {
-                master.axes.iter().all(is_reset)
-            })?;
+        self.confirm(
+            ControlWord::DISABLE_VOLTAGE,
+            Hold::Actual,
+            self.cycles_in(DISABLE_S),
+            |master| {
+                master
+                    .axes
+                    .iter()
+                    .all(|axis| rests(axis) || axis.is_silent())
+            },
+        )?;
+        if self
+            .axes
+            .iter()
+            .any(|axis| axis.state == Some(DriveState::Fault))
+        {
+            let is_reset = |axis: &AxisLink| {
+                axis.state == Some(DriveState::SwitchOnDisabled) || axis.is_silent()
+            };
+            self.confirm(
+                ControlWord::FAULT_RESET,
+                Hold::Actual,
+                STEP_CYCLES,
+                |master| master.axes.iter().all(is_reset),
+            )?;
         }
         self.control = ControlWord::DISABLE_VOLTAGE;
-        self.axes.iter_mut().filter(|axis| axis.state != Some(DriveState::Fault)).for_each(AxisLink::forget_faults);
+        self.axes
+            .iter_mut()
+            .filter(|axis| axis.state != Some(DriveState::Fault))
+            .for_each(AxisLink::forget_faults);
         Ok(())
     }
 
     /// A step of the way down, with the setpoints frozen. Nobody waits for a servo that is silent.
-    fn descend(&mut self, control: ControlWord, patience: u32, reached: fn(DriveState) -> bool) -> Outcome<()> {
-        self.confirm(control, Hold::Last, patience, |master| master.all(reached)).map(|_| ())
+    fn descend(
+        &mut self,
+        control: ControlWord,
+        patience: u32,
+        reached: fn(DriveState) -> bool,
+    ) -> Outcome<()> {
+        self.confirm(control, Hold::Last, patience, |master| master.all(reached))
+            .map(|_| ())
     }
 
     /// Whether all drives that are not silent told a state of this kind.
     pub(super) fn all(&self, is_reached: fn(DriveState) -> bool) -> bool {
-        self.axes.iter().all(|axis| axis.is_silent() || axis.state.is_some_and(is_reached))
+        self.axes
+            .iter()
+            .all(|axis| axis.is_silent() || axis.state.is_some_and(is_reached))
     }
 
-    /// Sends a control word until the drives have confirmed it, or for that many cycles; tells whether they have.
+    /// Sends a control word until the drives have confirmed it, or for that many cycles; tells
+    /// whether they have.
     pub(super) fn confirm(
         &mut self,
         control: ControlWord,
@@ -173,8 +237,13 @@ const fn is_down(state: DriveState) -> bool {
 /// The states in which CiA 402 allows no torque.
 pub(super) const fn is_without_torque(state: DriveState) -> bool {
     match state {
-        DriveState::SwitchOnDisabled | DriveState::ReadyToSwitchOn | DriveState::SwitchedOn | DriveState::Fault => true,
-        DriveState::OperationEnabled | DriveState::QuickStopActive | DriveState::FaultReactionActive => false,
+        DriveState::SwitchOnDisabled
+        | DriveState::ReadyToSwitchOn
+        | DriveState::SwitchedOn
+        | DriveState::Fault => true,
+        DriveState::OperationEnabled
+        | DriveState::QuickStopActive
+        | DriveState::FaultReactionActive => false,
     }
 }
 

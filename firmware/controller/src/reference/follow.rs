@@ -1,14 +1,14 @@
-//! Following within limits: the commanded track passes setpoints bit for bit while the axis can follow them, and chases
-//! them where it cannot.
+//! Following within limits: the commanded track passes setpoints bit for bit while the axis can
+//! follow them, and chases them where it cannot.
 //!
-//! - Velocity and acceleration: the change of velocity is limited last, so acceleration holds also where a velocity
-//!   limit was lowered in motion.
-//! - Position: with the way s left to the limit a velocity v is allowed where `v ≤ a` (the next cycle stands) or `(v −
-//!   a / 2)² ≤ 2 a s`. Counted in cycles, the way of a full braking `(v − a) + (v − 2 a) + …` is at most that; so
-//!   braking at a keeps it true from cycle to cycle.
-//! - The chase: velocity of the setpoint plus `√(a s)`, the braking curve of half the acceleration, so that the other
-//!   half is left for a setpoint that accelerates. It ends where the track can step onto the setpoint and go on with it
-//!   in the next cycle.
+//! - Velocity and acceleration: the change of velocity is limited last, so acceleration holds also
+//!   where a velocity limit was lowered in motion.
+//! - Position: with the way s left to the limit a velocity v is allowed where `v ≤ a` (the next
+//!   cycle stands) or `(v − a / 2)² ≤ 2 a s`. Counted in cycles, the way of a full braking `(v − a)
+//!   + (v − 2 a) + …` is at most that; so braking at a keeps it true from cycle to cycle.
+//! - The chase: velocity of the setpoint plus `√(a s)`, the braking curve of half the acceleration,
+//!   so that the other half is left for a setpoint that accelerates. It ends where the track can
+//!   step onto the setpoint and go on with it in the next cycle.
 
 use core::cmp::Ordering;
 
@@ -26,9 +26,9 @@ pub(super) struct Limits {
     pub(super) position_max: I56F8,
 }
 
-/// Rounding of positions to 39 pm lets the velocity of a setpoint pass a limit by one bit, its acceleration by two, and
-/// by ten more where one setpoint was extrapolated from three others (4 bits off, of which a second difference has
-/// twice as much). 12 bits are 0.5 mm/s² at 1 kHz.
+/// Rounding of positions to 39 pm lets the velocity of a setpoint pass a limit by one bit, its
+/// acceleration by two, and by ten more where one setpoint was extrapolated from three others (4
+/// bits off, of which a second difference has twice as much). 12 bits are 0.5 mm/s² at 1 kHz.
 const VELOCITY_ROUNDING: Way = Way::DELTA;
 const ACCELERATION_ROUNDING: Way = Way::from_bits(12);
 
@@ -36,9 +36,13 @@ impl Limits {
     /// Whether the axis can be there, coming from the cycle before.
     #[inline]
     pub(super) fn allow(&self, track: &Track) -> bool {
-        within(track.velocity, self.velocity.saturating_add(VELOCITY_ROUNDING))
-            && within(track.acceleration, self.acceleration.saturating_add(ACCELERATION_ROUNDING))
-            && track.position >= self.position_min
+        within(
+            track.velocity,
+            self.velocity.saturating_add(VELOCITY_ROUNDING),
+        ) && within(
+            track.acceleration,
+            self.acceleration.saturating_add(ACCELERATION_ROUNDING),
+        ) && track.position >= self.position_min
             && track.position <= self.position_max
             && self.can_stop(track)
     }
@@ -55,11 +59,15 @@ impl Limits {
         if speed <= self.acceleration || left < I56F8::ZERO {
             return left >= I56F8::ZERO;
         }
-        // Whole counts, rounded down and at most 10 m: 2 a s stays within 62 bits with 8 of them fractional, the square
-        // within 62 with 16.
-        let counts = i32::try_from(left.to_bits().wrapping_shr(8)).unwrap_or(LONGEST_COUNTS).min(LONGEST_COUNTS);
+        // Whole counts, rounded down and at most 10 m: 2 a s stays within 62 bits with 8 of them
+        // fractional, the square within 62 with 16.
+        let counts = i32::try_from(left.to_bits().wrapping_shr(8))
+            .unwrap_or(LONGEST_COUNTS)
+            .min(LONGEST_COUNTS);
         let acceleration = self.acceleration.to_bits();
-        let allowed = i64::from(acceleration).wrapping_mul(i64::from(counts)).wrapping_mul(2);
+        let allowed = i64::from(acceleration)
+            .wrapping_mul(i64::from(counts))
+            .wrapping_mul(2);
         let mean = i64::from(speed.to_bits().wrapping_sub(acceleration.wrapping_shr(1)));
         mean.wrapping_mul(mean).wrapping_shr(8) <= allowed
     }
@@ -68,18 +76,33 @@ impl Limits {
     pub(super) fn is_overrun(&self, track: &Track) -> bool {
         let outwards = track.velocity > Way::ZERO && track.position > self.position_max
             || track.velocity < Way::ZERO && track.position < self.position_min;
-        outwards || !within(track.velocity, self.velocity.saturating_add(VELOCITY_ROUNDING))
+        outwards
+            || !within(
+                track.velocity,
+                self.velocity.saturating_add(VELOCITY_ROUNDING),
+            )
     }
 
     /// The next cycle at a velocity, or as near to it as the limits let it be.
     pub(super) fn nearest(&self, track: Track, wanted: Way) -> Track {
-        let change = limited(limited(wanted, self.velocity).saturating_sub(track.velocity), self.acceleration);
+        let change = limited(
+            limited(wanted, self.velocity).saturating_sub(track.velocity),
+            self.acceleration,
+        );
         let next = track.moved_by(track.velocity.saturating_add(change));
-        if self.can_stop(&next) { next } else { self.braking(track) }
+        if self.can_stop(&next) {
+            next
+        } else {
+            self.braking(track)
+        }
     }
 
     fn braking(&self, track: Track) -> Track {
-        track.moved_by(track.velocity.saturating_sub(limited(track.velocity, self.acceleration)))
+        track.moved_by(
+            track
+                .velocity
+                .saturating_sub(limited(track.velocity, self.acceleration)),
+        )
     }
 }
 
@@ -96,25 +119,52 @@ pub(super) struct Target {
 }
 
 /// The next cycle of the commanded track, and whether it is on the setpoint.
-pub(super) fn follow(limits: &Limits, track: Track, target: Target, caught_up: bool) -> (Track, bool) {
+pub(super) fn follow(
+    limits: &Limits,
+    track: Track,
+    target: Target,
+    caught_up: bool,
+) -> (Track, bool) {
     let passed = track.moved_to(target.position);
-    let goes_on = caught_up || within(target.velocity.saturating_sub(passed.velocity), limits.acceleration);
-    if goes_on && limits.allow(&passed) { (passed, true) } else { (chase(limits, track, target), false) }
+    let goes_on = caught_up
+        || within(
+            target.velocity.saturating_sub(passed.velocity),
+            limits.acceleration,
+        );
+    if goes_on && limits.allow(&passed) {
+        (passed, true)
+    } else {
+        (chase(limits, track, target), false)
+    }
 }
 
 fn chase(limits: &Limits, track: Track, target: Target) -> Track {
-    let aim = target.position.max(limits.position_min).min(limits.position_max);
-    let velocity = if aim == target.position { limited(target.velocity, limits.velocity) } else { Way::ZERO };
+    let aim = target
+        .position
+        .max(limits.position_min)
+        .min(limits.position_max);
+    let velocity = if aim == target.position {
+        limited(target.velocity, limits.velocity)
+    } else {
+        Way::ZERO
+    };
     let left = way(moved(track.position, velocity), aim);
-    limits.nearest(track, velocity.saturating_add(braking_velocity(left, limits.acceleration)))
+    limits.nearest(
+        track,
+        velocity.saturating_add(braking_velocity(left, limits.acceleration)),
+    )
 }
 
 /// √(a s), at most s: then it does not overshoot in the last cycle.
 fn braking_velocity(left: Way, acceleration: Way) -> Way {
     // 24.8 times 24.8 bits: 16 fractional bits; the root of that has 8.
-    let [way, limit] =
-        [left.saturating_abs(), acceleration.max(Way::ZERO)].map(|way| u64::from(way.to_bits().unsigned_abs()));
+    let [way, limit] = [left.saturating_abs(), acceleration.max(Way::ZERO)]
+        .map(|way| u64::from(way.to_bits().unsigned_abs()));
     let root = Way::from_bits(i32::try_from(root(way.wrapping_mul(limit))).unwrap_or(i32::MAX));
     let speed = root.min(left.saturating_abs());
-    if left < Way::ZERO { speed.saturating_neg() } else { speed }
+    if left < Way::ZERO {
+        speed.saturating_neg()
+    } else {
+        speed
+    }
 }

@@ -1,9 +1,9 @@
 //! Ingest: which setpoints are believed.
 //!
-//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies off it by no more
-//! than `step` is believed at once. What lies farther off is a step of acceleration or an outlier, and the next
-//! setpoint tells which. With the deviations d1 and d2 of the two setpoints from the track extrapolated over both (one
-//! cycle between them):
+//! A setpoint is compared with the *extrapolation* of the track at constant acceleration. What lies
+//! off it by no more than `step` is believed at once. What lies farther off is a step of
+//! acceleration or an outlier, and the next setpoint tells which. With the deviations d1 and d2 of
+//! the two setpoints from the track extrapolated over both (one cycle between them):
 //!
 //! | what happened | d1 | d2 | believed: d2 − 3 d1 | wrong: d2 |
 //! |---|---|---|---|---|
@@ -12,15 +12,17 @@
 //! | the first setpoint is wrong by e | e | 0 | −3 e | 0 |
 //! | the position shifted by J | J | J | −2 J | J |
 //!
-//! The last two columns are the jumps of acceleration that would be left; the smaller wins among what the axis can do.
-//! A setpoint that is not believed is replaced by its extrapolation, and the next one is judged in the same way: a
-//! shifted position is refused again and again, and that is the caller's fault to latch. Until the decision the track
-//! goes on along its extrapolation; both fall before the setpoint is due.
+//! The last two columns are the jumps of acceleration that would be left; the smaller wins among
+//! what the axis can do. A setpoint that is not believed is replaced by its extrapolation, and the
+//! next one is judged in the same way: a shifted position is refused again and again, and that is
+//! the caller's fault to latch. Until the decision the track goes on along its extrapolation; both
+//! fall before the setpoint is due.
 //!
-//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1. A deviation d1 within `step` is
-//! shared out as a constant step would: velocity 2 d1 / (m + 1), acceleration 2 d1 / (m (m + 1)). A larger one waits for
-//! d2, which tells the velocity d2 − d1 itself. Where the setpoint that would decide is lost, what the axis can do is
-//! believed: a step is more likely than a second thing that went wrong.
+//! After a hole of m − 1 cycles a step of acceleration anywhere in it leaves d2 ≈ 2 d1. A deviation
+//! d1 within `step` is shared out as a constant step would: velocity 2 d1 / (m + 1), acceleration 2
+//! d1 / (m (m + 1)). A larger one waits for d2, which tells the velocity d2 − d1 itself. Where the
+//! setpoint that would decide is lost, what the axis can do is believed: a step is more likely than
+//! a second thing that went wrong.
 
 use fixed::types::I56F8;
 
@@ -76,13 +78,20 @@ pub(super) struct Revision {
 /// Position, velocity and acceleration make three.
 const ADOPTED: u8 = 3;
 
-/// The longest hole that refusals alone make. Nothing longer is needed to come back after a wrong setpoint that fell on a step of acceleration, and a shift of 60 µm stays
-/// out of reach of an axis of 5 m/s² at 1 kHz.
+/// The longest hole that refusals alone make. Nothing longer is needed to come back after a wrong
+/// setpoint that fell on a step of acceleration, and a shift of 60 µm stays out of reach of an axis
+/// of 5 m/s² at 1 kHz.
 const REFUSED_HOLE: u8 = 3;
 
 impl Ingest {
     pub(super) const fn at(track: Track) -> Self {
-        Self { track, doubt: None, hole: 0, to_adopt: ADOPTED, refusals: 0 }
+        Self {
+            track,
+            doubt: None,
+            hole: 0,
+            to_adopt: ADOPTED,
+            refusals: 0,
+        }
     }
 
     /// Setpoints in a row that were refused.
@@ -103,11 +112,14 @@ impl Ingest {
     /// The plain case: the next setpoint continues a settled track within `step`.
     pub(super) fn continued(&self, step: Way, next: I56F8, velocity: Way) -> Option<Track> {
         let candidate = self.track.moved_there(next, velocity);
-        let jump = candidate.acceleration.saturating_sub(self.track.acceleration);
+        let jump = candidate
+            .acceleration
+            .saturating_sub(self.track.acceleration);
         (self.is_settled() && within(jump, step)).then_some(candidate)
     }
 
-    /// A setpoint that came late fills the hole that it left, at once or once the next one has confirmed it.
+    /// A setpoint that came late fills the hole that it left, at once or once the next one has
+    /// confirmed it.
     pub(super) fn late(&mut self, bounds: Bounds, position: I56F8) -> Option<Revision> {
         if self.hole == 0 || self.doubt.is_some() || self.is_waiting() {
             return None;
@@ -139,7 +151,13 @@ impl Ingest {
         }
     }
 
-    fn decide(&mut self, bounds: Bounds, judged: bool, first: Way, next: Option<I56F8>) -> Option<Revision> {
+    fn decide(
+        &mut self,
+        bounds: Bounds,
+        judged: bool,
+        first: Way,
+        next: Option<I56F8>,
+    ) -> Option<Revision> {
         let second = next.map(|next| way(self.track.ahead().position, next));
         // Where the next one is lost, a step is more likely than a second thing that went wrong.
         let is_believed = match second {
@@ -156,31 +174,58 @@ impl Ingest {
             None => self.believe(first),
             Some(second) => self.believe_both(bounds, first, second),
         }
-        Some(Revision { track: self.track, by: first })
+        Some(Revision {
+            track: self.track,
+            by: first,
+        })
     }
 
     fn revised(&mut self, by: Way) -> Revision {
         self.believe(by);
-        Revision { track: self.track, by }
+        Revision {
+            track: self.track,
+            by,
+        }
     }
 
-    /// The table of the module's head: where both are possible, a setpoint is believed that leaves clearly less.
+    /// The table of the module's head: where both are possible, a setpoint is believed that leaves
+    /// clearly less.
     fn is_believable(&self, bounds: Bounds, first: Way, second: Way) -> bool {
         let cycles = self.hole.saturating_add(1);
         let between = second.saturating_sub(first).saturating_sub(first);
-        let left = if self.hole == 0 { between.saturating_sub(first) } else { between };
-        let goes_on = self.hole > 0 || within(self.track.acceleration.saturating_add(between), bounds.acceleration);
+        let left = if self.hole == 0 {
+            between.saturating_sub(first)
+        } else {
+            between
+        };
+        let goes_on = self.hole > 0
+            || within(
+                self.track.acceleration.saturating_add(between),
+                bounds.acceleration,
+            );
         let believed = self.is_possible(bounds, cycles, first) && goes_on;
-        let otherwise = self.hole > 0 || within(self.track.acceleration.saturating_add(second), bounds.acceleration);
-        believed && !(otherwise && left.saturating_abs().saturating_add(bounds.step) >= second.saturating_abs())
+        let otherwise = self.hole > 0
+            || within(
+                self.track.acceleration.saturating_add(second),
+                bounds.acceleration,
+            );
+        believed
+            && !(otherwise
+                && left.saturating_abs().saturating_add(bounds.step) >= second.saturating_abs())
     }
 
-    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤ limit · T with T = m
-    /// (m + 1) / 2.
+    /// Whether the axis can be off its extrapolation by so much after so many cycles: |a T + d| ≤
+    /// limit · T with T = m (m + 1) / 2.
     fn is_possible(&self, bounds: Bounds, cycles: u8, deviation: Way) -> bool {
         let cycles = i32::from(cycles);
-        let times = cycles.saturating_mul(cycles.saturating_add(1)).wrapping_shr(1);
-        let way = self.track.acceleration.saturating_mul_int(times).saturating_add(deviation);
+        let times = cycles
+            .saturating_mul(cycles.saturating_add(1))
+            .wrapping_shr(1);
+        let way = self
+            .track
+            .acceleration
+            .saturating_mul_int(times)
+            .saturating_add(deviation);
         within(way, bounds.acceleration.saturating_mul_int(times))
     }
 
@@ -227,15 +272,28 @@ impl Ingest {
         self.refusals = 0;
     }
 
-    /// The newest setpoint after a hole of m − 1 cycles and the one that follows it are part of the track. The way between them is a velocity, the way over the hole a
-    /// mean velocity, (m + 1) / 2 cycles earlier; the acceleration is their difference over that time.
+    /// The newest setpoint after a hole of m − 1 cycles and the one that follows it are part of the
+    /// track. The way between them is a velocity, the way over the hole a mean velocity, (m + 1) /
+    /// 2 cycles earlier; the acceleration is their difference over that time.
     fn believe_both(&mut self, bounds: Bounds, first: Way, second: Way) {
         let cycles = i32::from(self.hole).saturating_add(1);
         let velocity = second.saturating_sub(first);
-        let difference = velocity.saturating_mul_int(cycles).saturating_sub(first).saturating_mul_int(2);
-        let share = difference.checked_div_int(cycles.saturating_mul(cycles.saturating_add(1))).unwrap_or_default();
-        let acceleration = limited(self.track.acceleration.saturating_add(share), bounds.acceleration);
-        let next_velocity = self.track.velocity.saturating_add(self.track.acceleration).saturating_add(velocity);
+        let difference = velocity
+            .saturating_mul_int(cycles)
+            .saturating_sub(first)
+            .saturating_mul_int(2);
+        let share = difference
+            .checked_div_int(cycles.saturating_mul(cycles.saturating_add(1)))
+            .unwrap_or_default();
+        let acceleration = limited(
+            self.track.acceleration.saturating_add(share),
+            bounds.acceleration,
+        );
+        let next_velocity = self
+            .track
+            .velocity
+            .saturating_add(self.track.acceleration)
+            .saturating_add(velocity);
         self.track = Track {
             position: moved(self.track.position, first),
             velocity: next_velocity.saturating_sub(acceleration),
@@ -249,8 +307,14 @@ impl Ingest {
     fn adopt(&mut self, next: I56F8) {
         let moved = self.track.moved_to(next);
         self.track = match self.to_adopt {
-            ADOPTED => Track { position: next, ..Track::default() },
-            2 => Track { acceleration: Way::ZERO, ..moved },
+            ADOPTED => Track {
+                position: next,
+                ..Track::default()
+            },
+            2 => Track {
+                acceleration: Way::ZERO,
+                ..moved
+            },
             _ => moved,
         };
         self.to_adopt = self.to_adopt.saturating_sub(1);
@@ -272,7 +336,9 @@ fn shares(hole: u8, deviation: Way) -> [Way; 2] {
     };
     // 32 bits times 17 bits cannot wrap in 64; the share is below one, so it fits back.
     [velocity, acceleration].map(|share| {
-        let bits = i64::from(deviation.to_bits()).wrapping_mul(share).wrapping_shr(16);
+        let bits = i64::from(deviation.to_bits())
+            .wrapping_mul(share)
+            .wrapping_shr(16);
         Way::from_bits(i32::try_from(bits).unwrap_or(0))
     })
 }

@@ -1,16 +1,16 @@
-//! Interpolation of setpoints that come every n cycles: the cubic of Catmull and Rom ("A class of local interpolating
-//! splines", 1974).
+//! Interpolation of setpoints that come every n cycles: the cubic of Catmull and Rom ("A class of
+//! local interpolating splines", 1974).
 //!
-//! Between the setpoints p1 and p2 the position is the cubic with the tangents (p2 − p0) / 2 and (p3 − p1) / 2 at its
-//! ends:
+//! Between the setpoints p1 and p2 the position is the cubic with the tangents (p2 − p0) / 2 and
+//! (p3 − p1) / 2 at its ends:
 //!
 //! ```text
 //! p(u) = p1 + m1 u + (3 h − 2 m1 − m2) u² + (m1 + m2 − 2 h) u³      h = p2 − p1      u = i / n
 //! ```
 //!
-//! It passes through every setpoint, position and velocity are continuous, and constant acceleration is reproduced
-//! exactly (so the radius of a circle is wrong by (ω n T)⁴ only). It needs p3 before it may leave p1: the delay is 2 n
-//! − 1 cycles.
+//! It passes through every setpoint, position and velocity are continuous, and constant
+//! acceleration is reproduced exactly (so the radius of a circle is wrong by (ω n T)⁴ only). It
+//! needs p3 before it may leave p1: the delay is 2 n − 1 cycles.
 
 use fixed::types::I56F8;
 
@@ -19,13 +19,15 @@ pub(super) const MOST_CYCLES: u8 = 20;
 
 /// 2²⁴ / n, to nearest, for n = 0 (nothing), 1, 2…: there is no division in the cycle.
 const SHARE: [i64; 21] = [
-    0, 16_777_216, 8_388_608, 5_592_405, 4_194_304, 3_355_443, 2_796_203, 2_396_745, 2_097_152, 1_864_135, 1_677_722,
-    1_525_201, 1_398_101, 1_290_555, 1_198_373, 1_118_481, 1_048_576, 986_895, 932_068, 883_011, 838_861,
+    0, 16_777_216, 8_388_608, 5_592_405, 4_194_304, 3_355_443, 2_796_203, 2_396_745, 2_097_152,
+    1_864_135, 1_677_722, 1_525_201, 1_398_101, 1_290_555, 1_198_373, 1_118_481, 1_048_576,
+    986_895, 932_068, 883_011, 838_861,
 ];
 
 const ONE: i64 = 1 << 24;
 
-/// Memory of the interpolation: two ends of the present piece with their tangents, and the setpoint behind it.
+/// Memory of the interpolation: two ends of the present piece with their tangents, and the setpoint
+/// behind it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Interpolation {
     from: i64,
@@ -38,7 +40,13 @@ pub(super) struct Interpolation {
 impl Interpolation {
     pub(super) fn at_rest(position: I56F8) -> Self {
         let bits = position.to_bits();
-        Self { from: bits, to: bits, behind: bits, tangent_from: 0, tangent_to: 0 }
+        Self {
+            from: bits,
+            to: bits,
+            behind: bits,
+            tangent_from: 0,
+            tangent_to: 0,
+        }
     }
 
     /// The next piece begins, and a setpoint came.
@@ -60,21 +68,29 @@ impl Interpolation {
         if phase >= cycles {
             return I56F8::from_bits(self.to);
         }
-        let share = SHARE.get(usize::from(cycles)).map_or(0, |share| share.wrapping_mul(i64::from(phase)));
+        let share = SHARE
+            .get(usize::from(cycles))
+            .map_or(0, |share| share.wrapping_mul(i64::from(phase)));
         let way = self.to.wrapping_sub(self.from);
         let [first, last] = [self.tangent_from, self.tangent_to];
         let cubic = first.wrapping_add(last).wrapping_sub(way.wrapping_mul(2));
-        let square = way.wrapping_mul(3).wrapping_sub(first.wrapping_mul(2)).wrapping_sub(last);
+        let square = way
+            .wrapping_mul(3)
+            .wrapping_sub(first.wrapping_mul(2))
+            .wrapping_sub(last);
         let inner = times(cubic, share).wrapping_add(square);
         let outer = times(inner, share).wrapping_add(first);
         I56F8::from_bits(self.from.wrapping_add(times(outer, share)))
     }
 }
 
-/// Rounded to nearest; ways beyond 2.7 m from setpoint to setpoint are cut, so that 37 times 25 bits stay within 64.
+/// Rounded to nearest; ways beyond 2.7 m from setpoint to setpoint are cut, so that 37 times 25
+/// bits stay within 64.
 fn times(way: i64, share: i64) -> i64 {
     let way = way.clamp(-(1 << 36), 1 << 36);
-    way.wrapping_mul(share).wrapping_add(ONE / 2).wrapping_shr(24)
+    way.wrapping_mul(share)
+        .wrapping_add(ONE / 2)
+        .wrapping_shr(24)
 }
 
 #[cfg(test)]
@@ -95,7 +111,10 @@ mod tests {
         (-1..3).for_each(|knot| piece.push(I56F8::from_bits(parabola(8 * knot))));
         for phase in 1..=8 {
             let got = piece.position(phase, 8).to_bits();
-            assert!((got - parabola(i64::from(phase))).abs() <= 2, "{phase}: {got}");
+            assert!(
+                (got - parabola(i64::from(phase))).abs() <= 2,
+                "{phase}: {got}"
+            );
         }
     }
 }

@@ -1,26 +1,27 @@
 //! The reference stage: from setpoints as they come, or do not, to what the law follows.
 //!
 //! ```text
-//! setpoint k+1 ─▶ ingest ─▶ interpolation ─▶ triangle ─▶ follow within limits ─▶ x, v, a of cycle k
+//! setpoint k+1 ─▶ ingest ─▶ interpolation ─▶ triangle ─▶ follow within limits ─▶ x, v, a of k
 //!                (believed?)  (every n cycles)  (coarse)    ramp to standstill ─┘
 //! ```
 //!
-//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint k + 1 is known when
-//! torque k is computed. So there are three times in one [`Reference`]:
-//! - position x(k) and velocity x(k) − x(k−1) are in time with the encoders and their difference: they make the errors;
+//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint k
+//! + 1 is known when torque k is computed. So there are three times in one [`Reference`]:
+//! - position x(k) and velocity x(k) − x(k−1) are in time with the encoders and their difference:
+//!   they make the errors;
 //! - the next velocity x(k+1) − x(k) tells a reversal one cycle ahead;
-//! - the acceleration is that of the middle of the torque's cycle, k + 1.5. The newest one that is known is the second
-//!   difference centred on k, so
-//!   `a = a(k) + 1.5 (a(k) − a(k−1))`. A change above `step` is a step and no jerk: then it stays a(k), and until the
-//!   next setpoint has confirmed it a(k−1).
+//! - the acceleration is that of the middle of the torque's cycle, k + 1.5. The newest one that is
+//!   known is the second difference centred on k, so `a = a(k) + 1.5 (a(k) − a(k−1))`. A change
+//!   above `step` is a step and no jerk: then it stays a(k), and until the next setpoint has
+//!   confirmed it a(k−1).
 //!
-//! **Fine setpoints pass** bit for bit and without delay. What is lost is carried on with the acceleration (a jerk of
-//! 50 m/s³ makes that wrong by 50 nm a cycle); what lies off the path is decided one cycle later, before it is due
-//! (`ingest`).
+//! **Fine setpoints pass** bit for bit and without delay. What is lost is carried on with the
+//! acceleration (a jerk of 50 m/s³ makes that wrong by 50 nm a cycle); what lies off the path is
+//! decided one cycle later, before it is due (`ingest`).
 //!
-//! **Limits.** Whatever comes in, the commanded track keeps velocity, acceleration and position limits (`follow`).
-//! Where two of them conflict, acceleration holds: after a velocity or position limit was lowered in motion the overrun
-//! is at most v² / 2 a, and `overrun` says so.
+//! **Limits.** Whatever comes in, the commanded track keeps velocity, acceleration and position
+//! limits (`follow`). Where two of them conflict, acceleration holds: after a velocity or position
+//! limit was lowered in motion the overrun is at most v² / 2 a, and `overrun` says so.
 //!
 //! **Ramps** start from the commanded position, velocity and acceleration (`ramp`).
 //!
@@ -47,7 +48,8 @@
 //! let mut stage = ReferenceState::at(Position::from_counts(0), per_cycle(100));
 //! for cycle in 0..12 {
 //!     let preview = (cycle + 1 != 8).then(|| Position::from_counts(100 * (cycle + 1)));
-//!     let reference = stage.step(&config, &ReferenceInput { present: None, preview, mode: Mode::Follow });
+//!     let input = ReferenceInput { present: None, preview, mode: Mode::Follow };
+//!     let reference = stage.step(&config, &input);
 //!     assert_eq!(reference.position, Position::from_counts(100 * cycle));
 //!     assert_eq!(reference.bridged, cycle + 1 == 8);
 //! }
@@ -66,7 +68,9 @@ use crate::units::{Acceleration, Position, Velocity};
 use follow::{Limits, Target, follow};
 use ingest::{Bounds, Ingest, Revision, Taken};
 use interpolate::{Interpolation, MOST_CYCLES};
-use track::{Track, Way, acceleration_of, exact_way, on_the_axis, velocity_of, way, way_of, within};
+use track::{
+    Track, Way, acceleration_of, exact_way, on_the_axis, velocity_of, way, way_of, within,
+};
 use triangle::Triangle;
 
 /// A ramp to standstill.
@@ -126,13 +130,17 @@ pub struct ReferenceInput {
 
 /// What the law follows in cycle k.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "what is true of one cycle, each apart")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "what is true of one cycle, each apart"
+)]
 pub struct Reference {
     /// Of cycle k, in time with its feedback.
     pub position: Position,
     /// x(k) − x(k−1), in time with the difference of the encoders.
     pub velocity: Velocity,
-    /// x(k+1) − x(k), commanded. Where x(k+1) is only extrapolated it does not turn round: zero instead.
+    /// x(k+1) − x(k), commanded. Where x(k+1) is only extrapolated it does not turn round: zero
+    /// instead.
     pub next_velocity: Velocity,
     /// Of the middle of the cycle in which the torque acts.
     pub acceleration: Acceleration,
@@ -179,7 +187,11 @@ impl ReferenceState {
     #[must_use]
     pub fn at(position: Position, velocity: Velocity) -> Self {
         let position = on_the_axis(position);
-        let track = Track { position, velocity: way_of(velocity), acceleration: Way::ZERO };
+        let track = Track {
+            position,
+            velocity: way_of(velocity),
+            acceleration: Way::ZERO,
+        };
         Self {
             ingest: Ingest::at(track),
             interpolation: Interpolation::at_rest(position),
@@ -219,7 +231,8 @@ impl ReferenceState {
 
     /// One cycle.
     pub fn step(&mut self, config: &ReferenceConfig, input: &ReferenceInput) -> Reference {
-        self.passed(config, input).unwrap_or_else(|| self.planned(config, input))
+        self.passed(config, input)
+            .unwrap_or_else(|| self.planned(config, input))
     }
 
     /// The plain case: a fine setpoint that continues the path within the limits.
@@ -230,7 +243,9 @@ impl ReferenceState {
         }
         // Where the commanded track passes setpoints, it stands on the believed one.
         let velocity = exact_way(self.commanded.position, preview.0)?;
-        let target = self.ingest.continued(way_of(config.step), preview.0, velocity)?;
+        let target = self
+            .ingest
+            .continued(way_of(config.step), preview.0, velocity)?;
         let next = self.commanded.moved_there(preview.0, velocity);
         if !limits_of(config).allow(&next) {
             return None;
@@ -238,10 +253,16 @@ impl ReferenceState {
         let acceleration = self.ingest.track.acceleration;
         self.ingest.track = target;
         let now = core::mem::replace(&mut self.commanded, next);
-        Some(referenced(&now, &next, target.acceleration, target.acceleration.saturating_sub(acceleration)))
+        Some(referenced(
+            &now,
+            &next,
+            target.acceleration,
+            target.acceleration.saturating_sub(acceleration),
+        ))
     }
 
-    /// Every other case; apart, so that the plain one keeps its registers (60 instructions on a Cortex-M4).
+    /// Every other case; apart, so that the plain one keeps its registers (60 instructions on a
+    /// Cortex-M4).
     #[inline(never)]
     fn planned(&mut self, config: &ReferenceConfig, input: &ReferenceInput) -> Reference {
         let limits = limits_of(config);
@@ -273,7 +294,13 @@ impl ReferenceState {
     }
 
     /// The commanded track one cycle on.
-    fn advance(&mut self, config: &ReferenceConfig, limits: &Limits, mode: Mode, target: Target) -> Track {
+    fn advance(
+        &mut self,
+        config: &ReferenceConfig,
+        limits: &Limits,
+        mode: Mode,
+        target: Target,
+    ) -> Track {
         let ramp = match mode {
             Mode::Follow => {
                 let (next, caught_up) = follow(limits, self.commanded, target, self.caught_up);
@@ -285,14 +312,22 @@ impl ReferenceState {
         };
         self.caught_up = false;
         let deceleration = way_of(ramp.deceleration).min(limits.acceleration);
-        let velocity = ramp::next_velocity(self.commanded, deceleration, way_of(ramp.jerk), limits.velocity);
+        let velocity = ramp::next_velocity(
+            self.commanded,
+            deceleration,
+            way_of(ramp.jerk),
+            limits.velocity,
+        );
         limits.nearest(self.commanded, velocity)
     }
 
-    /// The setpoint of this cycle was believed only now: the commanded track takes the last step again. Its position is
-    /// not out yet.
+    /// The setpoint of this cycle was believed only now: the commanded track takes the last step
+    /// again. Its position is not out yet.
     fn correct_commanded(&mut self, limits: &Limits, revised: Track) {
-        let target = Target { position: revised.position, velocity: revised.velocity };
+        let target = Target {
+            position: revised.position,
+            velocity: revised.velocity,
+        };
         (self.commanded, self.caught_up) = follow(limits, self.commanded.before(), target, true);
     }
 
@@ -303,11 +338,24 @@ impl ReferenceState {
         let track = self.ingest.track;
         if is_plain(config) {
             self.smooth = track.position;
-            return (Target { position: track.position, velocity: track.velocity }, taken);
+            return (
+                Target {
+                    position: track.position,
+                    velocity: track.velocity,
+                },
+                taken,
+            );
         }
-        let position =
-            if self.cycles > 1 { self.interpolation.position(self.phase, self.cycles) } else { track.position };
-        let position = if config.filter_log2 > 0 { self.triangle.step(config.filter_log2, position) } else { position };
+        let position = if self.cycles > 1 {
+            self.interpolation.position(self.phase, self.cycles)
+        } else {
+            track.position
+        };
+        let position = if config.filter_log2 > 0 {
+            self.triangle.step(config.filter_log2, position)
+        } else {
+            position
+        };
         let velocity = way(self.smooth, position);
         self.smooth = position;
         (Target { position, velocity }, taken)
@@ -318,7 +366,11 @@ impl ReferenceState {
         if cycles != self.cycles {
             self.cycles = cycles;
             self.phase = cycles;
-            self.ingest = Ingest::at(Track { velocity: Way::ZERO, acceleration: Way::ZERO, ..self.ingest.track });
+            self.ingest = Ingest::at(Track {
+                velocity: Way::ZERO,
+                acceleration: Way::ZERO,
+                ..self.ingest.track
+            });
             self.interpolation = Interpolation::at_rest(self.ingest.track.position);
         }
     }
@@ -326,10 +378,16 @@ impl ReferenceState {
     /// What the setpoints of this cycle do to the track, the interpolation and the filter.
     fn take(&mut self, config: &ReferenceConfig, input: &ReferenceInput) -> Taken {
         let bounds = bounds_of(config);
-        let late = input.present.and_then(|present| self.ingest.late(bounds, on_the_axis(present)));
+        let late = input
+            .present
+            .and_then(|present| self.ingest.late(bounds, on_the_axis(present)));
         let mut taken = Taken::default();
         if self.is_setpoint_due(input.preview) {
-            taken = self.ingest.take(bounds, input.mode == Mode::Follow, input.preview.map(on_the_axis));
+            taken = self.ingest.take(
+                bounds,
+                input.mode == Mode::Follow,
+                input.preview.map(on_the_axis),
+            );
             self.phase = 0;
         }
         taken.revised = taken.revised.or(late);
@@ -356,11 +414,21 @@ impl ReferenceState {
         }
     }
 
-    /// Of the believed track where setpoints pass, else of the commanded one. Filtered positions are as late as the
-    /// filter anyway, and their jerk is mostly rounding.
-    fn acceleration_and_jerk(&self, config: &ReferenceConfig, now: &Track, next: &Track, taken: &Taken) -> [Way; 2] {
+    /// Of the believed track where setpoints pass, else of the commanded one. Filtered positions
+    /// are as late as the filter anyway, and their jerk is mostly rounding.
+    fn acceleration_and_jerk(
+        &self,
+        config: &ReferenceConfig,
+        now: &Track,
+        next: &Track,
+        taken: &Taken,
+    ) -> [Way; 2] {
         let (acceleration, jerk, is_known) = if is_plain(config) && self.caught_up {
-            (self.ingest.track.acceleration, taken.jerk, !taken.extrapolated)
+            (
+                self.ingest.track.acceleration,
+                taken.jerk,
+                !taken.extrapolated,
+            )
         } else {
             let jerk = next.acceleration.saturating_sub(now.acceleration);
             (next.acceleration, jerk, config.filter_log2 == 0)
@@ -388,20 +456,31 @@ fn limits_of(config: &ReferenceConfig) -> Limits {
     }
 }
 
-/// What is a jump, and what is impossible, from setpoint to setpoint: both grow with the square of their distance.
+/// What is a jump, and what is impossible, from setpoint to setpoint: both grow with the square of
+/// their distance.
 ///
-/// With the filter on, setpoints may be rounded to whole µm: that makes a second difference wrong by (1 + 2 + 1) / 2 =
-/// 2 µm, its change by (1 + 3 + 3 + 1) / 2 = 4 µm. The acceleration may pass its limit by a sixteenth, and by rounding
-/// to 39 pm: what the limits then cut is no reason to disbelieve a setpoint.
+/// With the filter on, setpoints may be rounded to whole µm: that makes a second difference wrong
+/// by (1 + 2 + 1) / 2 = 2 µm, its change by (1 + 3 + 3 + 1) / 2 = 4 µm. The acceleration may pass
+/// its limit by a sixteenth, and by rounding to 39 pm: what the limits then cut is no reason to
+/// disbelieve a setpoint.
 fn bounds_of(config: &ReferenceConfig) -> Bounds {
     let cycles = i32::from(cycles_of(config));
     let square = cycles.saturating_mul(cycles);
-    let quantum = if config.filter_log2 > 0 { MICROMETRE } else { Way::DELTA };
+    let quantum = if config.filter_log2 > 0 {
+        MICROMETRE
+    } else {
+        Way::DELTA
+    };
     let limit = way_of(config.acceleration_limit);
-    let tolerance = Way::from_bits(limit.to_bits().wrapping_shr(4)).saturating_add(quantum.saturating_mul_int(2));
+    let tolerance = Way::from_bits(limit.to_bits().wrapping_shr(4))
+        .saturating_add(quantum.saturating_mul_int(2));
     Bounds {
-        step: way_of(config.step).saturating_mul_int(square).saturating_add(quantum.saturating_mul_int(4)),
-        acceleration: limit.saturating_mul_int(square).saturating_add(tolerance.saturating_mul_int(square)),
+        step: way_of(config.step)
+            .saturating_mul_int(square)
+            .saturating_add(quantum.saturating_mul_int(4)),
+        acceleration: limit
+            .saturating_mul_int(square)
+            .saturating_add(tolerance.saturating_mul_int(square)),
     }
 }
 
@@ -412,8 +491,8 @@ fn turns_round(now: Way, next: Way) -> bool {
     next > Way::ZERO && now <= Way::ZERO || next < Way::ZERO && now >= Way::ZERO
 }
 
-/// Position and velocities of a cycle. The acceleration is brought from the cycle to the middle of the one in which the
-/// torque acts, one and a half later.
+/// Position and velocities of a cycle. The acceleration is brought from the cycle to the middle of
+/// the one in which the torque acts, one and a half later.
 #[expect(
     clippy::inline_always,
     reason = "a call passes 32 bytes through memory twice: 50 instructions of the plain case"

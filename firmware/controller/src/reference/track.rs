@@ -1,7 +1,8 @@
 //! A track: position, velocity and acceleration of one cycle, in differences.
 //!
-//! Velocity is the way from the cycle before, acceleration the change of that: no cycle time appears. Everything is in
-//! the resolution of a position (10 nm / 256 = 39 pm), so that positions are the exact sum of velocities.
+//! Velocity is the way from the cycle before, acceleration the change of that: no cycle time
+//! appears. Everything is in the resolution of a position (10 nm / 256 = 39 pm), so that positions
+//! are the exact sum of velocities.
 
 use fixed::types::{I20F12, I24F8, I56F8};
 
@@ -25,13 +26,21 @@ impl Track {
     /// The next cycle at constant acceleration.
     pub(super) fn ahead(self) -> Self {
         let velocity = self.velocity.saturating_add(self.acceleration);
-        Self { position: moved(self.position, velocity), velocity, acceleration: self.acceleration }
+        Self {
+            position: moved(self.position, velocity),
+            velocity,
+            acceleration: self.acceleration,
+        }
     }
 
     /// The next cycle at a given velocity.
     pub(super) fn moved_by(self, velocity: Way) -> Self {
         let acceleration = velocity.saturating_sub(self.velocity);
-        Self { position: moved(self.position, velocity), velocity, acceleration }
+        Self {
+            position: moved(self.position, velocity),
+            velocity,
+            acceleration,
+        }
     }
 
     /// The next cycle at a given position.
@@ -41,7 +50,11 @@ impl Track {
 
     /// The same where the way to that position is known already.
     pub(super) fn moved_there(self, position: I56F8, velocity: Way) -> Self {
-        Self { position, velocity, acceleration: velocity.saturating_sub(self.velocity) }
+        Self {
+            position,
+            velocity,
+            acceleration: velocity.saturating_sub(self.velocity),
+        }
     }
 
     /// The cycle before; its own acceleration is not known any more.
@@ -64,10 +77,12 @@ pub(super) fn way(from: I56F8, to: I56F8) -> Way {
     Way::saturating_from_num(to.saturating_sub(from))
 }
 
-/// The same where it is no farther than a way reaches. `from` is on the axis, within ±2⁵⁵ bits, so the difference
-/// cannot wrap round to a short way.
+/// The same where it is no farther than a way reaches. `from` is on the axis, within ±2⁵⁵ bits, so
+/// the difference cannot wrap round to a short way.
 pub(super) fn exact_way(from: I56F8, to: I56F8) -> Option<Way> {
-    i32::try_from(to.to_bits().wrapping_sub(from.to_bits())).ok().map(Way::from_bits)
+    i32::try_from(to.to_bits().wrapping_sub(from.to_bits()))
+        .ok()
+        .map(Way::from_bits)
 }
 
 /// Whether a magnitude is within a bound.
@@ -96,9 +111,13 @@ pub(super) fn acceleration_of(way: Way) -> Acceleration {
     Acceleration(I20F12::saturating_from_num(way))
 }
 
-/// Positions beyond ±180 000 km / 256 are cut: sums of 256 of them stay within 64 bits, and no axis is that long.
+/// Positions beyond ±180 000 km / 256 are cut: sums of 256 of them stay within 64 bits, and no axis
+/// is that long.
 pub(super) fn on_the_axis(position: Position) -> I56F8 {
-    position.0.max(I56F8::from_bits(-REACH_BITS)).min(I56F8::from_bits(REACH_BITS))
+    position
+        .0
+        .max(I56F8::from_bits(-REACH_BITS))
+        .min(I56F8::from_bits(REACH_BITS))
 }
 
 /// 2⁵⁴ of 39 pm: 700 km.

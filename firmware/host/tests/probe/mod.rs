@@ -1,4 +1,5 @@
-//! A station with alarms at given times, which says when they rang; and the leaf that drives it in a thread.
+//! A station with alarms at given times, which says when they rang; and the leaf that drives it in
+//! a thread.
 
 use std::os::unix::net::UnixStream;
 use std::thread::JoinHandle;
@@ -14,7 +15,8 @@ pub(crate) fn ids() -> AxisIds {
     AxisIds::of_axis(0).unwrap()
 }
 
-/// Rings at its alarms, and answers nothing. An alarm that is past when a frame comes rings before it is taken.
+/// Rings at its alarms, and answers nothing. An alarm that is past when a frame comes rings before
+/// it is taken.
 struct Probe {
     alarms_us: Vec<u64>,
     sync_due_us: Option<u64>,
@@ -22,7 +24,11 @@ struct Probe {
 
 impl Probe {
     fn ring(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        if self.alarms_us.first().is_some_and(|alarm_us| *alarm_us <= now_us) {
+        if self
+            .alarms_us
+            .first()
+            .is_some_and(|alarm_us| *alarm_us <= now_us)
+        {
             self.alarms_us.remove(0);
             send(Message::PlantHeartbeat(NmtState::Operational).encode(ids()));
         }
@@ -69,14 +75,22 @@ impl Running {
         let begun = Instant::now();
         let node = std::thread::spawn(move || {
             quadrant_host::run(
-                Box::new(Probe { alarms_us, sync_due_us }),
+                Box::new(Probe {
+                    alarms_us,
+                    sync_due_us,
+                }),
                 Port::InProcess(node_end),
                 None,
                 pace,
                 &stopped,
             )
         });
-        Self { port, begun, stop, node }
+        Self {
+            port,
+            begun,
+            stop,
+            node,
+        }
     }
 
     /// Time since the start.
