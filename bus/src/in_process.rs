@@ -276,7 +276,7 @@ impl InProcessBus {
         } = self;
         *now_us = due_us.max(*now_us);
         places[at].station.time(*now_us, &mut |frame| {
-            queue.push_back((Sender::Station(at), frame))
+            queue.push_back((Sender::Station(at), frame));
         });
     }
 }

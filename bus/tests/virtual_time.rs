@@ -218,7 +218,7 @@ impl Station for Cycle {
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
         match protocol::message::decode(ids(), frame) {
             Ok(protocol::message::Decoded::Message(Message::Sync(counter))) => {
-                self.begin(now_us, counter)
+                self.begin(now_us, counter);
             }
             Ok(protocol::message::Decoded::Message(Message::PlantHeartbeat(_))) => self.close(send),
             _ => {}

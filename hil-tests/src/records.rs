@@ -236,7 +236,7 @@ fn hide(hidden: Hidden, axis: &mut AxisParameters) {
             });
         }
         Hidden::PositionDependentFriction(per_m) => {
-            axis.effects.position_dependent_friction_per_m = per_m
+            axis.effects.position_dependent_friction_per_m = per_m;
         }
         Hidden::FrictionDrift(gain, time_constant_s) => {
             axis.effects.friction_drift = Some(FrictionDrift {
@@ -246,7 +246,7 @@ fn hide(hidden: Hidden, axis: &mut AxisParameters) {
         }
         Hidden::QuadraticDrag(drag) => axis.sliding.quadratic_drag_n_s2_per_m2 = drag,
         Hidden::TorqueSaturation(share) => {
-            axis.effects.torque_saturation_per_n = 1.0e-3 * share / (1.0 - share)
+            axis.effects.torque_saturation_per_n = 1.0e-3 * share / (1.0 - share);
         }
         Hidden::Delay(delay_s) => axis.effects.delay_s = delay_s,
         Hidden::Spring(_) | Hidden::Hum(..) | Hidden::CubicDrag(_) => {}

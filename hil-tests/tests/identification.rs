@@ -177,9 +177,9 @@ fn look_alikes(seed: u64) -> [Plan; 2] {
     for _ in 0..12 {
         let middle = f64::sqrt(low * high);
         if records::burst_m(&bristle(middle)) < wanted {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     let bristle = bristle(f64::sqrt(low * high));

@@ -150,7 +150,7 @@ impl Witness {
                     status.state() == Some(DriveState::OperationEnabled) && fault.is_none();
             }
             Ok(Decoded::Message(Message::PlantHeartbeat(NmtState::Initialising))) => {
-                self.stage_says_enabled = false
+                self.stage_says_enabled = false;
             }
             _ => {}
         }

@@ -621,7 +621,7 @@ fn cycles_of(log: &BusLog) -> (Vec<f64>, Vec<f64>) {
                 load.insert(of(feedback.counter), counts as f64);
             }
             Message::Torque(frame) => {
-                _ = torque.insert(of(frame.counter), f64::from(frame.torque.0))
+                _ = torque.insert(of(frame.counter), f64::from(frame.torque.0));
             }
             _ => {}
         }

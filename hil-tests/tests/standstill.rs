@@ -187,10 +187,10 @@ fn a_controlled_stop_takes_twenty_millimetres_and_where_torque_ends_the_brake_is
 fn controlled_stops() -> Vec<Measured> {
     let mut rows = vec![
         controlled("quick stop", &[], None, |master| {
-            master.command(ControlWord::QUICK_STOP)
+            master.command(ControlWord::QUICK_STOP);
         }),
         controlled("disable operation", &[], None, |master| {
-            master.command(ControlWord::SWITCH_ON)
+            master.command(ControlWord::SWITCH_ON);
         }),
         controlled(
             "shutdown, 605Bh = 1",
@@ -204,13 +204,13 @@ fn controlled_stops() -> Vec<Measured> {
             master.command(ControlWord::ENABLE_OPERATION.with(ControlWord::HALT));
         }),
         controlled("NMT stop", &[], None, |master| {
-            nmt(master, NmtCommand::StopRemoteNode)
+            nmt(master, NmtCommand::StopRemoteNode);
         }),
         controlled("NMT pre-operational", &[], None, |master| {
-            nmt(master, NmtCommand::EnterPreOperational)
+            nmt(master, NmtCommand::EnterPreOperational);
         }),
         controlled("NMT reset", &[], None, |master| {
-            nmt(master, NmtCommand::ResetNode)
+            nmt(master, NmtCommand::ResetNode);
         }),
         controlled(
             "setpoint gone",
@@ -309,13 +309,13 @@ fn without_torque(name: &str, machine: &Machine, fault: Option<Fault>, event: Ev
 fn stops_without_torque() -> Vec<Measured> {
     let events: [(&str, Option<Fault>, Event); 9] = [
         ("disable voltage", None, |master| {
-            master.command(ControlWord::DISABLE_VOLTAGE)
+            master.command(ControlWord::DISABLE_VOLTAGE);
         }),
         ("shutdown with the default", None, |master| {
-            master.command(ControlWord::SHUTDOWN)
+            master.command(ControlWord::SHUTDOWN);
         }),
         ("servo dead", None, |master| {
-            master.link_mut().bus_mut(0).kill(SERVO)
+            master.link_mut().bus_mut(0).kill(SERVO);
         }),
         (
             "servo off the bus",
@@ -332,7 +332,7 @@ fn stops_without_torque() -> Vec<Measured> {
             },
         ),
         ("feedback gone", Some(Fault::FeedbackMissing), |master| {
-            cut(master, FrameKind::Feedback, SERVO)
+            cut(master, FrameKind::Feedback, SERVO);
         }),
         (
             "encoders jump by 1 mm",
@@ -346,10 +346,10 @@ fn stops_without_torque() -> Vec<Measured> {
             },
         ),
         ("torque frames gone", Some(Fault::PeerFault), |master| {
-            cut(master, FrameKind::Torque, PLANT)
+            cut(master, FrameKind::Torque, PLANT);
         }),
         ("power stage drops out", Some(Fault::StageLost), |master| {
-            master.link_mut().plant(0).borrow_mut().drop_out()
+            master.link_mut().plant(0).borrow_mut().drop_out();
         }),
     ];
     let (free, braked) = (one_axis(), braked(one_axis()));

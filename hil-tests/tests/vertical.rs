@@ -194,16 +194,16 @@ fn a_vertical_axis_moves_ten_micrometres_where_torque_holds_it_and_drops_as_the_
         ));
         let events: [(&str, Option<Fault>, Event); 5] = [
             ("disable voltage", None, |m| {
-                m.command(ControlWord::DISABLE_VOLTAGE)
+                m.command(ControlWord::DISABLE_VOLTAGE);
             }),
             ("feedback gone", Some(Fault::FeedbackMissing), |m| {
-                cut(m, FrameKind::Feedback, SERVO)
+                cut(m, FrameKind::Feedback, SERVO);
             }),
             ("power stage drops out", Some(Fault::StageLost), |m| {
-                m.link_mut().plant(0).borrow_mut().drop_out()
+                m.link_mut().plant(0).borrow_mut().drop_out();
             }),
             ("torque frames gone", Some(Fault::PeerFault), |m| {
-                cut(m, FrameKind::Torque, PLANT)
+                cut(m, FrameKind::Torque, PLANT);
             }),
             ("servo dead", None, |m| m.link_mut().bus_mut(0).kill(SERVO)),
         ];

@@ -67,7 +67,7 @@ fn force_candidate(findings: &Findings<'_>, scored: &Scored) -> Candidate {
         }),
         None if scored.effect == "delay" => model.delay_s = scored.parameter,
         None => {
-            model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter)
+            model = actuator::linearised(&Bench::new(dataset, motion), &model, scored.parameter);
         }
     }
     let coefficients = Bench::new(dataset, motion).fit(&model).coefficients;

@@ -46,9 +46,9 @@ pub fn golden(mut low: f64, mut high: f64, error: &dyn Fn(f64) -> f64) -> f64 {
     for _ in 0..12 {
         let (a, b) = (high - RATIO * (high - low), low + RATIO * (high - low));
         if error(a) < error(b) {
-            high = b
+            high = b;
         } else {
-            low = a
+            low = a;
         }
     }
     0.5 * (low + high)

@@ -76,7 +76,7 @@ impl Bench {
             ..
         } = self;
         node.take(&frame, *now_us, &mut |frame| {
-            sent.push((*now_us, message(*ids, &frame)))
+            sent.push((*now_us, message(*ids, &frame)));
         });
     }
 
@@ -92,7 +92,7 @@ impl Bench {
                 ..
             } = self;
             node.time(*now_us, &mut |frame| {
-                sent.push((*now_us, message(*ids, &frame)))
+                sent.push((*now_us, message(*ids, &frame)));
             });
         }
         self.now_us = until_us;

@@ -56,7 +56,7 @@ mod tests {
     #[should_panic(expected = "row 7")]
     fn a_panic_on_one_row_fails_the_test() {
         on_all_cores(&(0..20).collect::<Vec<u32>>(), |row| {
-            assert!(*row != 7, "row {row}")
+            assert!(*row != 7, "row {row}");
         });
     }
 }

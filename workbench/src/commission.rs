@@ -255,7 +255,7 @@ fn begin(axis: &str, dataset: Dataset) -> Work {
     let axis = axis.to_owned();
     std::thread::spawn(move || {
         identification::identify(&dataset, &mut |text| {
-            progress::step(&format!("axis {axis}: {text}"))
+            progress::step(&format!("axis {axis}: {text}"));
         })
     })
 }

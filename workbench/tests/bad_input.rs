@@ -46,6 +46,7 @@ fn file(folder: &Path, name: &str, text: &str) -> String {
 
 /// A machine file with one replacement, and what the refusal has to say.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of inputs")]
 fn malformed_machine_files_name_file_line_and_key() {
     let folder = tempfile::tempdir().unwrap();
     let good = plant_sim::Machine::reference_text();
@@ -152,6 +153,7 @@ fn malformed_machine_files_name_file_line_and_key() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of inputs")]
 fn impossible_options_say_what_was_wanted() {
     let folder = tempfile::tempdir().unwrap();
     let pulse = file(
@@ -488,6 +490,7 @@ const CONTROLLED: &str = "name = \"t\"\nsample_period_s = 0.001\n[axis]\nkind = 
     [controller]\nposition_gain_per_s = 40000\nvelocity_gain_n_s_per_m = 1\n[declared]\neffects = [\"inertia\", \"viscous\", \"coulomb\"]\n";
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of inputs")]
 fn records_that_cannot_be_what_they_say_are_refused_with_what_they_look_like() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().display().to_string();

@@ -101,7 +101,7 @@ fn a_silent_servo_stops_the_other_axis_on_its_ramp() {
             .master_mut()
             .link_mut()
             .bus_mut(0)
-            .connect(SERVO, false)
+            .connect(SERVO, false);
     });
     assert_ramp(way_m, 3.0);
     let text = failure.to_string();
@@ -143,7 +143,7 @@ fn a_lost_plant_of_one_axis_stops_the_other_on_its_ramp() {
             .master_mut()
             .link_mut()
             .bus_mut(0)
-            .connect(PLANT, false)
+            .connect(PLANT, false);
     });
     // The fault itself comes after the feedbacks that the servo may bridge.
     assert_ramp(way_m, 10.0);

@@ -185,13 +185,13 @@ async fn node(mut transmit: CanTx<'static>, mut receive: CanRx<'static>) {
             Either::First(Ok(envelope)) => {
                 if let Some(frame) = frame_of(&envelope.frame) {
                     servo.take(&frame, Instant::now().as_micros(), &mut |frame| {
-                        post(&mut out, frame)
+                        post(&mut out, frame);
                     });
                 }
             }
             Either::First(Err(bus)) => warn!("bus: {}", bus),
             Either::Second(()) => servo.time(Instant::now().as_micros(), &mut |frame| {
-                post(&mut out, frame)
+                post(&mut out, frame);
             }),
         }
     }

@@ -184,6 +184,6 @@ fn wait_and_wake(alarm: Option<Duration>, stop: RawFd) -> io::Result<bool> {
 fn wake(concerns: impl Fn(&Waiting) -> bool) {
     WAITING.with_borrow_mut(|all| {
         all.extract_if(.., |one| concerns(one))
-            .for_each(|one| one.waker.wake())
+            .for_each(|one| one.waker.wake());
     });
 }

@@ -183,7 +183,7 @@ impl Servo {
             None | Some(NmtCommand::StartRemoteNode) => {}
             Some(NmtCommand::StopRemoteNode) => self.leave_operational(NmtState::Stopped),
             Some(NmtCommand::EnterPreOperational) => {
-                self.leave_operational(NmtState::PreOperational)
+                self.leave_operational(NmtState::PreOperational);
             }
             Some(NmtCommand::ResetNode | NmtCommand::ResetCommunication) => {
                 let said = core::mem::take(&mut self.outbox);

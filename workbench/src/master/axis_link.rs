@@ -136,7 +136,7 @@ impl AxisLink {
     pub(super) fn take(&mut self, message: Message, counter: SyncCounter) {
         match message {
             Message::Feedback(feedback) if feedback.counter == counter => {
-                self.take_feedback(feedback)
+                self.take_feedback(feedback);
             }
             Message::Torque(torque) if torque.counter == counter => {
                 self.torque_n = f64::from(torque.torque.0) * self.newton_per_micro_nm;
@@ -147,7 +147,7 @@ impl AxisLink {
                 self.fault = status.fault.or(self.fault);
             }
             Message::ServoEmergency(emergency) | Message::PlantEmergency(emergency) => {
-                self.take_emergency(emergency)
+                self.take_emergency(emergency);
             }
             _ => {}
         }

@@ -5,8 +5,8 @@
 //!                (believed?)  (every n cycles)  (coarse)    ramp to standstill ─┘
 //! ```
 //!
-//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint k
-//! + 1 is known when torque k is computed. So there are three times in one [`Reference`]:
+//! **Timing.** Feedback k is sampled at SYNC k; torque k acts from SYNC k + 1 to k + 2; setpoint
+//! k + 1 is known when torque k is computed. So there are three times in one [`Reference`]:
 //! - position x(k) and velocity x(k) − x(k−1) are in time with the encoders and their difference:
 //!   they make the errors;
 //! - the next velocity x(k+1) − x(k) tells a reversal one cycle ahead;

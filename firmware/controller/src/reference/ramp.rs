@@ -1,9 +1,9 @@
 //! The ramp to standstill: a deceleration that is led up, held, and led down so that velocity and
 //! deceleration end together.
 //!
-//! With speed u and jerk J per cycle, leading a deceleration d down to zero takes off `d + (d − J)
-//! + (d − 2 J) + … = d² / 2 J + d / 2` of speed (exact where d is a multiple of J). So the
-//! deceleration of a cycle is the largest that still leaves that much:
+//! With speed u and jerk J per cycle, leading a deceleration d down to zero takes off
+//! `d + (d − J) + (d − 2 J) + … = d² / 2 J + d / 2` of speed (exact where d is a multiple of J).
+//! So the deceleration of a cycle is the largest that still leaves that much:
 //!
 //! ```text
 //! d = min(d_before + J, D, √(2 J u + J² / 4) − J / 2)
