@@ -14,7 +14,6 @@ use hil_tests::losses::{Axis, Extremes, Plans, Run, Watched, largest_difference,
 use hil_tests::matrix::{self, Row};
 use hil_tests::paths::{Phase, Profile, reversal, sine};
 use hil_tests::{Scope, on_all_cores, program};
-use plant_sim::Machine;
 use protocol::cob::{AxisIds, FrameKind};
 use protocol::message::{Decoded, decode};
 use protocol::sdo::Address;
@@ -166,8 +165,6 @@ struct Hit {
     cycles: std::ops::Range<u32>,
     path_um: f64,
     torque: f64,
-    /// Acceleration limit of the axis, m/s².
-    limit: f64,
 }
 
 const SMOOTH: [Hit; 5] = [
@@ -177,7 +174,6 @@ const SMOOTH: [Hit; 5] = [
         cycles: 400..401,
         path_um: 1.0,
         torque: 5.0,
-        limit: 5.0,
     },
     Hit {
         name: "jerk of 50 m/s³",
@@ -185,7 +181,6 @@ const SMOOTH: [Hit; 5] = [
         cycles: 300..301,
         path_um: 1.0,
         torque: 5.0,
-        limit: 5.0,
     },
     Hit {
         name: "begin of that jerk",
@@ -193,7 +188,6 @@ const SMOOTH: [Hit; 5] = [
         cycles: 268..274,
         path_um: 1.0,
         torque: 5.0,
-        limit: 5.0,
     },
     Hit {
         name: "at 5 m/s²",
@@ -201,7 +195,6 @@ const SMOOTH: [Hit; 5] = [
         cycles: 385..386,
         path_um: 1.0,
         torque: 5.0,
-        limit: 5.0,
     },
     Hit {
         name: "reversal of R 100 F 2000",
@@ -209,77 +202,39 @@ const SMOOTH: [Hit; 5] = [
         cycles: 1248..1254,
         path_um: 1.0,
         torque: 5.0,
-        limit: 5.0,
     },
 ];
 
-/// A path that takes all that the axis may leaves nothing to catch up with before the acceleration
-/// ends: a lost setpoint costs up to three quarters of a cycle's speed (3.75 mm/s) for so long. A
-/// tenth of reserve keeps it within the bound.
-const STEPS: [Hit; 6] = [
+/// A lost setpoint at a step costs up to three quarters of a cycle's speed (3.75 mm/s) until the
+/// drive has caught up: it may do a tenth more than a path (`workbench::drive`).
+const STEPS: [Hit; 3] = [
     Hit {
-        name: "step of 5 m/s² for 10 ms, limit 5.5 m/s²",
+        name: "step of 5 m/s² for 10 ms",
         path: short_step,
         cycles: 298..306,
         path_um: 25.0,
         torque: 100.0,
-        limit: 5.5,
     },
     Hit {
-        name: "step of 5 m/s² for 60 ms, limit 5.5 m/s²",
+        name: "step of 5 m/s² for 60 ms",
         path: long_step,
         cycles: 298..306,
         path_um: 25.0,
         torque: 100.0,
-        limit: 5.5,
     },
     Hit {
-        name: "end of that step, limit 5.5 m/s²",
+        name: "end of that step",
         path: long_step,
         cycles: 357..366,
         path_um: 25.0,
         torque: 100.0,
-        limit: 5.5,
-    },
-    Hit {
-        name: "step of 5 m/s² for 10 ms, limit 5 m/s²",
-        path: short_step,
-        cycles: 298..306,
-        path_um: 45.0,
-        torque: 100.0,
-        limit: 5.0,
-    },
-    Hit {
-        name: "step of 5 m/s² for 60 ms, limit 5 m/s²",
-        path: long_step,
-        cycles: 298..306,
-        path_um: 170.0,
-        torque: 100.0,
-        limit: 5.0,
-    },
-    Hit {
-        name: "end of that step, limit 5 m/s²",
-        path: long_step,
-        cycles: 357..366,
-        path_um: 25.0,
-        torque: 100.0,
-        limit: 5.0,
     },
 ];
-
-fn machine_of(hit: &Hit) -> Machine {
-    let mut machine = noisy_axis();
-    machine
-        .axes
-        .iter_mut()
-        .for_each(|axis| axis.limits.acceleration_m_per_s2 = hit.limit);
-    machine
-}
 
 /// The worst row over the cycles of a hit. The setpoint of a cycle of the path is sent in the cycle
 /// before it.
 fn worst(hit: &Hit, what: &str, kind: FrameKind, at_servo: bool, damage: Damage) -> Row {
-    let (machine, cycles) = (machine_of(hit), hit.cycles.end + 300);
+    let (machine, cycles) = (noisy_axis(), hit.cycles.end + 300);
     let base = run(&machine, &hit.path, cycles, Plans::default());
     let rows = hit.cycles.clone().map(|cycle| {
         let cycle = if kind == FrameKind::Setpoint {
@@ -485,12 +440,12 @@ fn five_percent() -> Vec<Row> {
         .collect()
 }
 
-/// 0.5 m/s, 5 m/s² (and 12 bits of rounding), 0.25 m, 9 kN at 10 mm per revolution.
+/// 0.5 m/s, 5.5 m/s² (and 12 bits of rounding), 0.25 m, 9 kN at 10 mm per revolution.
 fn keeps_limits(name: &str, seen: Extremes) {
     println!("{name}: {seen:?}");
     assert!(seen.cycles > MANY / 2, "{name}: {seen:?}");
     assert!(
-        seen.velocity <= 50_000.01 && seen.acceleration <= 500.1 && seen.position <= 25_000_000.0,
+        seen.velocity <= 50_000.01 && seen.acceleration <= 550.1 && seen.position <= 25_000_000.0,
         "{name}: {seen:?}"
     );
     assert!(
