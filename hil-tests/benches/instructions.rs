@@ -332,15 +332,7 @@ fn build(profile: &str) -> PathBuf {
         .parent()
         .expect("a target folder")
         .join("cortex-m");
-    let added = Command::new("rustup")
-        .args(["target", "add", TARGET])
-        .output()
-        .expect("rustup is part of the toolchain");
-    assert!(
-        added.status.success(),
-        "rustup target add {TARGET}: {}",
-        String::from_utf8_lossy(&added.stderr)
-    );
+    hil_tests::targets::install(TARGET);
     let built = Command::new(env!("CARGO"))
         .args([
             "build",

@@ -1,7 +1,8 @@
-//! The `quadrant` program for scenarios that run every node as a process of its own.
+//! The `quadrant` program for scenarios that run every node as a process of its own, and the way
+//! into a kernel that has vcan.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use scope::Scope;
 
@@ -48,4 +49,41 @@ pub fn quadrant(target: &Path) -> PathBuf {
         String::from_utf8_lossy(&built.stderr)
     );
     target.join(program)
+}
+
+/// Runs ignored tests of the running test binary where the kernel has vcan (`scripts/with-vcan`),
+/// with the program that [`quadrant`] builds as `QUADRANT_PROGRAM`; gives what they printed.
+///
+/// # Panics
+/// Where they fail, with what they printed before.
+#[must_use]
+pub fn ignored_tests_under_vcan(
+    target: &Path,
+    arguments: &[&str],
+    statistics: Option<&Path>,
+) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the crate lies in the workspace");
+    let mut scenarios = Command::new(root.join("scripts/with-vcan"));
+    scenarios
+        .arg(std::env::current_exe().expect("a program knows its path"))
+        .args(["--ignored", "--nocapture"])
+        .args(arguments)
+        .current_dir(root)
+        .env("QUADRANT_PROGRAM", quadrant(target))
+        .env("VCAN_TIMEOUT", "600")
+        .stdin(Stdio::null());
+    if let Some(file) = statistics {
+        scenarios.env("VCAN_STATS", file);
+    }
+    let ran = scenarios.output().expect("the script can be started");
+    let out = String::from_utf8_lossy(&ran.stdout).into_owned();
+    println!("{out}{}", String::from_utf8_lossy(&ran.stderr));
+    assert!(
+        ran.status.success(),
+        "scenarios over vcan failed ({})",
+        ran.status
+    );
+    out
 }

@@ -6,7 +6,7 @@
 //! (`scripts/with-vcan`), every node a process of its own.
 
 use std::collections::BTreeMap;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command};
 use std::time::Duration;
 
 use bus::{BusLog, Damage, FaultPlan};
@@ -632,31 +632,11 @@ fn rows_over_vcan() {
 
 /// Runs the rows over vcan in a kernel that has it; gives what it printed.
 fn over_vcan() -> Vec<Row> {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .unwrap();
     let target = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
         .parent()
         .unwrap();
-    let ran = Command::new(root.join("scripts/with-vcan"))
-        .arg(std::env::current_exe().unwrap())
-        .args(["--ignored", "--exact", "rows_over_vcan", "--nocapture"])
-        .current_dir(root)
-        .env("QUADRANT_PROGRAM", program::quadrant(target))
-        .env("VCAN_TIMEOUT", "600")
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
-    let (out, err) = (
-        String::from_utf8_lossy(&ran.stdout),
-        String::from_utf8_lossy(&ran.stderr),
-    );
-    println!("{out}{err}");
-    assert!(
-        ran.status.success() && out.contains("1 passed"),
-        "rows over vcan failed ({})",
-        ran.status
-    );
+    let out = program::ignored_tests_under_vcan(target, &["--exact", "rows_over_vcan"], None);
+    assert!(out.contains("1 passed"), "the rows over vcan did not run");
     out.lines()
         .filter_map(|line| line.split_once("ROW|"))
         .map(|(_, line)| printed(line))

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus};
 use std::time::{Duration, Instant};
 
 use hil_tests::rig::shared_bus;
@@ -50,30 +50,10 @@ fn over_vcan() {
         .parent()
         .unwrap()
         .to_path_buf();
-    let program = program::quadrant(&target);
     let (scenarios, passed) = Scope::now().pick(QUICK, ALL, ALL);
     let stats = folder().join("kernel-stats.txt");
-    let ran = Command::new(root().join("scripts/with-vcan"))
-        .arg(std::env::current_exe().unwrap())
-        .args(["--ignored", "--test-threads=1", "--nocapture"])
-        .args(scenarios)
-        .current_dir(root())
-        .env("QUADRANT_PROGRAM", program)
-        .env("VCAN_STATS", &stats)
-        .env("VCAN_TIMEOUT", "600")
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
-    let (out, err) = (
-        String::from_utf8_lossy(&ran.stdout),
-        String::from_utf8_lossy(&ran.stderr),
-    );
-    println!("{out}{err}");
-    assert!(
-        ran.status.success(),
-        "vcan scenarios failed ({})",
-        ran.status
-    );
+    let arguments = [&["--test-threads=1"], scenarios].concat();
+    let out = program::ignored_tests_under_vcan(&target, &arguments, Some(&stats));
     assert!(out.contains(passed), "not all vcan scenarios ran: {out}");
     assert!(
         std::fs::read_to_string(stats)

@@ -72,6 +72,17 @@ impl Expedited {
         }
     }
 
+    /// The first bytes of a transfer's data, 1 to 4; what lies beyond them is no part of the value.
+    const fn first(len: u8, [a, b, c, d]: [u8; 4]) -> Self {
+        let bytes = match len {
+            1 => [a, 0, 0, 0],
+            2 => [a, b, 0, 0],
+            3 => [a, b, c, 0],
+            _ => [a, b, c, d],
+        };
+        Self { bytes, len }
+    }
+
     /// The value as the 4 bytes say it; bytes beyond the length are zero.
     #[must_use]
     pub const fn to_u32(self) -> u32 {
@@ -129,39 +140,15 @@ impl Request {
     /// Decodes the 8 bytes of a request; total.
     #[must_use]
     pub const fn decode(payload: [u8; 8]) -> Self {
-        let [command, low, high, subindex, a, b, c, d] = payload;
+        let [command, low, high, subindex, data @ ..] = payload;
         let address = Address::new(u16::from_le_bytes([low, high]), subindex);
         match command {
             0x40 => Self::Upload(address),
             0x80 => Self::Abort(address),
-            0x22 | 0x23 => Self::Download(
-                address,
-                Expedited {
-                    bytes: [a, b, c, d],
-                    len: 4,
-                },
-            ),
-            0x27 => Self::Download(
-                address,
-                Expedited {
-                    bytes: [a, b, c, 0],
-                    len: 3,
-                },
-            ),
-            0x2B => Self::Download(
-                address,
-                Expedited {
-                    bytes: [a, b, 0, 0],
-                    len: 2,
-                },
-            ),
-            0x2F => Self::Download(
-                address,
-                Expedited {
-                    bytes: [a, 0, 0, 0],
-                    len: 1,
-                },
-            ),
+            0x22 | 0x23 => Self::Download(address, Expedited::first(4, data)),
+            0x27 => Self::Download(address, Expedited::first(3, data)),
+            0x2B => Self::Download(address, Expedited::first(2, data)),
+            0x2F => Self::Download(address, Expedited::first(1, data)),
             _ => Self::Unsupported(address),
         }
     }
@@ -196,39 +183,15 @@ impl Response {
     /// Decodes the 8 bytes of a response; total.
     #[must_use]
     pub const fn decode(payload: [u8; 8]) -> Self {
-        let [command, low, high, subindex, a, b, c, d] = payload;
+        let [command, low, high, subindex, data @ ..] = payload;
         let address = Address::new(u16::from_le_bytes([low, high]), subindex);
         match command {
             0x60 => Self::Downloaded(address),
-            0x80 => Self::Aborted(address, u32::from_le_bytes([a, b, c, d])),
-            0x43 => Self::Uploaded(
-                address,
-                Expedited {
-                    bytes: [a, b, c, d],
-                    len: 4,
-                },
-            ),
-            0x47 => Self::Uploaded(
-                address,
-                Expedited {
-                    bytes: [a, b, c, 0],
-                    len: 3,
-                },
-            ),
-            0x4B => Self::Uploaded(
-                address,
-                Expedited {
-                    bytes: [a, b, 0, 0],
-                    len: 2,
-                },
-            ),
-            0x4F => Self::Uploaded(
-                address,
-                Expedited {
-                    bytes: [a, 0, 0, 0],
-                    len: 1,
-                },
-            ),
+            0x80 => Self::Aborted(address, u32::from_le_bytes(data)),
+            0x43 => Self::Uploaded(address, Expedited::first(4, data)),
+            0x47 => Self::Uploaded(address, Expedited::first(3, data)),
+            0x4B => Self::Uploaded(address, Expedited::first(2, data)),
+            0x4F => Self::Uploaded(address, Expedited::first(1, data)),
             _ => Self::Unknown,
         }
     }

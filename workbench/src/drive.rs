@@ -165,14 +165,7 @@ impl Set {
 
     fn filter(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
         let (coefficients, key) = torque_filter(axis, period_s)?;
-        let places = [
-            Parameter::FilterB0,
-            Parameter::FilterB1,
-            Parameter::FilterB2,
-            Parameter::FilterA1,
-            Parameter::FilterA2,
-        ];
-        places
+        Parameter::TORQUE_FILTER
             .into_iter()
             .zip(coefficients)
             .try_for_each(|(place, value)| self.put(place, key, value))?;

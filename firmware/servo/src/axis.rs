@@ -184,7 +184,6 @@ impl Axis {
                 .accept(feedback, &encoding)
                 .map_err(|_| Miss::Implausible)
         });
-        self.watchdog.counts.scale_warnings = self.encoders.scale_warnings();
         match self
             .watchdog
             .feedback(accepted.err(), settings.limits.feedback_misses)

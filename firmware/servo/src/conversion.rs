@@ -51,8 +51,9 @@ const Q32: u64 = 1 << 32;
 const LARGEST_POSITION_GAIN: i32 = 1 << 24;
 /// 2⁻⁸ of 10 nm per cycle.
 const SMALLEST_LIMIT: Velocity = Velocity(I20F12::from_bits(16));
-/// SYNC may be silent for so many periods where the set does not say it.
-const SYNC_TIMEOUT_PERIODS: u64 = 5;
+/// SYNC may be silent for so many periods where the set does not say it (2131h = 0): two more than
+/// the setpoints and feedbacks that may be missing in a row.
+pub(crate) const SYNC_TIMEOUT_PERIODS: u64 = 5;
 /// The peer's heartbeat may be silent for so many periods where the set does not say it: four and a
 /// half heartbeats. Where 2 % of them are lost or damaged, two in a row go missing once in 250 s at
 /// 1 kHz, which stopped an axis; four once in a week.
@@ -304,14 +305,7 @@ impl Reading<'_> {
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {
-        let places = [
-            Parameter::FilterB0,
-            Parameter::FilterB1,
-            Parameter::FilterB2,
-            Parameter::FilterA1,
-            Parameter::FilterA2,
-        ];
-        let coefficients = places.map(|place| self.raw(place));
+        let coefficients = Parameter::TORQUE_FILTER.map(|place| self.raw(place));
         let filter = FilterConfig::new(coefficients).map_err(|error| match error {
             FilterError::TooLarge { .. } => SetError::FilterHeadroom(Parameter::FilterB0),
             FilterError::Unstable { .. } => SetError::FilterUnstable(Parameter::FilterA1),

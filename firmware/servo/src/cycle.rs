@@ -7,12 +7,9 @@ use protocol::{CanFrame, Fault, SyncCounter};
 
 use crate::Servo;
 use crate::axis::{Circumstances, Notices};
+use crate::conversion::SYNC_TIMEOUT_PERIODS;
 use crate::inbox::Contents;
 use crate::stage::StageOutput;
-
-/// SYNC timeout where the parameter set leaves it open (2131h = 0), in periods: two more than the
-/// setpoints and feedbacks that may be missing in a row.
-const SYNC_TIMEOUT_PERIODS: u16 = 5;
 
 impl Servo {
     /// Lets time pass: does what is due, at most one cycle's worth. Call again while
@@ -56,15 +53,9 @@ impl Servo {
     }
 
     fn sync_timeout_us(&self) -> u64 {
-        let set = self
-            .active
+        self.active
             .as_ref()
-            .map_or(0, |settings| settings.limits.sync_timeout_us);
-        if set == 0 {
-            self.timing.periods_us(SYNC_TIMEOUT_PERIODS)
-        } else {
-            set
-        }
+            .map_or(0, |settings| settings.limits.sync_timeout_us)
     }
 
     /// Catches up with what was due strictly before a frame arrives; bounded, because a node that
@@ -216,4 +207,4 @@ impl Servo {
 
 /// Events of the past that a frame waits for: a deadline and an own timer for each of the cycles
 /// until SYNC counts as gone.
-const CATCH_UP_EVENTS: u16 = 2 * SYNC_TIMEOUT_PERIODS;
+const CATCH_UP_EVENTS: u64 = 2 * SYNC_TIMEOUT_PERIODS;

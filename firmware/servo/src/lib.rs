@@ -162,7 +162,10 @@ impl Servo {
     /// What happened on the bus since reset.
     #[must_use]
     pub const fn counts(&self) -> Counts {
-        self.axis.watchdog.counts
+        Counts {
+            scale_warnings: self.axis.encoders.scale_warnings(),
+            ..self.axis.watchdog.counts
+        }
     }
 
     /// The active parameters.

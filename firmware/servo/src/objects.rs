@@ -106,6 +106,15 @@ macro_rules! parameters {
         }
 
         impl Parameter {
+            /// Coefficients of the torque filter: b0, b1, b2, a1, a2.
+            pub const TORQUE_FILTER: [Self; 5] = [
+                Self::FilterB0,
+                Self::FilterB1,
+                Self::FilterB2,
+                Self::FilterA1,
+                Self::FilterA2,
+            ];
+
             /// Step of its raw number.
             #[must_use]
             pub const fn unit(self) -> Unit {

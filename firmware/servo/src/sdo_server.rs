@@ -77,29 +77,11 @@ pub enum Effect {
 }
 
 impl SdoServer {
-    /// Stages a value that the node itself chooses (what a command line says at start); out of
-    /// range it is left out.
-    pub fn stage(&mut self, parameter: Parameter, value: i32) {
-        let fits = |entry: &&Entry| entry.parameter == parameter && entry.check(value).is_ok();
-        if objects::TABLE.iter().find(fits).is_some() {
-            self.staged.set(parameter, value);
-        }
-    }
-
-    /// Makes the staged set the active one without a client: at start.
-    ///
-    /// # Errors
-    /// [`SetError`] where it does not go together; then the active set stays.
-    pub fn activate(&mut self) -> Result<Settings, SetError> {
+    /// Makes the staged set the active one; where it does not go together the active one stays.
+    fn activate(&mut self) -> Result<Settings, SetError> {
         let settings = self.staged.settings()?;
         self.active = self.staged.clone();
         Ok(settings)
-    }
-
-    /// The settings of the staged set; `None` where it does not go together.
-    #[must_use]
-    pub fn staged_settings(&self) -> Option<Settings> {
-        self.staged.settings().ok()
     }
 
     /// The SYNC period that the master declares (object 2102h); `None` where it does not.
@@ -462,7 +444,7 @@ mod tests {
             } else {
                 entry.default + 1
             };
-            server.stage(parameter, other);
+            server.staged.set(parameter, other);
             let refused = server.handle(COMMIT, &Readings::default(), true);
             assert_eq!(
                 code(refused),
@@ -471,7 +453,7 @@ mod tests {
             );
         }
         let mut server = SdoServer::default();
-        server.stage(Parameter::PulseStartDelay, 7000);
+        server.staged.set(Parameter::PulseStartDelay, 7000);
         assert!(matches!(
             server.handle(COMMIT, &Readings::default(), true),
             (_, Effect::Commit(_))
