@@ -8,8 +8,7 @@ use hil_tests::plans::{EMPTY, plans};
 use hil_tests::records::Hidden::{Backlash, Presliding};
 use hil_tests::records::{self, Plan};
 use hil_tests::{Scope, on_all_cores};
-use identification::report::Report;
-use identification::{Dataset, identify};
+use identification::{Dataset, Report, identify};
 
 /// Names that a report gives, with `unexplained` where it says so.
 fn names(report: &Report) -> BTreeSet<String> {

@@ -5,7 +5,7 @@
 
 use hil_tests::golden::{self, Measured, row};
 use hil_tests::{Scope, on_all_cores};
-use identification::report::Report;
+use identification::Report;
 use plant_sim::Machine;
 use workbench::commission;
 use workbench::interrupt::Interrupt;

@@ -15,33 +15,17 @@
 //!
 //! Nothing here knows the simulator or its parameters.
 
-pub mod actuator;
-pub mod bench;
-mod bus_log;
-pub mod difference;
-pub mod effects;
-pub mod error;
-pub mod excitation;
-pub mod filter;
-pub mod free_run;
-pub mod kinematics;
-pub mod load;
-pub mod outcome;
-mod pictures;
-pub mod plausibility;
-pub mod protocols;
-mod ranking;
-pub mod record;
-pub mod regression;
-pub mod report;
-pub mod residual;
-pub mod reversal;
-pub mod search;
-pub mod selection;
-pub mod slow_ripple;
-mod table;
+mod error;
+mod evidence;
+mod fit;
+mod identify;
+mod model;
+mod motion;
+mod record;
+mod report;
+mod simulate;
 
 pub use error::IdentificationError;
-pub use outcome::identify;
-pub use record::{Dataset, Record};
-pub use report::Identification;
+pub use identify::{declared_coulomb, identify};
+pub use record::dataset::{AxisKind, Dataset, Effort, EffortHold};
+pub use report::forms::{EffectCurve, Errors, FreeRunErrors, Identification, Report};

@@ -269,7 +269,7 @@ fn measured_coulomb(
             recording::write_part(&folder, machine, axis, (*part, record), None)
         })?;
         let dataset = identification::Dataset::read(&folder, None, None)?;
-        let force_n = identification::outcome::declared_coulomb(&dataset)?;
+        let force_n = identification::declared_coulomb(&dataset)?;
         Ok(AxisCompensation {
             reversal: Compensation::Coulomb { force_n },
             backlash_m: 0.0,

@@ -48,7 +48,7 @@ struct Summary<'a> {
 struct AxisSummary<'a> {
     name: &'a str,
     #[serde(flatten)]
-    report: &'a identification::report::Report,
+    report: &'a identification::Report,
 }
 
 /// Runs the main job.

@@ -8,8 +8,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use identification::record::{AxisKind, Effort, EffortHold};
-use identification::{Dataset, Identification};
+use identification::{AxisKind, Dataset, Effort, EffortHold, Identification};
 use plant_sim::machine::{Gains, Limits, MachineAxis, PositionSensor};
 
 /// What is known of an axis besides its identification.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use identification::report::{EffectCurve, Errors, FreeRunErrors, Identification, Report};
+use identification::{EffectCurve, Errors, FreeRunErrors, Identification, Report};
 
 use crate::error::Outcome;
 use crate::plots::{self, Curve};

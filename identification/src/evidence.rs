@@ -1,0 +1,10 @@
+//! What a record lacks: findings on every measured output.
+
+pub(crate) mod actuator;
+pub(crate) mod difference;
+pub(crate) mod free_run;
+pub(crate) mod plausibility;
+pub(crate) mod residual;
+pub(crate) mod reversal;
+pub(crate) mod selection;
+pub(crate) mod slow_ripple;

@@ -1,0 +1,333 @@
+//! Stick, bristle or gap: which of them lets the simulated axis run like the recorded one.
+//!
+//! On a circle all three give the same burst. In a free run they do not: the whole history between
+//! reversals counts (how far a bristle springs back at rest, where the load was left in its gap),
+//! not the peak. Each shape is fitted to every second block of the training record and judged on
+//! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
+//! rival.
+
+use crate::fit::bench::Model;
+use crate::model::effects::{Named, geometric};
+use crate::record::dataset::{Dataset, Record};
+use crate::simulate::axis::Shape;
+use crate::simulate::fit::{fit, half_widths};
+use crate::simulate::model::Simulated;
+use crate::simulate::run::{Drive, position_rms, simulate};
+
+/// Length of the blocks that are fitted and judged in turn, s.
+const BLOCK_S: f64 = 2.0;
+/// A short record is cut into so many.
+const FEWEST_BLOCKS: usize = 6;
+/// A shape must leave at most this share of the rms without it.
+const RATIO: f64 = 0.6;
+/// And at most this share of what its rival leaves.
+const RIVAL: f64 = 0.75;
+/// A gap is looked for where rigid friction leaves more than so many times the rounding of the
+/// encoder, or a bristle helps.
+const VISIBLE: f64 = 3.0;
+/// How much a bristle must help for that.
+const HELPS: f64 = 0.9;
+/// What rounding to whole counts leaves: one count over √12.
+const ROUNDING: f64 = 0.288_675;
+/// Smallest deflection or gap, in counts.
+const FEWEST_COUNTS: f64 = 2.0;
+/// Bristle deflections and gaps that are tried, in moving-velocity units times a second.
+const DEFLECTIONS: (f64, f64, u32) = (1.0e-3, 6.0e-2, 7);
+const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
+/// Coefficients of restitution that are tried.
+const RESTITUTIONS: [f64; 2] = [0.1, 0.7];
+/// Shares of the friction on the motor side that are tried.
+const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
+/// So many of the best gaps are fitted.
+const STARTS: usize = 3;
+
+/// What a shape leaves.
+#[derive(Clone)]
+pub(crate) struct Judged {
+    /// The fitted simulation.
+    pub model: Simulated,
+    /// Rms of the motor position on blocks that were not fitted.
+    pub held_out: f64,
+    /// Rms on the whole training record.
+    pub all: f64,
+    /// Mean square on each block that was not fitted.
+    blocks: Vec<f64>,
+}
+
+/// What the free run says about reversals.
+#[derive(Clone)]
+pub(crate) struct Reversals {
+    /// Who drove the simulation.
+    pub drive: Drive,
+    /// Rigid friction.
+    pub rigid: Judged,
+    /// A bristle.
+    pub bristle: Judged,
+    /// A gap, where one was looked for.
+    pub gap: Option<Judged>,
+    /// A bristle and a gap, where one of them was accepted.
+    pub both: Option<Judged>,
+    /// What was accepted.
+    pub accepted: Accepted,
+}
+
+/// What a free run accepts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Accepted {
+    /// A bristle.
+    pub presliding: bool,
+    /// A gap.
+    pub backlash: bool,
+    /// Something of the kind, but not which.
+    pub undecided: bool,
+}
+
+struct Judge<'a> {
+    drive: Drive,
+    record: &'a Record,
+    block_rows: usize,
+    smallest: f64,
+}
+
+impl Judge<'_> {
+    fn is_fitted(&self, row: usize) -> bool {
+        (row / self.block_rows).is_multiple_of(2)
+    }
+
+    fn fitted(&self, start: &Simulated) -> Judged {
+        let model = fit(start, &self.drive, self.record, &|row| self.is_fitted(row));
+        let run = simulate(&model, &self.drive, self.record);
+        let held_out = position_rms(&run, self.record, &|row| !self.is_fitted(row));
+        let all = position_rms(&run, self.record, &|_| true);
+        let judged = (1..self.record.len() / self.block_rows).step_by(2);
+        let on_block = |block: usize| {
+            position_rms(&run, self.record, &|row| row / self.block_rows == block).powi(2)
+        };
+        Judged {
+            model,
+            held_out,
+            all,
+            blocks: judged.map(on_block).collect(),
+        }
+    }
+
+    /// The best fit from the best of several starts.
+    fn best(&self, mut starts: Vec<Simulated>, count: usize) -> Option<Judged> {
+        let error = |model: &Simulated| {
+            position_rms(
+                &simulate(model, &self.drive, self.record),
+                self.record,
+                &|row| self.is_fitted(row),
+            )
+        };
+        starts.sort_by_cached_key(|model| ordered(error(model)));
+        let fitted = starts.iter().take(count).map(|start| self.fitted(start));
+        fitted.min_by(|a, b| a.all.total_cmp(&b.all))
+    }
+}
+
+/// A key that sorts like a non-negative number.
+const fn ordered(value: f64) -> u64 {
+    value.abs().to_bits()
+}
+
+/// Judges the reversals of a training record with an inverse model to start from; `None` where that
+/// has no mass or friction.
+#[must_use]
+pub(crate) fn reversals(
+    dataset: &Dataset,
+    model: &Model,
+    coefficients: &[f64],
+) -> Option<Reversals> {
+    let record = &dataset.train;
+    let drive = Drive::of(dataset);
+    let smallest = FEWEST_COUNTS * dataset.resolution;
+    let block_rows = ((BLOCK_S / record.period_s) as usize)
+        .min(record.len() / FEWEST_BLOCKS)
+        .max(1);
+    let judge = Judge {
+        drive,
+        record,
+        block_rows,
+        smallest,
+    };
+    let unit = dataset.kind.moving_velocity();
+    let start = |shape: Shape| Simulated::new(dataset, record.period_s, model, coefficients, shape);
+    let rigid = judge.fitted(&start(Shape::default())?);
+    let damping = 30.0 * rigid.model.mass;
+    let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
+    let bristles = bristles.into_iter().filter_map(|deflection| {
+        start(Shape {
+            deflection,
+            damping,
+            ..Shape::default()
+        })
+    });
+    let bristle = judge.best(bristles.collect(), 1)?;
+    let rounding = ROUNDING * dataset.resolution;
+    let worth = rigid.all > VISIBLE * rounding
+        || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
+    let gap = worth
+        .then(|| judge.best(gaps(unit, start), STARTS))
+        .flatten();
+    let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
+    let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
+    if let Some(both) = &both {
+        accepted = judge.add(accepted, &bristle, gap.as_ref(), both);
+    }
+    Some(Reversals {
+        drive,
+        rigid,
+        bristle,
+        gap,
+        both,
+        accepted,
+    })
+}
+
+fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
+    let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
+    let kinds = RESTITUTIONS
+        .into_iter()
+        .flat_map(|restitution| MOTOR_SHARES.map(|share| (restitution, share)));
+    let kinds: Vec<(f64, f64)> = kinds.collect();
+    let shapes = widths.into_iter().flat_map(|gap| {
+        kinds
+            .iter()
+            .map(move |&(restitution, motor_friction)| Shape {
+                gap,
+                load_share: 0.45,
+                motor_friction,
+                restitution,
+                ..Shape::default()
+            })
+    });
+    shapes.filter_map(start).collect()
+}
+
+impl Judge<'_> {
+    fn decide(&self, rigid: &Judged, bristle: &Judged, gap: Option<&Judged>) -> Accepted {
+        let is_bristle =
+            bristle.model.shape.deflection >= self.smallest && bristle.is_below(rigid, RATIO);
+        let is_gap = gap
+            .is_some_and(|gap| gap.model.shape.gap >= self.smallest && gap.is_below(rigid, RATIO));
+        let wins = |one: &Judged, other: Option<&Judged>| {
+            other.is_none_or(|other| one.is_below(other, RIVAL))
+        };
+        let presliding = is_bristle && wins(bristle, gap);
+        let backlash = is_gap && gap.is_some_and(|gap| wins(gap, Some(bristle)));
+        Accepted {
+            presliding,
+            backlash,
+            undecided: (is_bristle || is_gap) && !presliding && !backlash,
+        }
+    }
+
+    /// A bristle behind a gap, from what was accepted of them.
+    fn both(
+        &self,
+        accepted: Accepted,
+        bristle: &Judged,
+        gap: Option<&Judged>,
+        unit: f64,
+        start: &impl Fn(Shape) -> Option<Simulated>,
+    ) -> Option<Judged> {
+        let gap = gap.filter(|_| accepted.presliding || accepted.backlash || accepted.undecided)?;
+        let (bristle, gap) = (bristle.model.shape, gap.model.shape);
+        let Shape {
+            deflection,
+            damping,
+            ..
+        } = bristle;
+        let of = |width: f64, share: f64| {
+            start(Shape {
+                gap: width,
+                deflection: share * deflection,
+                damping,
+                load_share: 0.45,
+                motor_friction: 0.2,
+                restitution: 0.5,
+            })
+        };
+        let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8)
+            .into_iter()
+            .chain([gap.gap]);
+        let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
+        self.best(
+            starts
+                .filter_map(|(width, share)| of(width, share))
+                .collect(),
+            1,
+        )
+    }
+
+    /// What a bristle and a gap together add to one of them.
+    fn add(
+        &self,
+        accepted: Accepted,
+        bristle: &Judged,
+        gap: Option<&Judged>,
+        both: &Judged,
+    ) -> Accepted {
+        let shape = both.model.shape;
+        let beats = |other: &Judged| both.is_below(other, RATIO);
+        let visible = shape.gap >= self.smallest && shape.deflection >= self.smallest;
+        if visible && beats(bristle) && gap.is_none_or(beats) {
+            return Accepted {
+                presliding: true,
+                backlash: true,
+                undecided: false,
+            };
+        }
+        accepted
+    }
+}
+
+impl Judged {
+    fn is_below(&self, other: &Self, ratio: f64) -> bool {
+        self.held_out <= ratio * other.held_out && self.all <= ratio * other.all
+    }
+}
+
+impl Reversals {
+    /// Takes over what was decided with the inverse model's word beside the free run's.
+    pub(crate) fn settle(&mut self, presliding: bool, backlash: bool) {
+        let undecided = self.accepted.undecided && !presliding && !backlash;
+        self.accepted = Accepted {
+            presliding,
+            backlash,
+            undecided,
+        };
+    }
+
+    /// Mean over standard error of the gain per block that a shape brings over rigid friction.
+    #[must_use]
+    pub(crate) fn t(&self, judged: &Judged) -> f64 {
+        let gains: Vec<f64> = self
+            .rigid
+            .blocks
+            .iter()
+            .zip(&judged.blocks)
+            .map(|(before, after)| before - after)
+            .collect();
+        crate::fit::blocks::t_of(&gains)
+    }
+
+    /// Parameters of the simulation that was accepted, fitted to the positions, with intervals.
+    #[must_use]
+    pub(crate) fn named(&self, dataset: &Dataset) -> Vec<Named> {
+        let model = &self.best().model;
+        model.named(dataset, &half_widths(model, &self.drive, &dataset.train))
+    }
+
+    /// The simulation that was accepted.
+    #[must_use]
+    pub(crate) fn best(&self) -> &Judged {
+        match (self.accepted.presliding, self.accepted.backlash) {
+            (true, true) => self.both.as_ref().unwrap_or(&self.bristle),
+            (true, false) => &self.bristle,
+            (false, true) => self.gap.as_ref().unwrap_or(&self.rigid),
+            (false, false) => &self.rigid,
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Dahl's bristle: `dz = (sign(dx) − z)(1 − exp(−|dx| / δ))`, force G·z (Dahl 1968).
+
+use super::{Observed, rms};
+use crate::fit::search::golden;
+use crate::motion::kinematics::Kinematics;
+
+/// Deflections that are searched, in moving-velocity units times a second: 0.3 to 300 µm on a
+/// linear axis.
+const SMALLEST: f64 = 3.0e-4;
+const LARGEST: f64 = 0.3;
+
+/// Dahl's state, −1…1, along a position.
+#[must_use]
+pub(crate) fn state(position: &[f64], deflection: f64) -> Vec<f64> {
+    let mut state = 0.0_f64;
+    let mut before = position.first().copied().unwrap_or(0.0);
+    position
+        .iter()
+        .map(|x| {
+            let step = x - before;
+            before = *x;
+            if step != 0.0 {
+                state = step.signum() + (state - step.signum()) * (-step.abs() / deflection).exp();
+            }
+            state
+        })
+        .collect()
+}
+
+/// The best deflection and what it leaves; `unit` is the moving velocity.
+#[must_use]
+pub(crate) fn best(observed: &Observed<'_>, unit: f64) -> (f64, Vec<f64>) {
+    let left = |deflection: f64| rms(&error(observed, deflection), &observed.motion.slow);
+    let grid = crate::model::effects::geometric(SMALLEST * unit, LARGEST * unit, 24);
+    let start = crate::fit::search::smallest(grid, &left).unwrap_or(unit);
+    let deflection = golden(start / 1.4, start * 1.4, &left);
+    (deflection, error(observed, deflection))
+}
+
+/// What a bristle does not explain.
+#[must_use]
+pub(crate) fn error(observed: &Observed<'_>, deflection: f64) -> Vec<f64> {
+    let state = state(&observed.motion.friction_position, deflection);
+    let force: Vec<f64> = observed
+        .level
+        .iter()
+        .zip(state)
+        .map(|(level, state)| level * state)
+        .collect();
+    observed
+        .motion
+        .filter
+        .apply(&force)
+        .iter()
+        .zip(&observed.friction)
+        .map(|(force, seen)| seen - force)
+        .collect()
+}
+
+/// Motion whose direction columns follow Dahl's state instead of the sign.
+#[must_use]
+pub(crate) fn motion(motion: &Kinematics, deflection: f64) -> Kinematics {
+    Kinematics {
+        direction: state(&motion.friction_position, deflection),
+        ..motion.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bristle_saturates_and_reverses_over_its_deflection() {
+        let there: Vec<f64> = (0..100).map(f64::from).collect();
+        let back: Vec<f64> = (0..100).map(|i| 99.0 - f64::from(i)).collect();
+        let state = state(&[there, back].concat(), 5.0);
+        assert!((state[99] - 1.0).abs() < 1.0e-6 && (state[199] + 1.0).abs() < 1.0e-6);
+        // One deflection after the reversal (row 100 repeats the turning point): −1 + 2/e.
+        assert!((state[105] - (2.0 * (-1.0_f64).exp() - 1.0)).abs() < 1.0e-6);
+    }
+}

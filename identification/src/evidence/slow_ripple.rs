@@ -1,0 +1,211 @@
+//! Torque ripple of an axis that passes its reversals fast.
+//!
+//! At speed, ripple of a high order lies above the low-pass; it shows only about the reversals,
+//! which the margins about slow samples leave out. Where an axis never dwells there is no stiction
+//! to protect the fit from, and those samples are judged on their own: the declared model and one
+//! integer order per revolution after the other, on held-out blocks, with the thresholds of the
+//! selection.
+
+use std::f64::consts::TAU;
+
+use crate::evidence::selection;
+use crate::fit::bench::{Bench, Model, Term};
+use crate::fit::blocks::{Fit, Gain};
+use crate::model::effects::torque_ripple::TorqueRipple;
+use crate::motion::excitation::reversals;
+use crate::motion::filter::TRIM;
+use crate::motion::kinematics::Kinematics;
+use crate::record::dataset::{AxisKind, Dataset, Record};
+use crate::report::forms::{RippleOrder, SlowRipple};
+
+/// An axis dwells where it has at least so many rows below the moving velocity per reversal.
+const DWELL_ROWS: f64 = 1.0;
+/// Samples up to this share of the median velocity are slow.
+const SLOW_SHARE: f64 = 0.25;
+/// Low-pass of this judgement, Hz.
+const CUTOFF_HZ: f64 = 30.0;
+/// Fewest slow samples and reversals.
+const FEWEST_ROWS: usize = 1500;
+const FEWEST_REVERSALS: usize = 20;
+/// Highest order per revolution that is tried.
+const HIGHEST_ORDER: u32 = 180;
+/// Most orders that are added.
+const MOST: usize = 8;
+/// Largest distance of the two halves' amplitudes (as vectors), as a share of their mean.
+const LARGEST_DISAGREEMENT: f64 = 0.6;
+/// An amplitude must be so many half widths.
+const WIDTHS: f64 = 1.5;
+
+/// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing
+/// was found.
+#[must_use]
+pub(crate) fn slow_ripple(
+    dataset: &Dataset,
+    moving: &Kinematics,
+    declared: &Model,
+) -> Option<SlowRipple> {
+    let per_rev = match dataset.kind {
+        AxisKind::Rotary => TAU,
+        AxisKind::Linear => dataset.lead_m_per_rev?,
+    };
+    let limit = dataset.kind.moving_velocity();
+    let dwelling = moving
+        .velocity_lp
+        .iter()
+        .filter(|v| v.abs() <= limit)
+        .count() as f64;
+    let turns = reversals(moving);
+    if turns < FEWEST_REVERSALS || dwelling >= DWELL_ROWS * turns as f64 {
+        return None;
+    }
+    let fastest = SLOW_SHARE * median_speed(moving);
+    let slow = |record: &Record| slow_motion(dataset, record, fastest);
+    let (train, validate) = (slow(&dataset.train)?, slow(&dataset.validate)?);
+    if train.fitted.iter().filter(|slow| **slow).count() < FEWEST_ROWS {
+        return None;
+    }
+    let bench = Bench::new(dataset, &train);
+    let before = bench.fit(declared);
+    let (model, after, found) = add_orders(&bench, declared.clone(), before.clone(), per_rev);
+    if found.is_empty() {
+        return None;
+    }
+    let half_widths = bench.blocks(&bench.design(&model)).half_widths();
+    let pairs = found
+        .iter()
+        .zip(after.coefficients[before.coefficients.len()..].chunks(2));
+    let widths = half_widths[before.coefficients.len()..].chunks(2);
+    let orders = pairs
+        .zip(widths)
+        .map(|(((per_rev, gain), own), half)| RippleOrder {
+            per_rev: *per_rev,
+            amplitude: own[0].hypot(own[1]),
+            half_width: half[0].hypot(half[1]),
+            share: gain.share,
+            evidence: gain.t,
+        });
+    let orders: Vec<RippleOrder> = orders
+        .filter(|order| order.amplitude >= WIDTHS * order.half_width)
+        .collect();
+    let error = |motion: &Kinematics, model: &Model, fit: &Fit| {
+        Bench::new(dataset, motion).force_error_percent(model, &fit.coefficients)
+    };
+    Some(SlowRipple {
+        fastest,
+        cutoff_hz: CUTOFF_HZ,
+        orders,
+        train_force_error_before_percent: error(&train, declared, &before),
+        train_force_error_after_percent: error(&train, &model, &after),
+        validate_force_error_before_percent: error(&validate, declared, &before),
+        validate_force_error_after_percent: error(&validate, &model, &after),
+    })
+    .filter(|ripple| !ripple.orders.is_empty())
+}
+
+fn median_speed(motion: &Kinematics) -> f64 {
+    let moving = motion
+        .velocity_lp
+        .iter()
+        .zip(&motion.moving)
+        .filter(|(_, moving)| **moving);
+    let mut speeds: Vec<f64> = moving.map(|(v, _)| v.abs()).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.get(speeds.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The motion with its slow samples in place of the moving ones.
+fn slow_motion(dataset: &Dataset, record: &Record, fastest: f64) -> Option<Kinematics> {
+    let motion = Kinematics::with_cutoff(dataset, record, CUTOFF_HZ)?;
+    let rows = motion.len();
+    let slow =
+        |row: usize| row >= TRIM && row + TRIM < rows && motion.velocity_lp[row].abs() <= fastest;
+    let mask: Vec<bool> = (0..rows)
+        .map(|row| slow(row) && !record.interpolated[row])
+        .collect();
+    Some(Kinematics {
+        moving: mask.clone(),
+        fitted: mask,
+        ..motion
+    })
+}
+
+/// The two halves of the samples, each on its own.
+fn halves(motion: &Kinematics) -> [Kinematics; 2] {
+    let count = motion.fitted.iter().filter(|slow| **slow).count();
+    let mut seen = 0;
+    let first: Vec<bool> = motion
+        .fitted
+        .iter()
+        .map(|slow| {
+            seen += usize::from(*slow);
+            *slow && 2 * seen <= count
+        })
+        .collect();
+    let second = motion
+        .fitted
+        .iter()
+        .zip(&first)
+        .map(|(slow, first)| *slow && !first)
+        .collect();
+    [first, second].map(|fitted| Kinematics {
+        fitted,
+        ..motion.clone()
+    })
+}
+
+/// One order after the other, each the best of its round that both halves of the record agree
+/// about.
+fn add_orders(
+    bench: &Bench<'_>,
+    start: Model,
+    fit: Fit,
+    per_rev: f64,
+) -> (Model, Fit, Vec<(u32, Gain)>) {
+    let halves = halves(bench.motion);
+    let (mut model, mut fit, mut found) = (start, fit, Vec::<(u32, Gain)>::new());
+    while found.len() < MOST {
+        let design = bench.design(&model);
+        let term = |order: u32| Term {
+            effect: &TorqueRipple,
+            parameter: f64::from(order) / per_rev,
+        };
+        let open =
+            (1..=HIGHEST_ORDER).filter(|order| found.iter().all(|(known, _)| known != order));
+        let judged = open.map(|order| {
+            let fit_with = bench
+                .blocks(&bench.extended_once(&design, &term(order)))
+                .cross_validate();
+            (Gain::of(&fit, &fit_with), order, fit_with)
+        });
+        let mut judged: Vec<(Gain, u32, Fit)> = judged
+            .filter(|(gain, ..)| gain.share >= selection::SHARE && selection::is_enough(gain))
+            .collect();
+        judged.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
+        let agreed = judged.into_iter().find(|(_, order, _)| {
+            let mut model = model.clone();
+            model.terms.push(term(*order));
+            agree(bench.dataset, &halves, &model)
+        });
+        let Some((gain, order, better)) = agreed else {
+            break;
+        };
+        model.terms.push(term(order));
+        fit = better;
+        found.push((order, gain));
+    }
+    (model, fit, found)
+}
+
+/// Whether both halves see the last order of a model with about the same amplitude and phase.
+fn agree(dataset: &Dataset, halves: &[Kinematics; 2], model: &Model) -> bool {
+    let [one, other] = halves.each_ref().map(|motion| {
+        let coefficients = Bench::new(dataset, motion).fit(model).coefficients;
+        [
+            coefficients[coefficients.len() - 2],
+            coefficients[coefficients.len() - 1],
+        ]
+    });
+    let apart = f64::hypot(one[0] - other[0], one[1] - other[1]);
+    let mean = 0.5 * f64::hypot(one[0] + other[0], one[1] + other[1]);
+    apart <= LARGEST_DISAGREEMENT * mean
+}

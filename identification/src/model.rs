@@ -1,0 +1,3 @@
+//! Effects of the inverse model.
+
+pub(crate) mod effects;

@@ -1,0 +1,33 @@
+//! Coulomb friction: force Fc·sign(v); at standstill, whatever holds.
+
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::record::dataset::Dataset;
+
+/// Fc·sign(v).
+pub(crate) struct Coulomb;
+
+impl Effect for Coulomb {
+    fn name(&self) -> &'static str {
+        "coulomb"
+    }
+
+    fn equation(&self) -> &'static str {
+        "Fc sign(v)"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.direction.clone()]
+    }
+
+    fn is_level(&self) -> bool {
+        true
+    }
+
+    fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::level(own[0])
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.coefficient("coulomb", 0, naming.effort_unit(""))]
+    }
+}

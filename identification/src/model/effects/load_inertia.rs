@@ -1,0 +1,40 @@
+//! Mass of the load where it moves otherwise than the motor: `M2·(a2 − a1)`. No effect of its own:
+//! it comes with a gap or a compliance that a load scale shows, and makes the total `M1·a1 +
+//! M2·a2`.
+
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::record::dataset::Dataset;
+
+/// M2·(a2 − a1).
+pub(crate) struct LoadInertia;
+
+impl Effect for LoadInertia {
+    fn name(&self) -> &'static str {
+        "load_inertia"
+    }
+
+    fn equation(&self) -> &'static str {
+        "M2 (a2 - a1)"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![
+            motion
+                .load_acceleration
+                .clone()
+                .unwrap_or_else(|| vec![0.0; motion.len()]),
+        ]
+    }
+
+    fn action(&self, _: &Instant, _: f64, _: &[f64]) -> Action {
+        Action::default()
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.coefficient(
+            "load_inertia",
+            0,
+            naming.effort_unit(&format!(" s^2/{}", naming.length())),
+        )]
+    }
+}

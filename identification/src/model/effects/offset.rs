@@ -1,0 +1,34 @@
+//! Offset: a constant force. Coulomb friction that differs by direction is the same force: `Fc ±
+//! ΔF` is `Fc sign(v)` and a constant.
+
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming};
+use crate::record::dataset::Dataset;
+
+/// A constant force.
+pub(crate) struct Offset;
+
+impl Effect for Offset {
+    fn name(&self) -> &'static str {
+        "offset"
+    }
+
+    fn equation(&self) -> &'static str {
+        "F0"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![vec![1.0; motion.len()]]
+    }
+
+    fn against(&self) -> Against {
+        Against::Time
+    }
+
+    fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(own[0])
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.coefficient("offset", 0, naming.effort_unit(""))]
+    }
+}

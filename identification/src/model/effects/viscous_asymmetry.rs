@@ -1,0 +1,32 @@
+//! Viscous friction that differs by direction: `(Fv ± c) v`, that is a column `|v|`.
+//!
+//! Janot, Gautier and Brunot saw it on EMPS (2019) and blamed screw fatigue.
+
+use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::record::dataset::Dataset;
+
+/// c·|v|.
+pub(crate) struct ViscousAsymmetry;
+
+impl Effect for ViscousAsymmetry {
+    fn name(&self) -> &'static str {
+        "viscous_asymmetry"
+    }
+
+    fn equation(&self) -> &'static str {
+        "c |v|: Fv + c forwards, Fv - c backwards"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        vec![motion.velocity.iter().map(|v| v.abs()).collect()]
+    }
+
+    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
+        Action::force(own[0] * at.velocity.abs())
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = naming.effort_unit(&format!(" s/{}", naming.length()));
+        vec![naming.coefficient("viscous_asymmetry", 0, unit)]
+    }
+}

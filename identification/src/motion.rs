@@ -1,0 +1,5 @@
+//! What a record says about motion: derivatives, the one low-pass, which samples move.
+
+pub(crate) mod excitation;
+pub(crate) mod filter;
+pub(crate) mod kinematics;

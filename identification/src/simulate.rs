@@ -1,0 +1,8 @@
+//! The whole axis in closed loop, and its fit to the recorded position.
+
+pub(crate) mod axis;
+pub(crate) mod controller;
+pub(crate) mod fit;
+pub(crate) mod load;
+pub(crate) mod model;
+pub(crate) mod run;

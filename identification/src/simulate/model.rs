@@ -1,0 +1,316 @@
+//! An identified model, ready to be simulated, and its parameters as one vector.
+
+use super::axis::{Acting, Shape};
+use crate::fit::bench::{Model, Term};
+use crate::model::effects::{Action, Instant, Named, Naming};
+use crate::record::dataset::{Dataset, EffortHold};
+
+/// A term with its coefficients.
+#[derive(Clone)]
+pub(crate) struct Active {
+    term: Term,
+    own: Vec<f64>,
+}
+
+/// A model for free-run simulation.
+#[derive(Clone)]
+pub(crate) struct Simulated {
+    /// Moved mass.
+    pub mass: f64,
+    /// Terms other than the mass.
+    terms: Vec<Active>,
+    /// k of `u / (1 + k |u|)`.
+    pub saturation: f64,
+    /// Delay beyond the hold, s.
+    pub delay_s: f64,
+    /// Reversals.
+    pub shape: Shape,
+    travel: (f64, f64),
+    duration_s: f64,
+}
+
+/// One entry of the parameter vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Entry {
+    /// Its size, for scaling.
+    pub scale: f64,
+    /// Step of the numerical derivative, in units of the scale.
+    pub step: f64,
+    /// Whether it stays positive.
+    pub positive: bool,
+}
+
+const STEP: f64 = 1.0e-3;
+/// The cost over a gap is jagged: contacts come and go with it.
+const JAGGED_STEP: f64 = 0.04;
+
+impl Entry {
+    /// Whether the cost over it is jagged.
+    #[must_use]
+    pub(crate) fn is_jagged(&self) -> bool {
+        self.step >= JAGGED_STEP
+    }
+}
+
+impl Simulated {
+    /// The simulation of an inverse model; `None` where it has no mass.
+    #[must_use]
+    pub(crate) fn new(
+        dataset: &Dataset,
+        period_s: f64,
+        model: &Model,
+        coefficients: &[f64],
+        shape: Shape,
+    ) -> Option<Self> {
+        let mut rest = coefficients.iter().copied();
+        let (mut mass, mut terms) = (0.0, Vec::new());
+        for term in &model.terms {
+            let own: Vec<f64> = rest
+                .by_ref()
+                .take(term.effect.width(term.parameter))
+                .collect();
+            if own.is_empty() {
+                return None;
+            }
+            if term.effect.name() == "inertia" {
+                mass = own[0];
+            } else if term.effect.name() != "load_inertia" {
+                terms.push(Active { term: *term, own });
+            }
+        }
+        // A simulated effort is held from its row on; an instantaneous record sees half a period of
+        // that as delay.
+        let hold_s = if dataset.hold == EffortHold::Instant {
+            0.5 * period_s
+        } else {
+            0.0
+        };
+        let delay_s = (model.delay_s - hold_s).max(0.0);
+        let saturation = model.saturation.per_effort;
+        let duration_s = dataset.train.period_s * dataset.train.len() as f64;
+        (mass > 0.0).then_some(Self {
+            mass,
+            terms,
+            saturation,
+            delay_s,
+            shape,
+            travel: dataset.travel(),
+            duration_s,
+        })
+    }
+
+    /// What acts at an instant under a commanded effort.
+    #[must_use]
+    pub(crate) fn acting(
+        &self,
+        position: f64,
+        velocity: f64,
+        time_s: f64,
+        commanded: f64,
+    ) -> Acting {
+        let scaled = (position - self.travel.0) / self.travel.1;
+        let at = Instant {
+            position,
+            scaled,
+            velocity,
+            time_s,
+            time_share: time_s / self.duration_s,
+        };
+        let delivered = commanded / (1.0 + self.saturation * commanded.abs());
+        let mut acting = Acting {
+            motor: delivered,
+            ..Acting::default()
+        };
+        for Active { term, own } in &self.terms {
+            let Action { level, force } = term.effect.action(&at, term.parameter, own);
+            acting.level += level;
+            if term.effect.acts_on_motor() {
+                acting.motor -= force;
+            } else {
+                acting.load += force;
+            }
+        }
+        acting
+    }
+
+    /// The entries of the parameter vector.
+    #[must_use]
+    pub(crate) fn entries(&self) -> Vec<Entry> {
+        let coulomb = self
+            .terms
+            .iter()
+            .find(|active| active.term.effect.name() == "coulomb");
+        let force = coulomb
+            .map_or(self.mass, |active| active.own[0].abs())
+            .max(f64::MIN_POSITIVE);
+        let free = |scale: f64| Entry {
+            scale,
+            step: STEP,
+            positive: false,
+        };
+        let positive = |scale: f64| Entry {
+            positive: true,
+            ..free(scale)
+        };
+        let jagged = |scale: f64| Entry {
+            step: JAGGED_STEP,
+            ..positive(scale)
+        };
+        let mut entries = vec![positive(self.mass)];
+        for Active { term, own } in &self.terms {
+            let is_coulomb = term.effect.name() == "coulomb";
+            let scales = own.iter().map(|value| value.abs().max(0.05 * force));
+            entries.extend(scales.map(|scale| {
+                if is_coulomb {
+                    positive(scale)
+                } else {
+                    free(scale)
+                }
+            }));
+            entries.extend(
+                term.effect
+                    .is_tuned()
+                    .then(|| positive(term.parameter.abs())),
+            );
+        }
+        entries.extend((self.saturation != 0.0).then(|| positive(self.saturation)));
+        entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
+        if self.shape.deflection > 0.0 {
+            entries.extend([
+                positive(self.shape.deflection),
+                positive(self.shape.damping.max(2.0 * self.mass)),
+            ]);
+        }
+        if self.shape.gap > 0.0 {
+            entries.extend([self.shape.gap, 1.0, 1.0, 1.0].map(jagged));
+        }
+        entries
+    }
+
+    /// The parameter vector, unscaled, in the order of the entries.
+    #[must_use]
+    pub(crate) fn values(&self) -> Vec<f64> {
+        let mut copy = self.clone();
+        let mut values = Vec::new();
+        copy.visit(&mut |value| values.push(*value));
+        values
+    }
+
+    /// The model with another parameter vector.
+    #[must_use]
+    pub(crate) fn with(&self, values: &[f64]) -> Self {
+        let mut copy = self.clone();
+        let mut rest = values.iter();
+        copy.visit(&mut |value| *value = rest.next().copied().unwrap_or(*value));
+        copy.shape.load_share = copy.shape.load_share.clamp(0.05, 0.95);
+        copy.shape.motor_friction = copy.shape.motor_friction.clamp(0.0, 0.95);
+        copy.shape.restitution = copy.shape.restitution.clamp(0.0, 0.98);
+        copy
+    }
+
+    /// The parameters for people; `half_widths` in the order of the entries.
+    #[must_use]
+    pub(crate) fn named(&self, dataset: &Dataset, half_widths: &[f64]) -> Vec<Named> {
+        let mut rest = half_widths.iter().copied();
+        let mut next = || rest.next().unwrap_or(0.0);
+        let unit = |rest: &str| format!("{}{rest}", dataset.effort.unit());
+        let length = dataset.kind.position_unit();
+        let plain = |name: &str, value: f64, half: f64, unit: String| Named {
+            name: name.into(),
+            value,
+            half_width: Some(half),
+            unit,
+        };
+        let mut named = vec![plain(
+            "inertia",
+            self.mass,
+            next(),
+            unit(&format!(" s^2/{length}")),
+        )];
+        for Active { term, own } in &self.terms {
+            let coefficients: Vec<(f64, f64)> = own.iter().map(|value| (*value, next())).collect();
+            let parameter_half_width = term.effect.is_tuned().then(&mut next);
+            let naming = Naming {
+                parameter: term.parameter,
+                parameter_half_width,
+                coefficients: &coefficients,
+                dataset,
+            };
+            named.extend(term.effect.parameters(&naming));
+        }
+        if self.saturation != 0.0 {
+            named.push(plain(
+                "torque_saturation",
+                self.saturation,
+                next(),
+                format!("1/{}", dataset.effort.unit()),
+            ));
+        }
+        if self.delay_s != 0.0 {
+            named.push(plain("delay_beyond_hold", self.delay_s, next(), "s".into()));
+        }
+        let shape = &self.shape;
+        if shape.deflection > 0.0 {
+            named.push(plain(
+                "presliding_deflection",
+                shape.deflection,
+                next(),
+                length.into(),
+            ));
+            named.push(plain(
+                "presliding_damping",
+                shape.damping,
+                next(),
+                unit(&format!(" s/{length}")),
+            ));
+        }
+        if shape.gap > 0.0 {
+            named.push(plain("backlash_gap", shape.gap, next(), length.into()));
+            named.push(plain(
+                "backlash_load_share",
+                shape.load_share,
+                next(),
+                "of the moved mass".into(),
+            ));
+            named.push(plain(
+                "backlash_motor_friction",
+                shape.motor_friction,
+                next(),
+                "of the friction".into(),
+            ));
+            named.push(plain(
+                "backlash_restitution",
+                shape.restitution,
+                next(),
+                "of the velocity".into(),
+            ));
+        }
+        named
+    }
+
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        each(&mut self.mass);
+        for Active { term, own } in &mut self.terms {
+            own.iter_mut().for_each(&mut *each);
+            if term.effect.is_tuned() {
+                each(&mut term.parameter);
+            }
+        }
+        if self.saturation != 0.0 {
+            each(&mut self.saturation);
+        }
+        if self.delay_s != 0.0 {
+            each(&mut self.delay_s);
+        }
+        if self.shape.deflection > 0.0 {
+            each(&mut self.shape.deflection);
+            each(&mut self.shape.damping);
+        }
+        if self.shape.gap > 0.0 {
+            each(&mut self.shape.gap);
+            each(&mut self.shape.load_share);
+            each(&mut self.shape.motor_friction);
+            each(&mut self.shape.restitution);
+        }
+    }
+}
