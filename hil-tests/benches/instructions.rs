@@ -32,10 +32,10 @@ use serde::Deserialize;
 use servo::Servo;
 use servo::objects::{self, Parameter};
 use workbench::compensation::{AxisCompensation, Compensation, Pulse};
-use workbench::drive;
+use workbench::drive_parameters;
 use workbench::error::Outcome;
-use workbench::link::InProcess;
-use workbench::master::Master;
+use workbench::network::link::InProcess;
+use workbench::network::master::Master;
 use workbench::trajectory::Circle;
 
 #[path = "../../firmware/emulated-cycle/src/recording.rs"]
@@ -280,7 +280,7 @@ fn configure(master: &mut Master<InProcess>, machine: &Machine, drive: Drive) ->
 /// A compensation file holds a pulse or a Coulomb feedforward; the drive can do both at once.
 fn add_coulomb(master: &mut Master<InProcess>, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
     let reversal = Compensation::Coulomb { force_n: 200.0 };
-    let set = drive::parameters(
+    let set = drive_parameters::parameters(
         axis,
         period_s,
         &AxisCompensation {

@@ -10,8 +10,8 @@ use protocol::cob::AxisIds;
 use protocol::{CanFrame, Fault, Station};
 use servo::Servo;
 use servo::watchdog::Counts;
-use workbench::link::InProcess;
-use workbench::master::Master;
+use workbench::network::link::InProcess;
+use workbench::network::master::Master;
 
 use crate::rig::{PLANT, SERVO, enabled};
 

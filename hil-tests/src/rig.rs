@@ -8,8 +8,8 @@ use protocol::sdo::Expedited;
 use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
 use workbench::compensation::AxisCompensation;
 use workbench::error::{Failure, Outcome};
-use workbench::link::{InProcess, Link};
-use workbench::master::Master;
+use workbench::network::link::{InProcess, Link};
+use workbench::network::master::Master;
 
 /// The reference machine without noise, for figures that have to repeat to the digit.
 #[must_use]

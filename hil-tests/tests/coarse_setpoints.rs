@@ -10,7 +10,7 @@
 use hil_tests::golden::{self, Measured, row};
 use hil_tests::rig::{enabled, quiet_reference, set};
 use servo::objects::Parameter;
-use workbench::master::AxisCycle;
+use workbench::network::master::AxisCycle;
 use workbench::trajectory::{Circle, Move};
 
 const RADIUS_M: f64 = 0.1;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hil_tests::golden::{self, row};
 use workbench::cli::{Commission, MachineArguments};
-use workbench::commission;
+use workbench::commands::commission;
 use workbench::interrupt::Interrupt;
 
 #[test]

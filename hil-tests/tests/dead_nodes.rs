@@ -9,8 +9,8 @@ use hil_tests::rig::{PLANT, SERVO, enabled, one_axis};
 use protocol::cob::FrameKind;
 use protocol::states::DriveState;
 use protocol::{AxisIds, Fault, Message, message};
-use workbench::link::{InProcess, Link};
-use workbench::master::Master;
+use workbench::network::link::{InProcess, Link};
+use workbench::network::master::Master;
 
 /// From rest, 26 mm/s at most.
 fn path(cycle: u32) -> f64 {

@@ -9,8 +9,8 @@ use hil_tests::rig::{absolute_scale, enabled, set, vertical, vertical_axes};
 use plant_sim::machine::PositionSensor;
 use protocol::states::{BrakeState, DriveState};
 use servo::objects::Parameter;
-use workbench::link::InProcess;
-use workbench::master::Master;
+use workbench::network::link::InProcess;
+use workbench::network::master::Master;
 
 fn table_m(master: &mut Master<InProcess>) -> f64 {
     master.link_mut().plant(0).borrow().truth().table_m

@@ -8,12 +8,12 @@ use hil_tests::rig::{dry_friction, gap_inside, gap_outside, quiet_reference};
 use hil_tests::{Scope, on_all_cores};
 use plant_sim::Machine;
 use workbench::ballbar::{self, Point};
-use workbench::commission;
+use workbench::commands::commission;
 use workbench::compensation::AxisCompensation;
 use workbench::interrupt::Interrupt;
-use workbench::master::AxisCycle;
-use workbench::plots::{self, Trace};
-use workbench::run::{Place, Session};
+use workbench::network::master::AxisCycle;
+use workbench::presentation::plots::{self, Trace};
+use workbench::session::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {

@@ -556,9 +556,12 @@ impl Chaos {
         self.inject(FaultPlan::default());
         self.send(Message::Nmt(NmtCommand::StartRemoteNode, None));
         let machine = one_axis();
-        let set =
-            workbench::drive::parameters(&machine.axes[0], 1.0e-3, &AxisCompensation::default())
-                .unwrap();
+        let set = workbench::drive_parameters::parameters(
+            &machine.axes[0],
+            1.0e-3,
+            &AxisCompensation::default(),
+        )
+        .unwrap();
         for (entry, value) in set {
             self.write(entry.parameter, value);
         }

@@ -6,9 +6,9 @@ use hil_tests::{Scope, on_all_cores};
 use workbench::ballbar::{self, CircleFigures};
 use workbench::compensation::{AxisCompensation, Compensation};
 use workbench::interrupt::Interrupt;
-use workbench::run::{Place, Session};
+use workbench::session::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
-use workbench::tune;
+use workbench::tuning;
 
 /// R mm, F mm/min; uncompensated and tuned-at-F2000 burst of the prototype, µm
 /// (reference-axis.toml).
@@ -91,7 +91,7 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
     if Scope::now().leaves_row_to("tests/commission.rs, which tunes at R 100 F 2000") {
         return;
     }
-    let tuned = tune::pulse(
+    let tuned = tuning::pulse(
         &quiet_reference(),
         &Place::InProcess,
         &circle(100.0, 2000.0),

@@ -4,7 +4,7 @@
 use hil_tests::rig::quiet_reference;
 use workbench::ballbar;
 use workbench::compensation::{AxisCompensation, Compensation};
-use workbench::run::{Place, Session};
+use workbench::session::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 const ACCELERATION_M_PER_S2: f64 = 5.0;
@@ -29,7 +29,7 @@ fn a_step_of_acceleration_costs_what_it_cost_without_a_preview() {
     )
     .unwrap();
     let mut error_m = 0.0_f64;
-    let each = |_, axes: &[workbench::master::AxisCycle]| {
+    let each = |_, axes: &[workbench::network::master::AxisCycle]| {
         error_m = error_m.max((axes[0].reference_m - axes[0].load_m).abs());
     };
     session

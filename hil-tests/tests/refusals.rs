@@ -11,8 +11,8 @@ use protocol::states::{ControlWord, DriveState};
 use protocol::{AxisIds, Fault, Message};
 use servo::objects::{DECLARED_PERIOD, Parameter};
 use workbench::compensation::AxisCompensation;
-use workbench::link::{InProcess, Link};
-use workbench::master::Master;
+use workbench::network::link::{InProcess, Link};
+use workbench::network::master::Master;
 
 fn configured(machine: &Machine) -> Master<InProcess> {
     let mut master = Master::start(InProcess::new(machine, 0).unwrap(), machine).unwrap();

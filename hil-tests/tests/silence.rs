@@ -21,8 +21,8 @@ use protocol::states::DriveState;
 use protocol::{Message, SyncCounter};
 use quadrant_host::Pace;
 use workbench::compensation::AxisCompensation;
-use workbench::link::{Interfaces, Link};
-use workbench::master::Master;
+use workbench::network::link::{Interfaces, Link};
+use workbench::network::master::Master;
 
 /// Force limit of the reference axis in % of which torque differences are told.
 const FORCE_LIMIT_N: f64 = 9000.0;
@@ -206,7 +206,7 @@ const SMOOTH: [Hit; 5] = [
 ];
 
 /// A lost setpoint at a step costs up to three quarters of a cycle's speed (3.75 mm/s) until the
-/// drive has caught up: it may do a tenth more than a path (`workbench::drive`).
+/// drive has caught up: it may do a tenth more than a path (`workbench::drive_parameters`).
 const STEPS: [Hit; 3] = [
     Hit {
         name: "step of 5 m/s² for 10 ms",

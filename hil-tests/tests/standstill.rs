@@ -17,8 +17,8 @@ use protocol::message::NmtCommand;
 use protocol::states::{BrakeState, ControlWord};
 use protocol::{AxisIds, Fault, Message};
 use servo::objects::Parameter;
-use workbench::link::{InProcess, Link};
-use workbench::master::Master;
+use workbench::network::link::{InProcess, Link};
+use workbench::network::master::Master;
 
 /// Largest way that a controlled stop may take, mm: issue 7.
 const CONTROLLED_MM: f64 = 20.0;

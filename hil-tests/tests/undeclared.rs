@@ -7,9 +7,9 @@ use hil_tests::golden::{self, Measured, row};
 use hil_tests::{Scope, on_all_cores};
 use identification::Report;
 use plant_sim::Machine;
-use workbench::commission;
+use workbench::commands::commission;
 use workbench::interrupt::Interrupt;
-use workbench::run::Place;
+use workbench::session::Place;
 
 /// An axis: its effect, the keys that differ from the plain axis, and what it declares.
 struct Hidden {

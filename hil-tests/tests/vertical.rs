@@ -18,8 +18,8 @@ use protocol::states::{BrakeState, ControlWord, DriveState};
 use protocol::{Fault, Message};
 use servo::objects::Parameter;
 use workbench::compensation::AxisCompensation;
-use workbench::link::{InProcess, Link};
-use workbench::master::Master;
+use workbench::network::link::{InProcess, Link};
+use workbench::network::master::Master;
 
 /// Largest way of the table where torque holds it, µm: issue 7.
 const HELD_UM: f64 = 10.0;

@@ -1,28 +1,23 @@
 //! The `quadrant` program as a library: what its commands do, without the command line.
 //!
-//! The workbench is NMT master, SYNC producer, SDO client and source of setpoints ([`master`]) on
-//! any bus ([`link`]); it moves machines ([`run`], [`trajectory`], [`excitation`]), records them
-//! ([`recording`]), looks at circles ([`ballbar`]), tunes ([`tune`]) and reports ([`report`],
-//! [`plots`]). Whoever moves axes gets an [`interrupt`] token, so that the operator can stop them.
+//! [`commands`] list the steps; everything else lies below them. The workbench is NMT master, SYNC
+//! producer, SDO client and source of setpoints on any bus ([`network`]); it moves machines
+//! ([`session`], [`trajectory`]), records them ([`axis_records`]), looks at circles ([`ballbar`]),
+//! tunes ([`tuning`]) and shows what came out ([`presentation`]). Whoever moves axes gets an
+//! [`interrupt`] token, so that the operator can stop them.
 
+pub mod axis_records;
 pub mod ballbar;
-pub mod circle;
 pub mod cli;
-pub mod commission;
+pub mod commands;
 pub mod compensation;
-pub mod drive;
+pub mod drive_parameters;
 pub mod error;
-pub mod excitation;
-pub mod identify;
 pub mod interrupt;
-pub mod link;
-pub mod master;
 pub mod model_file;
-pub mod nodes;
-pub mod plots;
+pub mod network;
+pub mod presentation;
 pub mod progress;
-pub mod recording;
-pub mod report;
-pub mod run;
+pub mod session;
 pub mod trajectory;
-pub mod tune;
+pub mod tuning;

@@ -8,9 +8,10 @@ use clap::Parser as _;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use workbench::cli::{Cli, Command};
+use workbench::commands::{circle, commission, identify};
 use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
-use workbench::{circle, commission, identify, nodes};
+use workbench::network::nodes;
 
 /// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off,
 /// and printing then panics.

@@ -1,5 +1,7 @@
 //! Reference trajectories: functions of the cycle, within the limits of the axes.
 
+pub mod sine_bursts;
+
 use std::f64::consts::{PI, TAU};
 
 /// Reference circle in X and Y: from X = 0, Y = −R, counter-clockwise (or clockwise), with a smooth

@@ -8,14 +8,14 @@ use plant_sim::Machine;
 use plant_sim::machine::PositionSensor;
 use protocol::Fault;
 use protocol::states::DriveState;
+use workbench::axis_records::{self, Part};
 use workbench::cli::{Commission, MachineArguments};
-use workbench::commission;
+use workbench::commands::commission;
 use workbench::compensation::AxisCompensation;
 use workbench::error::Failure;
 use workbench::interrupt::Interrupt;
-use workbench::link::InProcess;
-use workbench::recording::{self, Part};
-use workbench::run::Session;
+use workbench::network::link::InProcess;
+use workbench::session::Session;
 
 /// Places on the bus of an axis.
 const PLANT: usize = 0;
@@ -286,8 +286,8 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
     let failure = session
         .perform(&[], Some(&log), |session| {
             let mut records = Vec::new();
-            recording::record(session, &machine, Part::Train, &mut records)?;
-            recording::write_part(
+            axis_records::record(session, &machine, Part::Train, &mut records)?;
+            axis_records::write_part(
                 &folder,
                 &machine,
                 &machine.axes[1],
@@ -299,9 +299,9 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
                 .link_mut()
                 .bus_mut(1)
                 .connect(PLANT, false);
-            let outcome = recording::record(session, &machine, Part::Validate, &mut records);
+            let outcome = axis_records::record(session, &machine, Part::Validate, &mut records);
             let broke_off = outcome.as_ref().err();
-            recording::write_part(
+            axis_records::write_part(
                 &folder,
                 &machine,
                 &machine.axes[1],

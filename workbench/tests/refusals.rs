@@ -20,8 +20,8 @@ use servo::objects::{self, Parameter};
 use servo::parameters::SetError;
 use workbench::error::Outcome;
 use workbench::interrupt::Interrupt;
-use workbench::link::{Link, axis_ids};
-use workbench::master::Master;
+use workbench::network::link::{Link, axis_ids};
+use workbench::network::master::Master;
 
 /// A drive that needs `delay` cycles to enable and to disable operation, and refuses to enable with
 /// `refusal`.

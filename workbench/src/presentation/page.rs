@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use identification::{EffectCurve, Errors, FreeRunErrors, Identification, Report};
 
 use crate::error::Outcome;
-use crate::plots::{self, Curve};
+use crate::presentation::plots::{self, Curve};
 
 const STYLE: &str = "body{font:15px/1.5 sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
 h1{font-size:1.7em}h2{margin-top:2em;border-bottom:1px solid #bbb}table{border-collapse:collapse;margin:1em 0}\

@@ -10,8 +10,8 @@ use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::link::{InProcess, Interfaces, Link};
-use crate::master::{AxisCycle, Master};
+use crate::network::link::{InProcess, Interfaces, Link};
+use crate::network::master::{AxisCycle, Master};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD, Move};
 
 /// Where the machine is.

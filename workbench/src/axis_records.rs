@@ -9,12 +9,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::commands::identify::write;
 use crate::error::{Failure, Outcome};
-use crate::excitation::{self, Burst};
-use crate::identify::write;
-use crate::link::Link;
-use crate::master::AxisCycle;
-use crate::run::Session;
+use crate::network::link::Link;
+use crate::network::master::AxisCycle;
+use crate::session::Session;
+use crate::trajectory::sine_bursts::{self, Burst};
 
 /// A record of one axis: rows of time, setpoint, motor position, load position, effort.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,11 +68,11 @@ pub fn record<L: Link>(
     let bursts: Vec<Vec<Burst>> = machine
         .axes
         .iter()
-        .map(|axis| excitation::bursts(&axis.limits, part == Part::Validate))
+        .map(|axis| sine_bursts::bursts(&axis.limits, part == Part::Validate))
         .collect();
     let duration_s = bursts
         .iter()
-        .map(|bursts| excitation::duration_s(bursts))
+        .map(|bursts| sine_bursts::duration_s(bursts))
         .fold(0.0, f64::max);
     records.clear();
     records.resize(machine.axes.len(), AxisRecord::default());
@@ -85,7 +85,7 @@ pub fn record<L: Link>(
         |time_s| {
             bursts
                 .iter()
-                .map(|bursts| excitation::at(bursts, time_s))
+                .map(|bursts| sine_bursts::at(bursts, time_s))
                 .collect()
         },
         |time_s, axes| {

@@ -13,9 +13,9 @@ use servo::parameters::SetError;
 
 use super::{ANSWER, Master, Patience};
 use crate::compensation::AxisCompensation;
-use crate::drive;
+use crate::drive_parameters;
 use crate::error::{Failure, Outcome};
-use crate::link::Link;
+use crate::network::link::Link;
 
 impl<L: Link> Master<L> {
     /// Reads an object of the servo.
@@ -54,7 +54,7 @@ impl<L: Link> Master<L> {
         for (index, axis) in machine.axes.iter().enumerate() {
             self.download(index, objects::DECLARED_PERIOD, Expedited::u32(period_us))?;
             let own = compensation.get(index).copied().unwrap_or_default();
-            for (entry, value) in drive::parameters(axis, machine.period_s, &own)? {
+            for (entry, value) in drive_parameters::parameters(axis, machine.period_s, &own)? {
                 self.download(index, entry.address, Expedited::i32(value))?;
             }
             self.commit(index)?;

@@ -14,7 +14,7 @@ use super::Master;
 use super::axis_link::AxisLink;
 use super::way::{Hold, is_without_torque};
 use crate::error::{Failure, Outcome};
-use crate::link::Link;
+use crate::network::link::Link;
 
 /// Patience with a stop: an axis that coasts from 0.4 m/s stands after half a second, one that
 /// ramps at 5 m/s² after a tenth.

@@ -19,7 +19,7 @@ use protocol::table::STATUS_EVERY_CYCLES;
 use super::Master;
 use super::axis_link::AxisLink;
 use crate::error::{Failure, Outcome};
-use crate::link::Link;
+use crate::network::link::Link;
 
 /// A step without motion is confirmed by the next status; a status may be lost, nine in a row are
 /// not.

@@ -16,7 +16,7 @@ use crate::compensation::{AxisCompensation, Compensation, Pulse};
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::progress;
-use crate::run::{Place, Session};
+use crate::session::{Place, Session};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD};
 
 /// What tuning did.

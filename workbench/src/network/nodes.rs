@@ -10,7 +10,7 @@ use quadrant_host::termination::Termination;
 
 use crate::cli;
 use crate::error::{Failure, Outcome};
-use crate::link::plant_seed;
+use crate::network::link::plant_seed;
 
 fn ids(servo: u8, plant: u8) -> Outcome<AxisIds> {
     match (NodeId::new(servo), NodeId::new(plant)) {

@@ -5,19 +5,19 @@ use std::path::Path;
 use plant_sim::Machine;
 use serde::Serialize;
 
+use crate::axis_records::{self, Part};
 use crate::ballbar::{self, CircleFigures, Point, REVERSALS};
 use crate::cli::{self, MachineArguments, Method};
+use crate::commands::identify::write;
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::{Failure, Outcome};
-use crate::identify::write;
 use crate::interrupt::Interrupt;
-use crate::nodes::refuse_overload;
-use crate::plots::{self, Trace};
+use crate::network::nodes::refuse_overload;
+use crate::presentation::plots::{self, Trace};
 use crate::progress;
-use crate::recording::{self, Part};
-use crate::run::{Place, Session};
+use crate::session::{Place, Session};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD};
-use crate::tune;
+use crate::tuning;
 
 /// The machine of a command line.
 ///
@@ -176,7 +176,7 @@ fn name(compensation: &[AxisCompensation]) -> String {
 pub fn command(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = machine(&arguments.machine)?;
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
-    crate::run::check_circle(&machine, &circle)?;
+    crate::session::check_circle(&machine, &circle)?;
     let compensation = compensation_of(arguments, &machine, &place, interrupt)?;
     let run = run(
         &machine,
@@ -261,20 +261,21 @@ fn measured_coulomb(
     let none = vec![AxisCompensation::default(); machine.axes.len()];
     let mut records = Vec::new();
     Session::connect(machine, place, 1, interrupt)?.perform(&none, None, |session| {
-        recording::record(session, machine, Part::Train, &mut records)
+        axis_records::record(session, machine, Part::Train, &mut records)
     })?;
     let folder = std::env::temp_dir().join(format!("quadrant-{}", std::process::id()));
-    let of_axis = |(axis, record): (&plant_sim::machine::MachineAxis, &recording::AxisRecord)| {
-        Part::BOTH.iter().try_for_each(|part| {
-            recording::write_part(&folder, machine, axis, (*part, record), None)
-        })?;
-        let dataset = identification::Dataset::read(&folder, None, None)?;
-        let force_n = identification::declared_coulomb(&dataset)?;
-        Ok(AxisCompensation {
-            reversal: Compensation::Coulomb { force_n },
-            backlash_m: 0.0,
-        })
-    };
+    let of_axis =
+        |(axis, record): (&plant_sim::machine::MachineAxis, &axis_records::AxisRecord)| {
+            Part::BOTH.iter().try_for_each(|part| {
+                axis_records::write_part(&folder, machine, axis, (*part, record), None)
+            })?;
+            let dataset = identification::Dataset::read(&folder, None, None)?;
+            let force_n = identification::declared_coulomb(&dataset)?;
+            Ok(AxisCompensation {
+                reversal: Compensation::Coulomb { force_n },
+                backlash_m: 0.0,
+            })
+        };
     let found = machine.axes.iter().zip(&records).map(of_axis).collect();
     // The folder is in the system's temporary directory: leaving it behind is untidy, not wrong.
     let _ = std::fs::remove_dir_all(&folder);
@@ -334,7 +335,7 @@ pub fn print(report: &CircleReport) {
 pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = machine(&arguments.machine)?;
     let circle = circle(arguments.radius_mm, arguments.feed_mm_min)?;
-    crate::run::check_circle(&machine, &circle)?;
+    crate::session::check_circle(&machine, &circle)?;
     if !(0.0..=1000.0).contains(&arguments.start_delay_ms) {
         return Err(Failure::new(format!(
             "--start-delay-ms: must be 0 to 1000 ms, got {}",
@@ -342,7 +343,7 @@ pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
         )));
     }
     let tuned = match arguments.method {
-        cli::TuneMethod::Pulse => tune::pulse(
+        cli::TuneMethod::Pulse => tuning::pulse(
             &machine,
             &place,
             &circle,
@@ -365,7 +366,7 @@ pub fn tune(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
 }
 
 /// Prints what tuning found.
-pub fn print_tuned(names: &[String], tuned: &tune::Tuned) {
+pub fn print_tuned(names: &[String], tuned: &tuning::Tuned) {
     for ((name, compensation), (before, after)) in names
         .iter()
         .zip(&tuned.compensation)

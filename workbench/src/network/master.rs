@@ -30,7 +30,7 @@ use servo::objects;
 
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::link::{Link, axis_ids};
+use crate::network::link::{Link, axis_ids};
 use axis_link::AxisLink;
 
 pub use axis_link::{AxisCycle, SILENT_CYCLES, fine};

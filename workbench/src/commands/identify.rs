@@ -7,8 +7,8 @@ use identification::{Dataset, Identification, IdentificationError};
 use crate::cli;
 use crate::error::{Failure, Outcome};
 use crate::model_file::{self, Known};
+use crate::presentation::page::{self, Page};
 use crate::progress;
-use crate::report::{self, Page};
 
 impl From<IdentificationError> for Failure {
     fn from(error: IdentificationError) -> Self {
@@ -38,7 +38,7 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
         write(&folder.join("prediction.csv"), &prediction_csv(&result))?;
         write(&folder.join("model.toml"), &model_toml(&dataset, &result))?;
         let mut page = Page::new(&format!("Identification of {}", dataset.name));
-        report::identification(&mut page, "Result", &result)?;
+        page::identification(&mut page, "Result", &result)?;
         write(&folder.join("report.html"), &page.finish())?;
     }
     print(&result);
@@ -81,8 +81,8 @@ pub fn json(result: &Identification) -> Outcome<String> {
 
 /// Prints the result for people.
 pub fn print(result: &Identification) {
-    println!("{}", report::sentence(&result.report));
-    for row in report::error_table(result) {
+    println!("{}", page::sentence(&result.report));
+    for row in page::error_table(result) {
         let cells: Vec<String> = row
             .iter()
             .skip(1)

@@ -15,7 +15,7 @@ use protocol::{CanFrame, Message, SyncCounter};
 use super::Master;
 use super::axis_link::AxisLink;
 use crate::error::Outcome;
-use crate::link::{Link, axis_ids};
+use crate::network::link::{Link, axis_ids};
 
 /// Frames that may pass in a cycle: other people's traffic must not prolong it.
 const MOST_FRAMES: u32 = 4000;

@@ -9,21 +9,21 @@ use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
 use serde::Serialize;
 
-use crate::circle::{self, CircleReport, CircleRun};
+use crate::axis_records::{self, Part};
 use crate::cli;
+use crate::commands::circle::{self, CircleReport, CircleRun};
+use crate::commands::identify::{self, write};
 use crate::compensation::{self, AxisCompensation};
 use crate::error::{Failure, Outcome};
-use crate::identify::{self, write};
 use crate::interrupt::Interrupt;
-use crate::master::AxisCycle;
 use crate::model_file::{self, Known};
-use crate::plots::{self, Curve, Trace};
+use crate::network::master::AxisCycle;
+use crate::presentation::page::{self, Page};
+use crate::presentation::plots::{self, Curve, Trace};
 use crate::progress;
-use crate::recording::{self, Part};
-use crate::report::{self, Page};
-use crate::run::{Place, Session};
+use crate::session::{Place, Session};
 use crate::trajectory::Circle;
-use crate::tune::{self, Tuned};
+use crate::tuning::{self, Tuned};
 
 /// The circle of commissioning: R 100 mm, F 2000 mm/min.
 const CIRCLE: Circle = Circle {
@@ -59,7 +59,7 @@ struct AxisSummary<'a> {
 pub fn command(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = circle::machine(&arguments.machine)?;
     let reference = fitting_circle(&machine);
-    crate::run::check_circle(&machine, &reference)?;
+    crate::session::check_circle(&machine, &reference)?;
     let out = &arguments.out;
     std::fs::create_dir_all(out).map_err(|error| Failure::file(out, &error))?;
     let load = machine.bus_load_per_mille();
@@ -117,7 +117,7 @@ impl Bench<'_> {
             before.report.figures.peak_max_um
         );
         progress::step("tuning the pulse on circles");
-        let tuned = tune::pulse(self.machine, self.place, self.circle, 0.0, self.interrupt)?;
+        let tuned = tuning::pulse(self.machine, self.place, self.circle, 0.0, self.interrupt)?;
         write(
             &self.out.join("compensation.toml"),
             &compensation::text(&names, &tuned.compensation)?,
@@ -175,10 +175,10 @@ impl Bench<'_> {
             Part::Validate => "recording the validation record",
         });
         let mut records = Vec::new();
-        let outcome = recording::record(session, self.machine, part, &mut records);
+        let outcome = axis_records::record(session, self.machine, part, &mut records);
         for (axis, record) in self.machine.axes.iter().zip(&records) {
             let broke_off = outcome.as_ref().err();
-            recording::write_part(
+            axis_records::write_part(
                 &self.records(&axis.name),
                 self.machine,
                 axis,
@@ -294,7 +294,7 @@ fn model(machine: &Machine, names: &[String], results: &[Identification]) -> Str
 /// The DBC of a machine's nodes, for the candump logs beside it.
 fn dbc(machine: &Machine) -> Outcome<String> {
     let axes = (0..machine.axes.len())
-        .map(crate::link::axis_ids)
+        .map(crate::network::link::axis_ids)
         .collect::<Outcome<Vec<_>>>()?;
     let mut text = String::new();
     protocol::dbc::write(&mut text, &axes).map_err(|error| Failure::new(error.to_string()))?;
@@ -389,7 +389,7 @@ impl Job<'_> {
         ));
         self.overview(&mut page)?;
         for (axis, result) in self.bench.machine.axes.iter().zip(self.results) {
-            report::identification(
+            page::identification(
                 &mut page,
                 &format!("Axis {}: what the model lacks", axis.name),
                 result,
@@ -404,7 +404,7 @@ impl Job<'_> {
         let first = self
             .results
             .first()
-            .map_or_else(String::new, |result| report::sentence(&result.report));
+            .map_or_else(String::new, |result| page::sentence(&result.report));
         page.key(&format!(
             "{first}. Largest burst on the circle: {:.2} µm before, {:.2} µm with the tuned pulse, {:.1} % less.",
             before.peak_max_um, after.peak_max_um, self.reduction
