@@ -1,8 +1,9 @@
 //! The difference of motor and load position: backlash, compliance and pitch error, where there is
 //! a load scale.
 //!
-//! Candidates: a gap (the load coasts, or waits, while the motor crosses it: [`crate::simulate::load`]),
-//! wind-up by the transmitted force (`F − M1·a` over K), and a function periodic in position.
+//! Candidates: a gap (the load coasts, or waits, while the motor crosses it:
+//! [`crate::simulate::load`]), wind-up by the transmitted force (`F − M1·a` over K), and a function
+//! periodic in position.
 //! Judged on held-out blocks like the force, but accepted only where the amplitude is beyond the
 //! encoders' counts.
 
