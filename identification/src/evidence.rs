@@ -1,6 +1,7 @@
 //! What a record lacks: findings on every measured output.
 
 pub(crate) mod actuator;
+pub(crate) mod at_reversals;
 pub(crate) mod difference;
 pub(crate) mod free_run;
 pub(crate) mod plausibility;

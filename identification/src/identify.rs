@@ -2,6 +2,7 @@
 
 use crate::error::IdentificationError;
 use crate::evidence::actuator::{self, Pair};
+use crate::evidence::at_reversals::{self, AtReversals, LoadScale, Witnesses};
 use crate::evidence::difference::{self, Difference};
 use crate::evidence::free_run::{self, Reversals};
 use crate::evidence::plausibility;
@@ -20,7 +21,6 @@ use crate::report::free_run as free_run_errors;
 use crate::report::pictures;
 use crate::report::protocols;
 use crate::report::ranking;
-use crate::simulate::run::Drive;
 
 /// A model with its coefficients.
 pub(crate) struct Fitted {
@@ -42,16 +42,6 @@ pub(crate) struct Findings<'a> {
     pub(crate) presliding: Option<Presliding>,
     pub(crate) reversals: Option<Reversals>,
     pub(crate) accepted: AtReversals,
-}
-
-/// What acts at reversals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct AtReversals {
-    pub(crate) presliding: bool,
-    /// Seen from the motor; a gap that a load scale shows stands in the difference.
-    pub(crate) backlash: bool,
-    /// Something that is none of them.
-    pub(crate) unexplained: bool,
 }
 
 /// Identifies a dataset. `progress` hears of every step.
@@ -96,14 +86,24 @@ pub fn identify(
     progress("simulating reversals: stick, bristle, gap");
     let presliding = reversal::presliding(&bench, &selected.model, &coefficients);
     let mut reversals = free_run::reversals(dataset, &selected.model, &coefficients);
-    let accepted = at_reversals(presliding.as_ref(), reversals.as_ref(), difference.as_ref());
+    let accepted = Witnesses {
+        inverse: presliding,
+        free_run: reversals.as_ref().map(Reversals::summary),
+        load_scale: difference.as_ref().map(|found| LoadScale {
+            gap: found.gap.is_some(),
+        }),
+    }
+    .decide();
     if let Some(reversals) = &mut reversals {
         let gap = difference.as_ref().is_some_and(|d| d.gap.is_some());
         reversals.settle(accepted.presliding, accepted.backlash || gap);
     }
     // With a load scale friction is judged where it acts, not at the motor.
     let simulated = reversals.as_ref().filter(|_| difference.is_none());
-    let deflection = deflection(presliding.as_ref(), simulated);
+    let deflection = at_reversals::deflection(
+        presliding.as_ref(),
+        simulated.and_then(Reversals::deflection),
+    );
     let model = match &difference {
         Some(found) if found.moves_apart() => selection::with_load_inertia(&bench, &selected.model),
         _ => selected.model.clone(),
@@ -162,86 +162,6 @@ fn no_room(dataset: &Dataset) -> IdentificationError {
         "{}: the sample period leaves no room for the low-pass",
         dataset.name
     ))
-}
-
-/// A load scale shows gaps directly and friction where it acts; without it the free run decides, if
-/// the controller is known. Where it is not, the simulation follows the record too closely to be a
-/// judge of bristles, but a gap that it sees is one.
-fn at_reversals(
-    presliding: Option<&Presliding>,
-    reversals: Option<&Reversals>,
-    difference: Option<&Difference>,
-) -> AtReversals {
-    let inverse = presliding.is_some_and(|p| p.accepted);
-    let suspicious =
-        presliding.is_some_and(|p| !p.accepted && p.dahl < reversal::SUSPICION * p.rigid);
-    if let Some(difference) = difference {
-        let unexplained = suspicious && difference.gap.is_none();
-        return AtReversals {
-            presliding: inverse,
-            backlash: false,
-            unexplained,
-        };
-    }
-    let Some(reversals) = reversals else {
-        return AtReversals {
-            presliding: inverse,
-            backlash: false,
-            unexplained: suspicious,
-        };
-    };
-    let seen = reversals.accepted;
-    match reversals.drive {
-        Drive::Known(_) if seen.undecided => tie(presliding, reversals),
-        Drive::Known(_) => AtReversals {
-            presliding: seen.presliding,
-            backlash: seen.backlash,
-            unexplained: false,
-        },
-        Drive::Followed => {
-            let presliding = if seen.backlash {
-                seen.presliding
-            } else {
-                inverse
-            };
-            let unexplained = !presliding && !seen.backlash && (suspicious || seen.undecided);
-            AtReversals {
-                presliding,
-                backlash: seen.backlash,
-                unexplained,
-            }
-        }
-    }
-}
-
-/// Ratios of the inverse model below which a bristle and above which a gap breaks a tie of the free
-/// run: noise that really acts raises what every shape leaves there.
-const BRISTLE_TIE: f64 = 0.5;
-const GAP_TIE: f64 = 0.8;
-
-fn tie(presliding: Option<&Presliding>, reversals: &Reversals) -> AtReversals {
-    let ratio = presliding.map_or(f64::NAN, |p| p.dahl / p.rigid);
-    let gap_wins = reversals
-        .gap
-        .as_ref()
-        .is_some_and(|gap| gap.held_out < reversals.bristle.held_out);
-    let (bristle, gap) = (
-        ratio < BRISTLE_TIE && !gap_wins,
-        ratio > GAP_TIE && gap_wins,
-    );
-    AtReversals {
-        presliding: bristle,
-        backlash: gap,
-        unexplained: !bristle && !gap,
-    }
-}
-
-/// Deflection of the bristle: from the free run where that has one, else from the inverse model.
-fn deflection(presliding: Option<&Presliding>, reversals: Option<&Reversals>) -> Option<f64> {
-    let simulated = reversals
-        .filter(|r| r.accepted.presliding)
-        .map(|r| r.best().model.shape.deflection);
-    simulated.or_else(|| presliding.map(|p| p.deflection))
 }
 
 /// Fits a model on moving samples; its sign columns follow the bristle, where there is one.

@@ -82,6 +82,17 @@ pub(crate) struct Accepted {
     pub undecided: bool,
 }
 
+/// What a free run says in short.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Summary {
+    /// Whether the controller of the record drove the simulation; else it followed the record.
+    pub controller_known: bool,
+    /// What it accepts.
+    pub accepted: Accepted,
+    /// Whether a gap leaves less than a bristle on blocks that were not fitted.
+    pub gap_leaves_less: bool,
+}
+
 struct Judge<'a> {
     drive: Drive,
     record: &'a Record,
@@ -290,6 +301,25 @@ impl Judged {
 }
 
 impl Reversals {
+    /// What it says in short.
+    #[must_use]
+    pub(crate) fn summary(&self) -> Summary {
+        let less = |gap: &Judged| gap.held_out < self.bristle.held_out;
+        Summary {
+            controller_known: matches!(self.drive, Drive::Known(_)),
+            accepted: self.accepted,
+            gap_leaves_less: self.gap.as_ref().is_some_and(less),
+        }
+    }
+
+    /// Deflection of the bristle that was accepted.
+    #[must_use]
+    pub(crate) fn deflection(&self) -> Option<f64> {
+        self.accepted
+            .presliding
+            .then(|| self.best().model.shape.deflection)
+    }
+
     /// Takes over what was decided with the inverse model's word beside the free run's.
     pub(crate) fn settle(&mut self, presliding: bool, backlash: bool) {
         let undecided = self.accepted.undecided && !presliding && !backlash;
