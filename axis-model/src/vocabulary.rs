@@ -1,0 +1,232 @@
+//! The table of effects.
+//!
+//! Adding one is adding its block here: name, words, where it acts, parameters with dimension and
+//! the range that a machine file may state. Everything else of this crate follows from it.
+//!
+//! Friction is counted positive against motion; x is position, v velocity, u commanded effort. An
+//! effect that changes friction says so in shares of it, so that it keeps its meaning when the
+//! level changes.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::define::vocabulary;
+use crate::dimension::Dimension;
+use crate::parameter::Parameter;
+
+/// Where an effect acts, and so where a record shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the effort while the axis moves.
+    MovingEffort,
+    /// About reversals of the direction.
+    Reversals,
+    /// Between motor and load position.
+    MotorLoad,
+}
+
+vocabulary! {
+    /// effort that accelerates the moved mass, M a
+    inertia: Inertia, MovingEffort, {
+        /// mass of motor and load together
+        inertia: INERTIA, 1.0e-3 => 2.0e6,
+    } optional {
+        /// mass of the load alone
+        load: INERTIA, 1.0e-3 => 1.0e6,
+    }
+
+    /// friction that grows with velocity, Fv v
+    viscous: Viscous, MovingEffort, {
+        /// friction per velocity
+        viscous: DAMPING, 0.0 => 1.0e7,
+    } optional {}
+
+    /// friction of constant size against motion, Fc sign(v), which holds at standstill
+    coulomb: Coulomb, MovingEffort, {
+        /// level while it slides
+        coulomb: EFFORT, 0.0 => 1.0e6,
+    } optional {}
+
+    /// constant force against positive motion
+    offset: Offset, MovingEffort, {
+        /// the force
+        offset: EFFORT, -1.0e6 => 1.0e6,
+    } optional {}
+
+    /// other Coulomb friction by direction, Fc (1 + a sign(v)): the same force as an offset
+    coulomb_asymmetry: CoulombAsymmetry, MovingEffort, {
+        /// half the difference of the directions, as a share of the level
+        coulomb_asymmetry: RATIO, -0.9 => 0.9,
+    } optional {}
+
+    /// other viscous friction by direction, Fv (1 + a sign(v))
+    viscous_asymmetry: ViscousAsymmetry, MovingEffort, {
+        /// half the difference of the directions, as a share of the viscous friction
+        viscous_asymmetry: RATIO, -0.9 => 0.9,
+    } optional {}
+
+    /// friction that falls from breakaway to sliding as velocity grows
+    stribeck: Stribeck, MovingEffort, {
+        /// friction at breakaway beyond the sliding level
+        excess: EFFORT, 0.0 => 1.0e6,
+        /// velocity at which 1/e of the excess is left
+        velocity: VELOCITY, 1.0e-6 => 1.0,
+    } optional {}
+
+    /// hysteretic displacement before the contact slips
+    presliding: Presliding, Reversals, {
+        /// level of friction over its stiffness at standstill
+        deflection: POSITION, 1.0e-12 => 1.0e-2,
+    } optional {
+        /// damping of the bristles
+        damping: DAMPING, 0.0 => 1.0e7,
+    }
+
+    /// gap between motor and load
+    backlash: Backlash, Reversals, {
+        /// width of the gap
+        gap: POSITION, 0.0 => 1.0e-2,
+    } optional {
+        /// load behind the gap, as a share of the moved mass
+        load_share: RATIO, 0.0 => 1.0,
+        /// friction before the gap, as a share of the friction
+        motor_friction: RATIO, 0.0 => 1.0,
+        /// velocity after an impact, as a share of that before it
+        restitution: RATIO, 0.0 => 1.0,
+    }
+
+    /// load that lags the motor by the transmitted force over a stiffness
+    compliance: Compliance, MotorLoad, {
+        /// stiffness between motor and load
+        stiffness: STIFFNESS, 1.0e4 => 1.0e12,
+    } optional {
+        /// damping between motor and load
+        damping: DAMPING, 0.0 => 1.0e7,
+    }
+
+    /// force that is periodic in the motor position
+    torque_ripple: TorqueRipple, MovingEffort, {
+        /// amplitude
+        amplitude: EFFORT, 0.0 => 1.0e6,
+    } optional {
+        /// periods per revolution of the motor
+        order: PER_REVOLUTION, 1.0e-3 => 1.0e4,
+        /// way from one period to the next
+        period: POSITION, 1.0e-6 => 1.0e3,
+        /// phase at position zero
+        phase: ANGLE, -1.0e3 => 1.0e3,
+    }
+
+    /// measured load position that is off by a function periodic in position
+    pitch_error: PitchError, MotorLoad, {
+        /// amplitude
+        amplitude: POSITION, 0.0 => 1.0e-3,
+        /// way from one period to the next
+        period: POSITION, 1.0e-5 => 10.0,
+    } optional {}
+
+    /// friction that is a smooth function of position, Fc (1 + k x)
+    position_dependent_friction: PositionDependentFriction, MovingEffort, {
+        /// change per position, as a share of the level at position zero
+        linear: PER_POSITION, -100.0 => 100.0,
+    } optional {
+        /// change per position squared, as a share of the level at position zero
+        quadratic: PER_POSITION_SQUARED, -1.0e4 => 1.0e4,
+    }
+
+    /// friction that changes with time from the start of a record, as an axis warms up
+    friction_drift: FrictionDrift, MovingEffort, {
+        /// surplus of the level at the start, as a share of the warm level
+        gain: RATIO, -0.9 => 10.0,
+        /// time in which the surplus falls to 1/e
+        time_constant: TIME, 1.0e-3 => 1.0e6,
+    } optional {
+        /// surplus of the viscous friction at the start, as a share of the warm one
+        viscous_gain: RATIO, -0.9 => 10.0,
+    }
+
+    /// friction that grows with velocity squared, q v |v|
+    quadratic_drag: QuadraticDrag, MovingEffort, {
+        /// friction per velocity squared
+        quadratic_drag: DRAG, 0.0 => 1.0e7,
+    } optional {}
+
+    /// delivered effort that falls behind the commanded one as it grows, u / (1 + k |u|)
+    torque_saturation: TorqueSaturation, MovingEffort, {
+        /// k
+        torque_saturation: PER_EFFORT, 0.0 => 1.0,
+    } optional {}
+
+    /// effort that acts later than the record says
+    delay: Delay, MovingEffort, {
+        /// the time
+        delay: TIME, 0.0 => 1.0e-3,
+    } optional {}
+}
+
+impl fmt::Display for EffectName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// A word that names no effect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownEffect(pub String);
+
+impl fmt::Display for UnknownEffect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known: Vec<&str> = EffectName::ALL.iter().map(|name| name.as_str()).collect();
+        write!(
+            f,
+            "unknown effect \"{}\"; known: {}",
+            self.0,
+            known.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for UnknownEffect {}
+
+impl FromStr for EffectName {
+    type Err = UnknownEffect;
+
+    fn from_str(word: &str) -> Result<Self, UnknownEffect> {
+        let known = Self::ALL.iter().find(|name| name.as_str() == word);
+        known.copied().ok_or_else(|| UnknownEffect(word.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_name_has_words_and_parses_back() {
+        for name in EffectName::ALL {
+            assert_eq!(name.to_string().parse(), Ok(*name));
+            assert!(name.words().len() > 20, "{name}");
+            assert!(!name.parameters().is_empty(), "{name}");
+            for parameter in name.parameters() {
+                assert!(!parameter.words.trim().is_empty(), "{}", parameter.key());
+                assert!(parameter.min < parameter.max, "{}", parameter.key());
+            }
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_refused_with_those_that_are() {
+        let error = "ofset".parse::<EffectName>().unwrap_err().to_string();
+        assert!(error.starts_with("unknown effect \"ofset\"; known: inertia, viscous, coulomb"));
+    }
+
+    #[test]
+    fn no_two_parameters_share_a_name_in_a_report() {
+        let all = EffectName::ALL.iter().flat_map(|name| name.parameters());
+        let names: Vec<String> = all.map(Parameter::report_name).collect();
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+        assert!(names.contains(&"coulomb".into()));
+        assert!(names.contains(&"torque_ripple_amplitude".into()));
+    }
+}
