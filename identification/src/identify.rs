@@ -135,7 +135,7 @@ fn check_samples(
     validation: &Kinematics,
 ) -> Result<(), IdentificationError> {
     let fitted = motion.fitted.iter().filter(|fitted| **fitted).count();
-    if fitted < crate::record::dataset::FEWEST_ROWS / 2 {
+    if fitted < crate::record::checks::FEWEST_ROWS / 2 {
         return Err(IdentificationError::new(format!(
             "{}: only {fitted} moving samples are left for the fit; record longer runs, away from the effort's limit",
             dataset.name
@@ -152,7 +152,7 @@ fn check_samples(
 
 fn kinematics(
     dataset: &Dataset,
-    record: &crate::record::dataset::Record,
+    record: &crate::record::samples::Record,
 ) -> Result<Kinematics, IdentificationError> {
     Kinematics::new(dataset, record).ok_or_else(|| no_room(dataset))
 }
@@ -377,7 +377,7 @@ fn as_defined(findings: &Findings<'_>) -> Option<[Errors; 2]> {
     if !dataset.train.jittered {
         return None;
     }
-    let on = |record: &crate::record::dataset::Record| {
+    let on = |record: &crate::record::samples::Record| {
         let motion = Kinematics::with_cutoff(
             dataset,
             record,
@@ -499,7 +499,7 @@ fn curves(dataset: &Dataset, motion: &Kinematics, validation: &[Judged; 2]) -> C
         if even {
             values.to_vec()
         } else {
-            crate::record::dataset::interpolate(&motion.time_s, values, &at)
+            crate::record::time_base::interpolate(&motion.time_s, values, &at)
         }
     };
     Curves {

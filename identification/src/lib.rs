@@ -27,5 +27,6 @@ mod simulate;
 
 pub use error::IdentificationError;
 pub use identify::{declared_coulomb, identify};
-pub use record::dataset::{AxisKind, Dataset, Effort, EffortHold};
+pub use record::dataset::Dataset;
+pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::forms::{EffectCurve, Errors, FreeRunErrors, Identification, Report};

@@ -1,5 +1,20 @@
 //! Records in: dataset and CSV or bus log, checked, on one time base.
+//!
+//! ```text
+//! dataset.toml ─▶ form ─▶ key_slips (notes)
+//! train.csv    ─▶ table ─▶┐
+//! train.log    ─▶ bus_log ▶┴ reading ─▶ checks ─▶ time_base ─▶ samples ─▶ dataset
+//! ```
 
 pub(crate) mod bus_log;
+pub(crate) mod checks;
 pub(crate) mod dataset;
+pub(crate) mod extent;
+pub(crate) mod form;
+pub(crate) mod key_slips;
+pub(crate) mod reading;
+pub(crate) mod samples;
+pub(crate) mod source;
 pub(crate) mod table;
+pub(crate) mod time_base;
+pub(crate) mod units;

@@ -8,7 +8,8 @@
 
 use crate::fit::bench::Model;
 use crate::model::effects::{Named, geometric};
-use crate::record::dataset::{Dataset, Record};
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
 use crate::simulate::axis::Shape;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::model::Simulated;

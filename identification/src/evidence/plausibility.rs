@@ -4,7 +4,9 @@
 use crate::error::IdentificationError;
 use crate::evidence::selection::plain_fit;
 use crate::motion::kinematics::Kinematics;
-use crate::record::dataset::{AxisKind, Dataset, Record};
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
+use crate::record::units::AxisKind;
 use crate::simulate::controller::Law;
 
 type Outcome = Result<(), IdentificationError>;
@@ -82,7 +84,7 @@ fn inertia_share(motion: &Kinematics, inertia: f64) -> f64 {
 
 fn check_position(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     let unit = dataset.kind.position_unit();
-    let (low, high) = crate::record::dataset::range(&record.position);
+    let (low, high) = crate::record::extent::range(&record.position);
     let fastest = record
         .position
         .windows(6)

@@ -15,7 +15,9 @@ use crate::model::effects::torque_ripple::TorqueRipple;
 use crate::motion::excitation::reversals;
 use crate::motion::filter::TRIM;
 use crate::motion::kinematics::Kinematics;
-use crate::record::dataset::{AxisKind, Dataset, Record};
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
+use crate::record::units::AxisKind;
 use crate::report::forms::{RippleOrder, SlowRipple};
 
 /// An axis dwells where it has at least so many rows below the moving velocity per reversal.

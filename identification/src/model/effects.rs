@@ -5,7 +5,8 @@
 //! [`LIBRARY`].
 
 use crate::motion::kinematics::Kinematics;
-use crate::record::dataset::{AxisKind, Dataset};
+use crate::record::dataset::Dataset;
+use crate::record::units::AxisKind;
 
 pub(crate) mod coulomb;
 pub(crate) mod friction_drift;

@@ -1,7 +1,8 @@
 //! What a record cannot identify, and what to record next.
 
 use crate::motion::kinematics::Kinematics;
-use crate::record::dataset::{AxisKind, Dataset};
+use crate::record::dataset::Dataset;
+use crate::record::units::AxisKind;
 
 /// Warnings about a training record, one sentence each.
 #[must_use]

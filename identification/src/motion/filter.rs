@@ -2,7 +2,7 @@
 
 use butterworth::{Cutoff, Filter};
 
-use crate::record::dataset::Record;
+use crate::record::samples::Record;
 
 /// Rows trimmed at each end of a filtered record.
 pub(crate) const TRIM: usize = 200;

@@ -9,7 +9,9 @@
 //! themselves, linear ones from the raw derivatives.
 
 use crate::motion::filter::{LowPass, TRIM, fit_cutoff_hz};
-use crate::record::dataset::{Dataset, EffortHold, Record};
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
+use crate::record::units::EffortHold;
 
 /// Slow samples spoil their neighbours within this time.
 const SLOW_MARGIN_S: f64 = 0.020;

@@ -11,7 +11,8 @@ use can_dbc::{ByteOrder, Dbc, Signal, ValueType};
 use serde::Deserialize;
 
 use crate::error::IdentificationError;
-use crate::record::table::{Mapping, SourceForm, Table};
+use crate::record::source::{Mapping, SourceForm};
+use crate::record::table::Table;
 
 type Outcome<T> = Result<T, IdentificationError>;
 
@@ -311,8 +312,8 @@ mod tests {
         BO_ 401 Feedback: 8 A\n SG_ Position : 0|16@1- (0.5,1) [0|0] \"m\" A\n SG_ Low : 16|8@1+ (1,0) [0|0] \"m\" A\n\
         BO_ 529 Torque: 2 A\n SG_ Command : 7|16@0- (1,0) [0|0] \"Nm\" A\n";
 
-    fn form(name: &str, wraps_at: Option<f64>) -> crate::record::table::Source {
-        crate::record::table::Source::Form(SourceForm {
+    fn form(name: &str, wraps_at: Option<f64>) -> crate::record::source::Source {
+        crate::record::source::Source::Form(SourceForm {
             name: name.into(),
             scale: 2.0,
             offset: 0.0,

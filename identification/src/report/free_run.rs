@@ -2,7 +2,7 @@
 
 use crate::evidence::free_run::Reversals;
 use crate::identify::Findings;
-use crate::record::dataset::Record;
+use crate::record::samples::Record;
 use crate::report::forms::{FreeRun, FreeRunErrors, ReversalShapes};
 use crate::report::ranking;
 use crate::simulate::axis::Shape;

@@ -10,7 +10,10 @@
 //! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over
 //!   voltage is found from the record.
 
-use crate::record::dataset::{ControllerForm, Dataset, Effort, Record};
+use crate::record::dataset::Dataset;
+use crate::record::form::ControllerForm;
+use crate::record::samples::Record;
+use crate::record::units::Effort;
 
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise
 /// of the record.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Dyn};
 use super::model::{Entry, Simulated};
 use super::run::{Drive, SETTLING_ROWS, simulate};
 use crate::fit::blocks::Blocks;
-use crate::record::dataset::Record;
+use crate::record::samples::Record;
 
 /// Every so many rows is compared: positions are smooth.
 const STRIDE: usize = 5;
@@ -186,12 +186,13 @@ pub(crate) fn half_widths(model: &Simulated, drive: &Drive, record: &Record) -> 
 mod tests {
     use super::*;
     use crate::fit::bench::{Model, Term};
-    use crate::record::dataset::{AxisKind, Dataset, Effort, EffortHold};
+    use crate::record::dataset::Dataset;
+    use crate::record::units::{AxisKind, Effort, EffortHold};
     use crate::simulate::axis::Shape;
 
     /// A law on a load that was not recorded: believed, not checked.
-    fn controller() -> crate::record::dataset::ControllerForm {
-        crate::record::dataset::ControllerForm {
+    fn controller() -> crate::record::form::ControllerForm {
+        crate::record::form::ControllerForm {
             position_gain_per_s: Some(40.0),
             velocity_gain_n_s_per_m: Some(14_000.0),
             acceleration_feedforward_kg: Some(80.0),
@@ -239,7 +240,7 @@ mod tests {
     /// `acceleration` of the rows' second differences.
     fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
         let mut dataset = dataset();
-        let form = crate::record::dataset::ControllerForm {
+        let form = crate::record::form::ControllerForm {
             position_sensor: None,
             ..controller()
         };

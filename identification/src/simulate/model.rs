@@ -3,7 +3,8 @@
 use super::axis::{Acting, Shape};
 use crate::fit::bench::{Model, Term};
 use crate::model::effects::{Action, Instant, Named, Naming};
-use crate::record::dataset::{Dataset, EffortHold};
+use crate::record::dataset::Dataset;
+use crate::record::units::EffortHold;
 
 /// A term with its coefficients.
 #[derive(Clone)]

@@ -12,7 +12,8 @@ use super::axis::Axis;
 use super::controller::{self, Law};
 use super::model::Simulated;
 
-use crate::record::dataset::{Dataset, Record};
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
 
 /// Longest sub-step, s.
 const SUB_STEP_S: f64 = 2.5e-4;

@@ -6,7 +6,8 @@
 use std::f64::consts::TAU;
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
-use crate::record::dataset::{AxisKind, Dataset};
+use crate::record::dataset::Dataset;
+use crate::record::units::AxisKind;
 
 /// Cosine and sine of position.
 pub(crate) struct TorqueRipple;

@@ -1,0 +1,121 @@
+//! One file of a dataset, CSV or bus log, read into a record.
+
+use std::path::Path;
+
+use crate::error::IdentificationError;
+use crate::record::bus_log;
+use crate::record::checks;
+use crate::record::form::{DatasetForm, TimeFrom};
+use crate::record::samples::Record;
+use crate::record::table::Table;
+use crate::record::time_base::{Clock, Rows, uniform};
+use crate::record::units::Effort;
+
+type Outcome<T> = Result<T, IdentificationError>;
+
+/// The record of a file, and which effort it has.
+pub(crate) fn record(path: &Path, form: &DatasetForm) -> Outcome<(Record, Effort)> {
+    let mut table = table(path, form)?;
+    let unit = form.axis.kind.position_unit();
+    let time_s = table.take_required("time_s")?;
+    checks::rows(&table.path, time_s.len())?;
+    checks::time(&table.path, &time_s)?;
+    checks::period(&table.path, &time_s, form.sample_period_s)?;
+    let which = which_effort(&table)?;
+    let rows = Rows {
+        time_s,
+        effort: table.take_required(which.column())?,
+        position: table.take_required(&format!("position_{unit}"))?,
+        load: table.take(&format!("load_position_{unit}")),
+        reference: table.take(&format!("reference_{unit}")),
+    };
+    checks::effort(&table.path, which, &rows.effort)?;
+    let clock = Clock {
+        period_s: form.sample_period_s,
+        origin_s: match form.time_from {
+            TimeFrom::Record => rows.time_s[0],
+            TimeFrom::PowerOn => 0.0,
+        },
+    };
+    // The other columns of the file are not needed while the record is made.
+    drop(table);
+    Ok((uniform(rows, clock), which))
+}
+
+fn table(path: &Path, form: &DatasetForm) -> Outcome<Table> {
+    let is_log = path.extension().is_some_and(|extension| extension == "log");
+    match &form.bus {
+        Some(bus) if is_log => bus_log::read(path, bus, &form.columns, form.sample_period_s),
+        _ => Table::read(path)?.mapped(&form.columns),
+    }
+}
+
+fn which_effort(table: &Table) -> Outcome<Effort> {
+    let is_there = |effort: &Effort| table.header.iter().any(|name| name == effort.column());
+    let present: Vec<Effort> = Effort::ALL.into_iter().filter(is_there).collect();
+    let refused = |why: String| Err(IdentificationError::new(format!("{}:1: {why}", table.path)));
+    match present[..] {
+        [effort] => Ok(effort),
+        [] => refused(format!(
+            "no effort column; give force_n, torque_nm or current_a (the header has {})",
+            table.header.join(", ")
+        )),
+        _ => {
+            refused("more than one effort column; keep one of force_n, torque_nm, current_a".into())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(header: &str, form: &DatasetForm) -> Outcome<(Record, Effort)> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("train.csv");
+        let columns = header.split(',').count();
+        let mut text = format!("{header}\n");
+        for row in 0..2000 {
+            let time = 5.0 + 1.0e-3 * f64::from(row);
+            let rest = (1..columns).map(|column| format!(",{}", row * column as i32));
+            text.push_str(&format!("{time}{}\n", rest.collect::<String>()));
+        }
+        std::fs::write(&path, text).unwrap();
+        record(&path, form)
+    }
+
+    #[test]
+    fn columns_of_the_axis_are_taken_and_others_are_left() {
+        let header = "time_s,position_m,other,reference_m,current_a";
+        let (record, effort) = read(header, &DatasetForm::default()).unwrap();
+        assert_eq!(effort, Effort::Current);
+        assert_eq!(
+            (record.len(), record.position[10], record.effort[10]),
+            (2000, 10.0, 40.0)
+        );
+        assert_eq!(record.reference.unwrap()[10], 30.0);
+        assert_eq!((record.load, record.time_s[0]), (None, 0.0));
+    }
+
+    #[test]
+    fn time_counts_from_power_on_where_the_form_says_so() {
+        let form = DatasetForm {
+            time_from: TimeFrom::PowerOn,
+            ..DatasetForm::default()
+        };
+        let (record, _) = read("time_s,position_m,force_n", &form).unwrap();
+        assert_eq!(record.time_s[0], 5.0);
+    }
+
+    #[test]
+    fn one_effort_is_wanted_no_more_and_no_less() {
+        let error = |header: &str| {
+            read(header, &DatasetForm::default())
+                .unwrap_err()
+                .to_string()
+        };
+        let none = error("time_s,position_m");
+        assert!(none.contains("no effort column") && none.contains("time_s, position_m"));
+        assert!(error("time_s,position_m,force_n,current_a").contains("more than one effort"));
+    }
+}
