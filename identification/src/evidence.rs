@@ -3,9 +3,12 @@
 pub(crate) mod actuator;
 pub(crate) mod at_reversals;
 pub(crate) mod difference;
+pub(crate) mod findings;
 pub(crate) mod free_run;
+pub(crate) mod inverse_dynamics;
 pub(crate) mod plausibility;
 pub(crate) mod residual;
 pub(crate) mod reversal;
 pub(crate) mod selection;
 pub(crate) mod slow_ripple;
+pub(crate) mod verdict;

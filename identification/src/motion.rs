@@ -3,3 +3,4 @@
 pub(crate) mod excitation;
 pub(crate) mod filter;
 pub(crate) mod kinematics;
+pub(crate) mod motions;

@@ -1,7 +1,97 @@
-//! What is said about an identification.
+//! What is said about an identification: findings in, forms out.
+//!
+//! Nothing is decided here. [`forms`] holds the form of `identify --json` and the curves; every
+//! other file fills one part of it.
 
+use crate::evidence::findings::Findings;
+use crate::evidence::reversal;
+use crate::evidence::slow_ripple::RippleAtReversals;
+use crate::motion::{excitation, filter};
+use crate::report::forms::{Identification, Report, ResidualReport, RippleOrder, SlowRipple};
+
+pub(crate) mod curves;
+pub(crate) mod errors;
 pub(crate) mod forms;
 pub(crate) mod free_run;
+pub(crate) mod parameters;
 pub(crate) mod pictures;
 pub(crate) mod protocols;
 pub(crate) mod ranking;
+
+/// The report with its curves.
+pub(crate) fn identification(findings: &Findings<'_>) -> Identification {
+    let dataset = findings.dataset;
+    let (free_run, free_run_curve) = free_run::report(findings).unzip();
+    let report = Report {
+        free_run,
+        ..report(findings)
+    };
+    let residual = &findings.train.extended.residual;
+    Identification {
+        report,
+        curves: curves::curves(
+            findings,
+            pictures::effects(findings),
+            free_run_curve.unwrap_or_default(),
+        ),
+        travel: dataset.travel(),
+        residual_rms: reversal::rms(residual, &findings.motion.moving),
+        effort_unit: dataset.effort.unit(),
+        effort_column: dataset.effort.column(),
+        position_unit: dataset.kind.position_unit(),
+    }
+}
+
+/// The report, but for the free run, which has a curve of its own.
+fn report(findings: &Findings<'_>) -> Report {
+    let dataset = findings.dataset;
+    let found = findings.found.names();
+    Report {
+        dataset: dataset.name.clone(),
+        declared: dataset.declared.clone(),
+        candidates: ranking::candidates(findings),
+        train: errors::on_training(findings),
+        validate: errors::on_validation(findings),
+        whole: errors::on_whole(findings),
+        protocols: protocols::table(findings),
+        residual: residual(findings),
+        free_run: None,
+        slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
+        cutoff_hz: filter::fit_cutoff_hz(&dataset.train),
+        as_defined: errors::as_defined(findings),
+        parameters: parameters::parameters(findings),
+        verdict: findings.verdict.word().into(),
+        warnings: excitation::warnings(dataset, findings.motion, &found),
+        found,
+    }
+}
+
+fn residual(findings: &Findings<'_>) -> ResidualReport {
+    let (structure, white) = (findings.residual, findings.residual.is_white());
+    ResidualReport {
+        white_before: white.declared,
+        white_after: white.extended,
+        share_before: structure.share.declared,
+        share_after: structure.share.extended,
+        looks_like: findings.verdict.looks_like.clone(),
+    }
+}
+
+fn slow_ripple(ripple: &RippleAtReversals) -> SlowRipple {
+    let orders = ripple.orders.iter().map(|order| RippleOrder {
+        per_rev: order.per_rev,
+        amplitude: order.amplitude,
+        half_width: order.half_width,
+        share: order.gain.share,
+        evidence: order.gain.t,
+    });
+    SlowRipple {
+        fastest: ripple.fastest,
+        cutoff_hz: ripple.cutoff_hz,
+        orders: orders.collect(),
+        train_force_error_before_percent: ripple.train_percent.declared,
+        train_force_error_after_percent: ripple.train_percent.extended,
+        validate_force_error_before_percent: ripple.validate_percent.declared,
+        validate_force_error_after_percent: ripple.validate_percent.extended,
+    }
+}

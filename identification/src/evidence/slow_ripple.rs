@@ -8,6 +8,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::evidence::inverse_dynamics::Compared;
 use crate::evidence::selection;
 use crate::fit::bench::{Bench, Model, Term};
 use crate::fit::blocks::{Fit, Gain};
@@ -18,7 +19,35 @@ use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::record::units::AxisKind;
-use crate::report::forms::{RippleOrder, SlowRipple};
+
+/// Torque ripple of an axis that is never slow for long.
+#[derive(Clone, Debug)]
+pub(crate) struct RippleAtReversals {
+    /// Samples up to this velocity were used, in position units per second.
+    pub fastest: f64,
+    /// Low-pass of this judgement, Hz.
+    pub cutoff_hz: f64,
+    /// Orders, largest contribution first.
+    pub orders: Vec<OrderAtReversals>,
+    /// Force error over these samples, training record, percent: the declared model fitted to
+    /// them, and with the ripple.
+    pub train_percent: Compared<f64>,
+    /// The same on the validation record.
+    pub validate_percent: Compared<f64>,
+}
+
+/// One order of ripple.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OrderAtReversals {
+    /// Periods per revolution.
+    pub per_rev: u32,
+    /// Amplitude, in the unit of the effort.
+    pub amplitude: f64,
+    /// Half width of its 95 % interval.
+    pub half_width: f64,
+    /// What it removed of the held-out error when it was added.
+    pub gain: Gain,
+}
 
 /// An axis dwells where it has at least so many rows below the moving velocity per reversal.
 const DWELL_ROWS: f64 = 1.0;
@@ -45,7 +74,7 @@ pub(crate) fn slow_ripple(
     dataset: &Dataset,
     moving: &Kinematics,
     declared: &Model,
-) -> Option<SlowRipple> {
+) -> Option<RippleAtReversals> {
     let per_rev = match dataset.kind {
         AxisKind::Rotary => TAU,
         AxisKind::Linear => dataset.lead_m_per_rev?,
@@ -79,27 +108,28 @@ pub(crate) fn slow_ripple(
     let widths = half_widths[before.coefficients.len()..].chunks(2);
     let orders = pairs
         .zip(widths)
-        .map(|(((per_rev, gain), own), half)| RippleOrder {
+        .map(|(((per_rev, gain), own), half)| OrderAtReversals {
             per_rev: *per_rev,
             amplitude: own[0].hypot(own[1]),
             half_width: half[0].hypot(half[1]),
-            share: gain.share,
-            evidence: gain.t,
+            gain: *gain,
         });
-    let orders: Vec<RippleOrder> = orders
+    let orders: Vec<OrderAtReversals> = orders
         .filter(|order| order.amplitude >= WIDTHS * order.half_width)
         .collect();
     let error = |motion: &Kinematics, model: &Model, fit: &Fit| {
         Bench::new(dataset, motion).force_error_percent(model, &fit.coefficients)
     };
-    Some(SlowRipple {
+    let compared = |motion: &Kinematics| Compared {
+        declared: error(motion, declared, &before),
+        extended: error(motion, &model, &after),
+    };
+    Some(RippleAtReversals {
         fastest,
         cutoff_hz: CUTOFF_HZ,
         orders,
-        train_force_error_before_percent: error(&train, declared, &before),
-        train_force_error_after_percent: error(&train, &model, &after),
-        validate_force_error_before_percent: error(&validate, declared, &before),
-        validate_force_error_after_percent: error(&validate, &model, &after),
+        train_percent: compared(&train),
+        validate_percent: compared(&validate),
     })
     .filter(|ripple| !ripple.orders.is_empty())
 }

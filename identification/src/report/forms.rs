@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::report::protocols::Protocol;
 
-/// A candidate in the ranking.
+/// A candidate in the ranking: an effect, and what it would explain if it were added.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     /// Effect.

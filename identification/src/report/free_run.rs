@@ -1,65 +1,32 @@
-//! Free-run errors before and after, for the report.
+//! Free-run errors before and after.
+//!
+//! Both models are fitted to the positions of the training record, so that the comparison is one of
+//! structures. The declared model keeps of the shape at reversals what is declared of it.
 
-use crate::evidence::free_run::Reversals;
-use crate::identify::Findings;
+use crate::evidence::findings::Findings;
+use crate::evidence::free_run::{Judged, Reversals};
+use crate::evidence::inverse_dynamics::Compared;
 use crate::record::samples::Record;
 use crate::report::forms::{FreeRun, FreeRunErrors, ReversalShapes};
-use crate::report::ranking;
+use crate::report::parameters;
 use crate::simulate::axis::Shape;
 use crate::simulate::fit::fit;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{Drive, SETTLING_ROWS, position_rms, simulate};
+use crate::simulate::run::{Drive, Run, SETTLING_ROWS, position_rms, simulate};
 
 const MICRO: f64 = 1.0e6;
+/// Points of the picture, at most about twice as many.
+const POINTS: usize = 6000;
 
-/// Free runs of the declared and of the extended model, both fitted to the positions of the
-/// training record.
-pub(crate) fn report(
-    findings: &Findings<'_>,
-    reversals: &Reversals,
-) -> Option<(FreeRun, Vec<[f64; 3]>)> {
-    let dataset = findings.dataset;
-    let record = &dataset.train;
-    let drive = reversals.drive;
-    let extended = &reversals.best().model;
-    let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
-    let shape = Shape {
-        deflection: if declares("presliding") {
-            extended.shape.deflection
-        } else {
-            0.0
-        },
-        gap: if declares("backlash") {
-            extended.shape.gap
-        } else {
-            0.0
-        },
-        ..extended.shape
+/// The free run's chapter with its picture: time, position error declared and extended, µm (µrad).
+pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)> {
+    let reversals = findings.stages.reversals.as_ref()?;
+    let models = Compared {
+        declared: declared(findings, reversals)?,
+        extended: reversals.best().model.clone(),
     };
-    let declared = &findings.declared;
-    let start = Simulated::new(
-        dataset,
-        record.period_s,
-        &declared.model,
-        &declared.coefficients,
-        shape,
-    )?;
-    let before = fit(&start, &drive, record, &|_| true);
-    let errors = |record: &Record| {
-        let [before, after] = [&before, extended]
-            .map(|model| MICRO * position_rms(&simulate(model, &drive, record), record, &|_| true));
-        let tracking = tracking_rms(record).map(|rms| MICRO * rms);
-        FreeRunErrors {
-            position_error_um_before: before,
-            position_error_um_after: after,
-            tracking_error_percent_before: tracking.map(|rms| 100.0 * before / rms),
-            tracking_error_percent_after: tracking.map(|rms| 100.0 * after / rms),
-        }
-    };
-    let um = |judged: &crate::evidence::free_run::Judged| MICRO * judged.held_out;
-    let runs = [&before, extended].map(|model| simulate(model, &drive, &dataset.validate));
-    let curve = curve(&dataset.validate, &runs);
-    let report = FreeRun {
+    let (dataset, drive) = (findings.dataset, &reversals.drive);
+    let form = FreeRun {
         controller: match drive {
             Drive::Known(_) => "known",
             Drive::Followed => "followed",
@@ -68,31 +35,73 @@ pub(crate) fn report(
             Drive::Known(law) => Some(100.0 * law.misfit),
             Drive::Followed => None,
         },
-        train: errors(record),
-        validate: errors(&dataset.validate),
-        reversals: ReversalShapes {
-            rigid_um: um(&reversals.rigid),
-            bristle_um: um(&reversals.bristle),
-            gap_um: reversals.gap.as_ref().map(um),
-            both_um: reversals.both.as_ref().map(um),
-        },
-        parameters: ranking::table(reversals.named(dataset)),
+        train: errors(&models, drive, &dataset.train),
+        validate: errors(&models, drive, &dataset.validate),
+        reversals: shapes(reversals),
+        parameters: parameters::table(reversals.named(dataset)),
     };
-    Some((report, curve))
+    Some((form, curve(&models, drive, &dataset.validate)))
 }
 
-/// Time and both position errors, thinned for a picture.
-fn curve(record: &Record, runs: &[crate::simulate::run::Run; 2]) -> Vec<[f64; 3]> {
-    let stride = (record.len() / 6000).max(1);
-    let rows = (SETTLING_ROWS..record.len()).step_by(stride);
-    let error = |run: &crate::simulate::run::Run, row: usize| {
-        MICRO * (run.motor[row] - record.position[row])
+/// The declared model, simulated.
+fn declared(findings: &Findings<'_>, reversals: &Reversals) -> Option<Simulated> {
+    let dataset = findings.dataset;
+    let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
+    let best = reversals.best().model.shape;
+    let shape = Shape {
+        deflection: if declares("presliding") {
+            best.deflection
+        } else {
+            0.0
+        },
+        gap: if declares("backlash") { best.gap } else { 0.0 },
+        ..best
     };
+    let declared = &findings.models.declared;
+    let start = Simulated::new(
+        dataset,
+        dataset.train.period_s,
+        &declared.model,
+        &declared.coefficients,
+        shape,
+    )?;
+    Some(fit(&start, &reversals.drive, &dataset.train, &|_| true))
+}
+
+fn errors(models: &Compared<Simulated>, drive: &Drive, record: &Record) -> FreeRunErrors {
+    let um = models.each(|model| {
+        let run = simulate(model, drive, record);
+        MICRO * position_rms(&run, record, &|_| true)
+    });
+    let tracking_um = tracking_rms(record).map(|rms| MICRO * rms);
+    FreeRunErrors {
+        position_error_um_before: um.declared,
+        position_error_um_after: um.extended,
+        tracking_error_percent_before: tracking_um.map(|rms| 100.0 * um.declared / rms),
+        tracking_error_percent_after: tracking_um.map(|rms| 100.0 * um.extended / rms),
+    }
+}
+
+fn shapes(reversals: &Reversals) -> ReversalShapes {
+    let um = |judged: &Judged| MICRO * judged.held_out;
+    ReversalShapes {
+        rigid_um: um(&reversals.rigid),
+        bristle_um: um(&reversals.bristle),
+        gap_um: reversals.gap.as_ref().map(um),
+        both_um: reversals.both.as_ref().map(um),
+    }
+}
+
+fn curve(models: &Compared<Simulated>, drive: &Drive, record: &Record) -> Vec<[f64; 3]> {
+    let runs = models.each(|model| simulate(model, drive, record));
+    let stride = (record.len() / POINTS).max(1);
+    let rows = (SETTLING_ROWS..record.len()).step_by(stride);
+    let error = |run: &Run, row: usize| MICRO * (run.motor[row] - record.position[row]);
     rows.map(|row| {
         [
             record.time_s[row],
-            error(&runs[0], row),
-            error(&runs[1], row),
+            error(&runs.declared, row),
+            error(&runs.extended, row),
         ]
     })
     .collect()

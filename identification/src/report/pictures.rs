@@ -1,52 +1,76 @@
 //! Each effect that was found, against what it is best seen against.
 
-use crate::fit::bench::{Bench, Model};
-use crate::identify::Findings;
+use std::ops::Range;
+
+use crate::evidence::findings::Findings;
+use crate::fit::bench::{Bench, Model, Term};
 use crate::model::effects::Against;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::report::forms::EffectCurve;
 
-/// Points of a picture.
+/// Points of a picture, at most about twice as many.
 const POINTS: usize = 2500;
+
+/// The extended model on the training record.
+struct Picture<'a> {
+    dataset: &'a Dataset,
+    bench: Bench<'a>,
+    coefficients: &'a [f64],
+    /// What the whole model leaves, low-passed.
+    residual: Vec<f64>,
+    /// The moving samples that are shown.
+    shown: Vec<usize>,
+}
 
 /// The effects of the inverse model that were found, one picture each.
 pub(crate) fn effects(findings: &Findings<'_>) -> Vec<EffectCurve> {
-    let Findings {
-        dataset,
-        extended,
-        declared,
-        ..
-    } = findings;
+    let (declared, extended) = (&findings.models.declared, &findings.models.extended);
     let motion = extended.motion(findings.motion);
-    let bench = Bench::new(dataset, &motion);
-    let residual = bench.residual(&extended.model, &extended.coefficients);
+    let bench = Bench::new(findings.dataset, &motion);
+    let picture = Picture {
+        dataset: findings.dataset,
+        residual: bench.residual(&extended.model, &extended.coefficients),
+        bench,
+        coefficients: &extended.coefficients,
+        shown: thinned(&motion.moving),
+    };
     let mut place = 0;
-    let mut curves = Vec::new();
-    for (index, term) in extended.model.terms.iter().enumerate() {
-        let width = term.effect.width(term.parameter);
-        if index >= declared.model.terms.len() {
-            let alone = Model {
-                terms: vec![*term],
-                ..Model::default()
-            };
-            let effect = bench.predict_lp(&alone, &extended.coefficients[place..place + width]);
-            let against = values(term.effect.against(), term.parameter, &motion);
-            let rows: Vec<usize> = (0..motion.len())
-                .filter(|row| motion.moving[*row])
-                .collect();
-            let stride = (rows.len() / POINTS).max(1);
-            let point = |row: &usize| [against[*row], residual[*row] + effect[*row], effect[*row]];
-            curves.push(EffectCurve {
-                effect: term.effect.name(),
-                equation: term.effect.equation(),
-                against: label(term.effect.against(), dataset),
-                points: rows.iter().step_by(stride).map(point).collect(),
-            });
+    let places = extended.model.terms.iter().map(|term| {
+        let from = place;
+        place += term.effect.width(term.parameter);
+        (term, from..place)
+    });
+    let found = places.skip(declared.model.terms.len());
+    found.map(|(term, own)| picture.of(term, own)).collect()
+}
+
+/// Every so many of the samples inside a mask.
+fn thinned(mask: &[bool]) -> Vec<usize> {
+    let inside: Vec<usize> = (0..mask.len()).filter(|row| mask[*row]).collect();
+    let stride = (inside.len() / POINTS).max(1);
+    inside.into_iter().step_by(stride).collect()
+}
+
+impl Picture<'_> {
+    fn of(&self, term: &Term, own: Range<usize>) -> EffectCurve {
+        let alone = Model {
+            terms: vec![*term],
+            ..Model::default()
+        };
+        let effect = self.bench.predict_lp(&alone, &self.coefficients[own]);
+        let against = values(term.effect.against(), term.parameter, self.bench.motion);
+        let point = |row: &usize| {
+            let without = self.residual[*row] + effect[*row];
+            [against[*row], without, effect[*row]]
+        };
+        EffectCurve {
+            effect: term.effect.name(),
+            equation: term.effect.equation(),
+            against: label(term.effect.against(), self.dataset.kind.position_unit()),
+            points: self.shown.iter().map(point).collect(),
         }
-        place += width;
     }
-    curves
 }
 
 fn values(against: Against, parameter: f64, motion: &Kinematics) -> Vec<f64> {
@@ -62,12 +86,39 @@ fn values(against: Against, parameter: f64, motion: &Kinematics) -> Vec<f64> {
     }
 }
 
-fn label(against: Against, dataset: &Dataset) -> String {
-    let unit = dataset.kind.position_unit();
+fn label(against: Against, unit: &str) -> String {
     match against {
         Against::Velocity => format!("velocity, {unit}/s"),
         Against::Position => format!("position, {unit}"),
         Against::Period => "position within the period, periods".into(),
         Against::Time => "time, s".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_shows_samples_inside_the_mask_only_and_at_most_twice_its_points() {
+        let mask: Vec<bool> = (0..30_000).map(|row| row % 3 != 0).collect();
+        let shown = thinned(&mask);
+        assert!(shown.iter().all(|row| row % 3 != 0));
+        assert!(
+            (POINTS..2 * POINTS).contains(&shown.len()),
+            "{}",
+            shown.len()
+        );
+    }
+
+    #[test]
+    fn a_short_record_is_shown_whole() {
+        assert_eq!(thinned(&[true, false, true, true]), [0, 2, 3]);
+    }
+
+    #[test]
+    fn what_an_effect_is_shown_against_has_its_unit() {
+        assert_eq!(label(Against::Velocity, "rad"), "velocity, rad/s");
+        assert_eq!(label(Against::Position, "m"), "position, m");
     }
 }

@@ -3,8 +3,8 @@
 
 use serde::Serialize;
 
-use crate::fit::bench::{Bench, Model};
-use crate::identify::{Findings, Fitted};
+use crate::evidence::findings::Findings;
+use crate::evidence::inverse_dynamics::Compared;
 use crate::motion::filter::TRIM;
 use crate::motion::kinematics::Kinematics;
 
@@ -25,62 +25,59 @@ const DECIMATION: usize = 5;
 
 /// The table of a dataset.
 pub(crate) fn table(findings: &Findings<'_>) -> Vec<Protocol> {
-    let Findings {
-        dataset,
-        motion,
-        validation,
-        declared,
-        extended,
-        ..
-    } = findings;
+    let (dataset, motion) = (findings.dataset, findings.motion);
     let whole = dataset
         .whole()
         .and_then(|record| Kinematics::new(dataset, &record));
     let whole = whole.as_ref().unwrap_or(motion);
-    let row = |definition: &'static str, error: &dyn Fn(&Fitted) -> f64| Protocol {
-        definition,
-        declared_percent: error(declared),
-        extended_percent: error(extended),
-    };
-    let given = |fitted: &Fitted, motion: &Kinematics| {
-        error(findings, fitted, motion, &fitted.coefficients)
-    };
-    let refitted = |fitted: &Fitted, motion: &Kinematics| {
-        let seen = fitted.motion(motion);
-        let coefficients = Bench::new(dataset, &seen).fit(&fitted.model).coefficients;
-        error(findings, fitted, motion, &coefficients)
-    };
     let (all, thinned) = (with_samples(whole, 1), with_samples(whole, DECIMATION));
+    let fitted_to_training = |definition, motion: &Kinematics| {
+        let percent = findings
+            .models
+            .each(|model| model.force_error_percent(dataset, motion));
+        Protocol::new(definition, percent)
+    };
+    let fitted_to_these = |definition, motion: &Kinematics| {
+        let refitted = findings
+            .models
+            .each(|model| model.refitted(dataset, motion));
+        let percent = refitted.each(|model| model.force_error_percent(dataset, motion));
+        Protocol::new(definition, percent)
+    };
     vec![
-        row(
+        fitted_to_training(
             "moving samples of the training record, fitted to them",
-            &|fitted| given(fitted, motion),
+            motion,
         ),
-        row(
+        fitted_to_training(
             "moving samples of the validation record, fitted to the training record",
-            &|fitted| given(fitted, validation),
+            findings.validation,
         ),
-        row(
-            "moving samples of the whole file, fitted to them",
-            &|fitted| refitted(fitted, whole),
-        ),
-        row(
+        fitted_to_these("moving samples of the whole file, fitted to them", whole),
+        fitted_to_these(
             "all samples of the whole file, fitted to them: standstill counts, where friction is whatever holds",
-            &|fitted| refitted(fitted, &all),
+            &all,
         ),
-        row(
+        fitted_to_these(
             "the same, every fifth low-passed sample (as published for EMPS)",
-            &|fitted| refitted(fitted, &thinned),
+            &thinned,
         ),
     ]
 }
 
+impl Protocol {
+    const fn new(definition: &'static str, percent: Compared<f64>) -> Self {
+        Self {
+            definition,
+            declared_percent: percent.declared,
+            extended_percent: percent.extended,
+        }
+    }
+}
+
 /// The motion with every n-th sample in place of the moving ones, but for the filter's ends.
 fn with_samples(motion: &Kinematics, every: usize) -> Kinematics {
-    let rows = motion.len();
-    let mask: Vec<bool> = (0..rows)
-        .map(|row| row >= TRIM && row + TRIM < rows && row % every == 0)
-        .collect();
+    let mask = samples(motion.len(), every);
     Kinematics {
         moving: mask.clone(),
         fitted: mask,
@@ -88,13 +85,28 @@ fn with_samples(motion: &Kinematics, every: usize) -> Kinematics {
     }
 }
 
-fn error(
-    findings: &Findings<'_>,
-    fitted: &Fitted,
-    motion: &Kinematics,
-    coefficients: &[f64],
-) -> f64 {
-    let seen = fitted.motion(motion);
-    let model: &Model = &fitted.model;
-    Bench::new(findings.dataset, &seen).force_error_percent(model, coefficients)
+fn samples(rows: usize, every: usize) -> Vec<bool> {
+    (0..rows)
+        .map(|row| row >= TRIM && row + TRIM < rows && row % every == 0)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_of_the_filter_count_in_no_protocol() {
+        let all = samples(2 * TRIM + 10, 1);
+        let counted: Vec<usize> = (0..all.len()).filter(|row| all[*row]).collect();
+        assert_eq!(counted, (TRIM..TRIM + 10).collect::<Vec<usize>>());
+    }
+
+    #[test]
+    fn the_published_protocol_keeps_every_fifth_sample() {
+        let (all, fifth) = (samples(1000, 1), samples(1000, DECIMATION));
+        let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count();
+        assert_eq!(count(&fifth), count(&all).div_ceil(5));
+        assert!((0..1000).all(|row| !fifth[row] || row % 5 == 0));
+    }
 }
