@@ -8,6 +8,7 @@
 //! some or all of the same tables ([`Scope`]). `golden::check_some` holds the part of a golden
 //! table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
+pub mod architecture;
 pub mod golden;
 pub mod losses;
 pub mod matrix;

@@ -1,0 +1,58 @@
+//! Arrows point one way: no circle between files, crates or folders.
+//!
+//! `cargo run -q -p hil-tests --example circles` prints what there is, `--example shape` the length
+//! of functions.
+
+use hil_tests::architecture::crates::{self, Member};
+use hil_tests::architecture::{Graph, Sources, workspace};
+
+/// Crates whose circles are still open. In `servo` a set of parameters and the conversion of the
+/// set name each other.
+const OPEN: [&str; 3] = ["axis-model", "identification", "servo"];
+
+fn members() -> Vec<Member> {
+    crates::members(&workspace()).unwrap()
+}
+
+fn sources(member: &Member) -> Sources {
+    Sources::read(&workspace().join(&member.folder)).unwrap()
+}
+
+fn assert_no_circle(what: &str, graph: &Graph) {
+    let circles = graph
+        .circles()
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>();
+    assert!(circles.is_empty(), "{what}:\n{}", circles.join("\n"));
+}
+
+#[test]
+fn no_crate_and_no_folder_uses_one_that_uses_it() {
+    let members = members();
+    assert_no_circle("crates", &crates::between_crates(&members));
+    assert_no_circle("folders", &crates::between_folders(&members));
+}
+
+#[test]
+fn no_file_uses_one_that_uses_it() {
+    for member in members() {
+        if !OPEN.contains(&&*member.name) {
+            assert_no_circle(&member.name, &sources(&member).uses());
+        }
+    }
+}
+
+/// A search that finds no file or no use would find no circle either.
+#[test]
+fn the_search_sees_the_files_and_their_uses() {
+    let members = members();
+    let uses = |name: &str| {
+        let member = members.iter().find(|member| member.name == name).unwrap();
+        sources(member).uses().edges().count()
+    };
+    assert!(uses("identification") > 100, "{}", uses("identification"));
+    assert!(uses("workbench") > 60, "{}", uses("workbench"));
+    assert!(uses("plant-sim") > 10, "{}", uses("plant-sim"));
+    assert!(crates::between_crates(&members).edges().count() > 20);
+}
