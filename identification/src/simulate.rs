@@ -3,6 +3,8 @@
 pub(crate) mod axis;
 pub(crate) mod controller;
 pub(crate) mod fit;
+pub(crate) mod friction;
+pub(crate) mod gap;
 pub(crate) mod load;
 pub(crate) mod model;
 pub(crate) mod run;

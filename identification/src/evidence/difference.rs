@@ -82,7 +82,7 @@ impl Column {
                 path.transmitted.to_vec(),
                 motion.filter.apply(&motion.acceleration),
             ],
-            Self::Play(behind) => vec![behind.follow(position, motion.period_s).lag],
+            Self::Play(behind) => vec![behind.follow(position, motion.period_s)],
             Self::Pitch { k } => {
                 let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
                 vec![wave(f64::cos), wave(f64::sin)]
@@ -301,9 +301,7 @@ fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
     };
     // A gap is as wide as it is: its lag is subtracted, not scaled.
     let sse = |behind: Behind| {
-        let lag = behind
-            .follow(bench.path.position, bench.motion.period_s)
-            .lag;
+        let lag = behind.follow(bench.path.position, bench.motion.period_s);
         let target: Vec<f64> = bench
             .target
             .iter()

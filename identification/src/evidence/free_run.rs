@@ -10,8 +10,9 @@ use crate::fit::bench::Model;
 use crate::model::effects::{Named, geometric};
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
-use crate::simulate::axis::Shape;
+use crate::simulate::axis::{Gap, Shape};
 use crate::simulate::fit::{fit, half_widths};
+use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
 use crate::simulate::run::{Drive, position_rms, simulate};
 
@@ -166,13 +167,16 @@ pub(crate) fn reversals(
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, record.period_s, model, coefficients, shape);
     let rigid = judge.fitted(&start(Shape::default())?);
-    let damping = 30.0 * rigid.model.mass;
+    let damping = 30.0 * rigid.model.mechanics.mass;
     let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
     let bristles = bristles.into_iter().filter_map(|deflection| {
-        start(Shape {
+        let bristle = Bristle {
             deflection,
             damping,
-            ..Shape::default()
+        };
+        start(Shape {
+            bristle: Some(bristle),
+            gap: None,
         })
     });
     let bristle = judge.best(bristles.collect(), 1)?;
@@ -203,26 +207,26 @@ fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated>
         .into_iter()
         .flat_map(|restitution| MOTOR_SHARES.map(|share| (restitution, share)));
     let kinds: Vec<(f64, f64)> = kinds.collect();
-    let shapes = widths.into_iter().flat_map(|gap| {
-        kinds
-            .iter()
-            .map(move |&(restitution, motor_friction)| Shape {
-                gap,
-                load_share: 0.45,
-                motor_friction,
-                restitution,
-                ..Shape::default()
-            })
+    let shapes = widths.into_iter().flat_map(|width| {
+        kinds.iter().map(move |&(restitution, motor_friction)| Gap {
+            width,
+            load_share: 0.45,
+            motor_friction,
+            restitution,
+        })
+    });
+    let shapes = shapes.map(|gap| Shape {
+        bristle: None,
+        gap: Some(gap),
     });
     shapes.filter_map(start).collect()
 }
 
 impl Judge<'_> {
     fn decide(&self, rigid: &Judged, bristle: &Judged, gap: Option<&Judged>) -> Accepted {
-        let is_bristle =
-            bristle.model.shape.deflection >= self.smallest && bristle.is_below(rigid, RATIO);
-        let is_gap = gap
-            .is_some_and(|gap| gap.model.shape.gap >= self.smallest && gap.is_below(rigid, RATIO));
+        let is_bristle = bristle.deflection() >= self.smallest && bristle.is_below(rigid, RATIO);
+        let is_gap =
+            gap.is_some_and(|gap| gap.width() >= self.smallest && gap.is_below(rigid, RATIO));
         let wins = |one: &Judged, other: Option<&Judged>| {
             other.is_none_or(|other| one.is_below(other, RIVAL))
         };
@@ -245,25 +249,25 @@ impl Judge<'_> {
         start: &impl Fn(Shape) -> Option<Simulated>,
     ) -> Option<Judged> {
         let gap = gap.filter(|_| accepted.presliding || accepted.backlash || accepted.undecided)?;
-        let (bristle, gap) = (bristle.model.shape, gap.model.shape);
-        let Shape {
-            deflection,
-            damping,
-            ..
-        } = bristle;
+        let bristle = bristle.model.mechanics.shape.bristle?;
         let of = |width: f64, share: f64| {
-            start(Shape {
-                gap: width,
-                deflection: share * deflection,
-                damping,
+            let gap = Gap {
+                width,
                 load_share: 0.45,
                 motor_friction: 0.2,
                 restitution: 0.5,
+            };
+            start(Shape {
+                bristle: Some(Bristle {
+                    deflection: share * bristle.deflection,
+                    ..bristle
+                }),
+                gap: Some(gap),
             })
         };
         let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8)
             .into_iter()
-            .chain([gap.gap]);
+            .chain([gap.width()]);
         let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
         self.best(
             starts
@@ -281,9 +285,8 @@ impl Judge<'_> {
         gap: Option<&Judged>,
         both: &Judged,
     ) -> Accepted {
-        let shape = both.model.shape;
         let beats = |other: &Judged| both.is_below(other, RATIO);
-        let visible = shape.gap >= self.smallest && shape.deflection >= self.smallest;
+        let visible = both.width() >= self.smallest && both.deflection() >= self.smallest;
         if visible && beats(bristle) && gap.is_none_or(beats) {
             return Accepted {
                 presliding: true,
@@ -296,6 +299,17 @@ impl Judge<'_> {
 }
 
 impl Judged {
+    /// Deflection of its bristle; zero where it has none.
+    fn deflection(&self) -> f64 {
+        let bristle = self.model.mechanics.shape.bristle;
+        bristle.map_or(0.0, |bristle| bristle.deflection)
+    }
+
+    /// Width of its gap; zero where it has none.
+    fn width(&self) -> f64 {
+        self.model.mechanics.shape.gap.map_or(0.0, |gap| gap.width)
+    }
+
     fn is_below(&self, other: &Self, ratio: f64) -> bool {
         self.held_out <= ratio * other.held_out && self.all <= ratio * other.all
     }
@@ -316,9 +330,7 @@ impl Reversals {
     /// Deflection of the bristle that was accepted.
     #[must_use]
     pub(crate) fn deflection(&self) -> Option<f64> {
-        self.accepted
-            .presliding
-            .then(|| self.best().model.shape.deflection)
+        self.accepted.presliding.then(|| self.best().deflection())
     }
 
     /// Takes over what was decided with the inverse model's word beside the free run's.

@@ -47,15 +47,10 @@ pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)
 fn declared(findings: &Findings<'_>, reversals: &Reversals) -> Option<Simulated> {
     let dataset = findings.dataset;
     let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
-    let best = reversals.best().model.shape;
+    let best = reversals.best().model.mechanics.shape;
     let shape = Shape {
-        deflection: if declares("presliding") {
-            best.deflection
-        } else {
-            0.0
-        },
-        gap: if declares("backlash") { best.gap } else { 0.0 },
-        ..best
+        bristle: best.bristle.filter(|_| declares("presliding")),
+        gap: best.gap.filter(|_| declares("backlash")),
     };
     let declared = &findings.models.declared;
     let start = Simulated::new(

@@ -1,6 +1,6 @@
 //! An identified model, ready to be simulated, and its parameters as one vector.
 
-use super::axis::{Acting, Shape};
+use super::axis::{Acting, Mechanics, Shape};
 use crate::fit::bench::{Model, Term};
 use crate::model::effects::{Action, Instant, Named, Naming};
 use crate::record::dataset::Dataset;
@@ -16,16 +16,14 @@ pub(crate) struct Active {
 /// A model for free-run simulation.
 #[derive(Clone)]
 pub(crate) struct Simulated {
-    /// Moved mass.
-    pub mass: f64,
+    /// Moved mass, and what makes a reversal.
+    pub mechanics: Mechanics,
     /// Terms other than the mass.
     terms: Vec<Active>,
     /// k of `u / (1 + k |u|)`.
     pub saturation: f64,
     /// Delay beyond the hold, s.
     pub delay_s: f64,
-    /// Reversals.
-    pub shape: Shape,
     travel: (f64, f64),
     duration_s: f64,
 }
@@ -90,11 +88,10 @@ impl Simulated {
         let saturation = model.saturation.per_effort;
         let duration_s = dataset.train.period_s * dataset.train.len() as f64;
         (mass > 0.0).then_some(Self {
-            mass,
+            mechanics: Mechanics { mass, shape },
             terms,
             saturation,
             delay_s,
-            shape,
             travel: dataset.travel(),
             duration_s,
         })
@@ -142,7 +139,7 @@ impl Simulated {
             .iter()
             .find(|active| active.term.effect.name() == "coulomb");
         let force = coulomb
-            .map_or(self.mass, |active| active.own[0].abs())
+            .map_or(self.mechanics.mass, |active| active.own[0].abs())
             .max(f64::MIN_POSITIVE);
         let free = |scale: f64| Entry {
             scale,
@@ -157,7 +154,7 @@ impl Simulated {
             step: JAGGED_STEP,
             ..positive(scale)
         };
-        let mut entries = vec![positive(self.mass)];
+        let mut entries = vec![positive(self.mechanics.mass)];
         for Active { term, own } in &self.terms {
             let is_coulomb = term.effect.name() == "coulomb";
             let scales = own.iter().map(|value| value.abs().max(0.05 * force));
@@ -176,14 +173,14 @@ impl Simulated {
         }
         entries.extend((self.saturation != 0.0).then(|| positive(self.saturation)));
         entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
-        if self.shape.deflection > 0.0 {
+        if let Some(bristle) = self.mechanics.shape.bristle {
             entries.extend([
-                positive(self.shape.deflection),
-                positive(self.shape.damping.max(2.0 * self.mass)),
+                positive(bristle.deflection),
+                positive(bristle.damping.max(2.0 * self.mechanics.mass)),
             ]);
         }
-        if self.shape.gap > 0.0 {
-            entries.extend([self.shape.gap, 1.0, 1.0, 1.0].map(jagged));
+        if let Some(gap) = self.mechanics.shape.gap {
+            entries.extend([gap.width, 1.0, 1.0, 1.0].map(jagged));
         }
         entries
     }
@@ -203,9 +200,11 @@ impl Simulated {
         let mut copy = self.clone();
         let mut rest = values.iter();
         copy.visit(&mut |value| *value = rest.next().copied().unwrap_or(*value));
-        copy.shape.load_share = copy.shape.load_share.clamp(0.05, 0.95);
-        copy.shape.motor_friction = copy.shape.motor_friction.clamp(0.0, 0.95);
-        copy.shape.restitution = copy.shape.restitution.clamp(0.0, 0.98);
+        if let Some(gap) = &mut copy.mechanics.shape.gap {
+            gap.load_share = gap.load_share.clamp(0.05, 0.95);
+            gap.motor_friction = gap.motor_friction.clamp(0.0, 0.95);
+            gap.restitution = gap.restitution.clamp(0.0, 0.98);
+        }
         copy
     }
 
@@ -224,7 +223,7 @@ impl Simulated {
         };
         let mut named = vec![plain(
             "inertia",
-            self.mass,
+            self.mechanics.mass,
             next(),
             unit(&format!(" s^2/{length}")),
         )];
@@ -250,8 +249,7 @@ impl Simulated {
         if self.delay_s != 0.0 {
             named.push(plain("delay_beyond_hold", self.delay_s, next(), "s".into()));
         }
-        let shape = &self.shape;
-        if shape.deflection > 0.0 {
+        if let Some(shape) = self.mechanics.shape.bristle {
             named.push(plain(
                 "presliding_deflection",
                 shape.deflection,
@@ -265,8 +263,8 @@ impl Simulated {
                 unit(&format!(" s/{length}")),
             ));
         }
-        if shape.gap > 0.0 {
-            named.push(plain("backlash_gap", shape.gap, next(), length.into()));
+        if let Some(shape) = self.mechanics.shape.gap {
+            named.push(plain("backlash_gap", shape.width, next(), length.into()));
             named.push(plain(
                 "backlash_load_share",
                 shape.load_share,
@@ -290,7 +288,7 @@ impl Simulated {
     }
 
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
-        each(&mut self.mass);
+        each(&mut self.mechanics.mass);
         for Active { term, own } in &mut self.terms {
             own.iter_mut().for_each(&mut *each);
             if term.effect.is_tuned() {
@@ -303,15 +301,15 @@ impl Simulated {
         if self.delay_s != 0.0 {
             each(&mut self.delay_s);
         }
-        if self.shape.deflection > 0.0 {
-            each(&mut self.shape.deflection);
-            each(&mut self.shape.damping);
+        if let Some(bristle) = &mut self.mechanics.shape.bristle {
+            each(&mut bristle.deflection);
+            each(&mut bristle.damping);
         }
-        if self.shape.gap > 0.0 {
-            each(&mut self.shape.gap);
-            each(&mut self.shape.load_share);
-            each(&mut self.shape.motor_friction);
-            each(&mut self.shape.restitution);
+        if let Some(gap) = &mut self.mechanics.shape.gap {
+            each(&mut gap.width);
+            each(&mut gap.load_share);
+            each(&mut gap.motor_friction);
+            each(&mut gap.restitution);
         }
     }
 }

@@ -86,8 +86,8 @@ pub(crate) fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run
                 law.step(record, &mut memory, row, measured)
             }
             Drive::Followed => {
-                let stiffness = model.mass * SOFT_BANDWIDTH.powi(2);
-                let damping = 1.4 * model.mass * SOFT_BANDWIDTH;
+                let stiffness = model.mechanics.mass * SOFT_BANDWIDTH.powi(2);
+                let damping = 1.4 * model.mechanics.mass * SOFT_BANDWIDTH;
                 record.effort[row]
                     + stiffness * (record.position[row] - axis.motor.x)
                     + damping * (slope(row) - axis.motor.v)
@@ -105,7 +105,7 @@ pub(crate) fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run
             );
             let middle = axis.motor.x + 0.5 * h * axis.motor.v;
             let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
-            axis.advance(acting, model.mass, &model.shape, h);
+            axis = axis.after(&model.mechanics, acting, h);
         }
     }
     run

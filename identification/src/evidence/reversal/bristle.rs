@@ -1,8 +1,10 @@
-//! Dahl's bristle: `dz = (sign(dx) − z)(1 − exp(−|dx| / δ))`, force G·z (Dahl 1968).
+//! Friction with a bristle: force G·z, whose state z follows Dahl's law along the measured position
+//! ([`friction`](crate::simulate::friction)).
 
 use super::{Observed, rms};
 use crate::fit::search::golden;
 use crate::motion::kinematics::Kinematics;
+use crate::simulate::friction::bend_after;
 
 /// Deflections that are searched, in moving-velocity units times a second: 0.3 to 300 µm on a
 /// linear axis.
@@ -19,9 +21,7 @@ pub(crate) fn state(position: &[f64], deflection: f64) -> Vec<f64> {
         .map(|x| {
             let step = x - before;
             before = *x;
-            if step != 0.0 {
-                state = step.signum() + (state - step.signum()) * (-step.abs() / deflection).exp();
-            }
+            state = bend_after(state, step, deflection);
             state
         })
         .collect()
