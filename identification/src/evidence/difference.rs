@@ -80,7 +80,7 @@ impl Column {
             Self::Constant => vec![vec![1.0; motion.len()]],
             Self::WindUp => vec![
                 path.transmitted.to_vec(),
-                motion.filter.apply(&motion.acceleration),
+                motion.low_passed(&motion.acceleration),
             ],
             Self::Play(behind) => vec![behind.follow(position, motion.period_s)],
             Self::Pitch { k } => {

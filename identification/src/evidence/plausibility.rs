@@ -69,7 +69,7 @@ fn is_thousand(factor: f64) -> bool {
 
 /// Share of the effort's mean square that the inertia force has.
 fn inertia_share(motion: &Kinematics, inertia: f64) -> f64 {
-    let acceleration = motion.filter.apply(&motion.acceleration);
+    let acceleration = motion.low_passed(&motion.acceleration);
     let square = |values: &[f64], scale: f64| {
         let fitted = values
             .iter()

@@ -127,7 +127,7 @@ impl<'a> Observed<'a> {
                         .zip(signed)
                         .for_each(|(level, (c, d))| *level += coefficient * c * d);
                 } else {
-                    let column = motion.filter.apply(&column);
+                    let column = motion.low_passed(&column);
                     others
                         .iter_mut()
                         .zip(column)

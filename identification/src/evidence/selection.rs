@@ -79,7 +79,7 @@ pub(crate) fn declared_model(dataset: &Dataset) -> Model {
         .filter(|effect| names.contains(effect.name()));
     let start = |effect: &'static dyn Effect| match effect.name() {
         "stribeck" => 5.0 * dataset.kind.moving_velocity(),
-        "friction_drift" => 0.3 * dataset.train.period_s * dataset.train.len() as f64,
+        "friction_drift" => 0.3 * dataset.train.duration_s(),
         "position_dependent_friction" => 1.0,
         "torque_ripple" => dataset.lead_m_per_rev.map_or(100.0, |lead| 1.0 / lead),
         _ => 0.0,
@@ -504,7 +504,7 @@ pub(crate) struct Plain {
 /// values.
 #[must_use]
 pub(crate) fn plain_fit(motion: &Kinematics) -> Plain {
-    let lp = |column: &[f64]| motion.filter.apply(column);
+    let lp = |column: &[f64]| motion.low_passed(column);
     let ones = vec![1.0; motion.len()];
     let columns = [
         lp(&motion.acceleration),

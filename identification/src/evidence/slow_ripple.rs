@@ -14,7 +14,6 @@ use crate::fit::bench::{Bench, Model, Term};
 use crate::fit::blocks::{Fit, Gain};
 use crate::model::effects::torque_ripple::TorqueRipple;
 use crate::motion::excitation::reversals;
-use crate::motion::filter::TRIM;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
@@ -149,8 +148,7 @@ fn median_speed(motion: &Kinematics) -> f64 {
 fn slow_motion(dataset: &Dataset, record: &Record, fastest: f64) -> Option<Kinematics> {
     let motion = Kinematics::with_cutoff(dataset, record, CUTOFF_HZ)?;
     let rows = motion.len();
-    let slow =
-        |row: usize| row >= TRIM && row + TRIM < rows && motion.velocity_lp[row].abs() <= fastest;
+    let slow = |row: usize| motion.is_inside(row) && motion.velocity_lp[row].abs() <= fastest;
     let mask: Vec<bool> = (0..rows)
         .map(|row| slow(row) && !record.interpolated[row])
         .collect();

@@ -140,7 +140,7 @@ impl<'a> Bench<'a> {
             .effect
             .columns(self.motion, self.dataset, term.parameter);
         raw.iter()
-            .map(|column| self.motion.filter.apply(column))
+            .map(|column| self.motion.low_passed(column))
             .collect()
     }
 

@@ -54,6 +54,7 @@ impl LowPass {
     /// records.
     #[must_use]
     pub(crate) fn apply(&self, signal: &[f64]) -> Vec<f64> {
+        // The crate asks for a vector.
         let signal = signal.to_vec();
         self.0.bidirectional(&signal).unwrap_or(signal)
     }

@@ -158,6 +158,7 @@ mod tests {
             effort: vec![0.0; rows],
             rows: Vec::new(),
             jittered: false,
+            joints: Vec::new(),
             interpolated: vec![false; rows],
             time_s: even(rows),
         }

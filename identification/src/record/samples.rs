@@ -1,4 +1,7 @@
 //! A record: samples on a uniform time base, and the rows of the file that they were made from.
+//!
+//! A record is one piece, or several whose joints are known: windows of a longer one. Time stays
+//! true in every piece; what has a memory (a filter, a bristle, a simulation) begins again in each.
 
 use std::ops::Range;
 
@@ -25,7 +28,12 @@ pub struct Record {
     pub jittered: bool,
     /// Samples that stand in a hole of the file and were interpolated; they are not fitted.
     pub interpolated: Vec<bool>,
+    /// Samples before which time was left out on purpose: a new piece begins there.
+    pub joints: Vec<usize>,
 }
+
+/// Samples further apart than so many periods do not follow on each other.
+const NEXT_WITHIN_PERIODS: f64 = 1.5;
 
 impl Record {
     /// Number of samples.
@@ -38,6 +46,41 @@ impl Record {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// The contiguous pieces, in order: the whole record where it has no joints.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<Range<usize>> {
+        let starts = std::iter::once(0).chain(self.joints.iter().copied());
+        let ends = self.joints.iter().copied().chain([self.len()]);
+        starts.zip(ends).map(|(start, end)| start..end).collect()
+    }
+
+    /// Samples that are at least so many rows after the start of their piece.
+    pub(crate) fn settled(&self, rows: usize) -> impl Iterator<Item = usize> {
+        let after = move |piece: Range<usize>| (piece.start + rows).min(piece.end)..piece.end;
+        self.pieces().into_iter().flat_map(after)
+    }
+
+    /// Time from the first sample to the end of the last one, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        match (
+            self.joints.is_empty(),
+            self.time_s.first(),
+            self.time_s.last(),
+        ) {
+            (false, Some(first), Some(last)) => last - first + self.period_s,
+            _ => self.period_s * self.len() as f64,
+        }
+    }
+
+    /// Ranges of the record (in rising order) joined to one.
+    #[must_use]
+    pub fn windows(&self, ranges: &[Range<usize>]) -> Self {
+        let mut parts = ranges.iter().map(|range| self.part(range.clone()));
+        let first = parts.next().unwrap_or_else(|| self.part(0..0));
+        parts.fold(first, |joined, next| joined.followed_by(&next))
     }
 
     /// A part of the record; time goes on from the whole.
@@ -54,6 +97,7 @@ impl Record {
             rows: self.rows[self.row_of(range.start)..self.row_of(range.end)].to_vec(),
             interpolated: self.interpolated[range.clone()].to_vec(),
             jittered: self.jittered,
+            joints: self.joints_within(&range),
         }
     }
 
@@ -61,6 +105,9 @@ impl Record {
     #[must_use]
     pub fn split_at(mut self, sample: usize) -> (Self, Self) {
         let row = self.row_of(sample);
+        let joints = self.joints_within(&(sample..self.len()));
+        let before = self.joints_within(&(0..sample));
+        self.joints = before;
         let after = Self {
             period_s: self.period_s,
             position: self.position.split_off(sample),
@@ -71,11 +118,12 @@ impl Record {
             rows: self.rows.split_off(row),
             interpolated: self.interpolated.split_off(sample),
             jittered: self.jittered,
+            joints,
         };
         (self, after)
     }
 
-    /// This record and the one that goes on where it ends.
+    /// This record and a later one; where that does not go on at the end of this, with a joint.
     #[must_use]
     pub fn followed_by(&self, next: &Self) -> Self {
         let join = |a: &[f64], b: &[f64]| [a, b].concat();
@@ -92,7 +140,32 @@ impl Record {
             rows: [&self.rows[..], &next.rows[..]].concat(),
             interpolated: [&self.interpolated[..], &next.interpolated[..]].concat(),
             jittered: self.jittered,
+            joints: self.joints_with(next),
         }
+    }
+
+    fn joints_with(&self, next: &Self) -> Vec<usize> {
+        let step_s = match (self.time_s.last(), next.time_s.first()) {
+            (Some(last), Some(first)) => first - last,
+            _ => self.period_s,
+        };
+        let apart = step_s > NEXT_WITHIN_PERIODS * self.period_s;
+        let later = next.joints.iter().map(|joint| self.len() + joint);
+        let seam = apart.then_some(self.len());
+        self.joints
+            .iter()
+            .copied()
+            .chain(seam)
+            .chain(later)
+            .collect()
+    }
+
+    fn joints_within(&self, range: &Range<usize>) -> Vec<usize> {
+        let inside = self
+            .joints
+            .iter()
+            .filter(|joint| **joint > range.start && **joint < range.end);
+        inside.map(|joint| joint - range.start).collect()
     }
 
     /// The first row of the file that belongs to a sample: half a period before it at most. Those
@@ -127,6 +200,7 @@ mod tests {
             effort: ramp(10, -1.0),
             rows: rows.iter().map(|t| (3.001 + t, 7.0 * t)).collect(),
             jittered: true,
+            joints: Vec::new(),
             interpolated: (0..10).map(|i| i == 4).collect(),
             time_s,
         }
@@ -150,5 +224,30 @@ mod tests {
         assert_eq!(before, whole.part(0..6));
         assert_eq!(after, whole.part(6..10));
         assert_eq!(before.followed_by(&after), whole);
+    }
+
+    #[test]
+    fn windows_know_their_joints_and_keep_their_time() {
+        let windows = record().windows(&[0..3, 5..7, 7..10]);
+        assert_eq!(windows.position, [0.0, 1.0, 2.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+        // 5..7 and 7..10 go on: one piece.
+        assert_eq!(windows.pieces(), [0..3, 3..8]);
+        assert!((windows.time_s[3] - 0.5).abs() < 1.0e-12);
+        assert!((windows.duration_s() - record().duration_s()).abs() < 1.0e-12);
+        assert_eq!(windows.settled(2).collect::<Vec<_>>(), [2, 5, 6, 7]);
+    }
+
+    #[test]
+    fn parts_and_halves_keep_the_joints_that_are_inside_them() {
+        let windows = record().windows(&[0..3, 5..7, 8..10]);
+        assert_eq!(windows.joints, [3, 5]);
+        assert_eq!(windows.part(1..4).joints, [2]);
+        assert_eq!(windows.part(3..5).joints, [0; 0]);
+        let (before, after) = windows.clone().split_at(4);
+        assert_eq!(
+            (&before.joints[..], &after.joints[..]),
+            (&[3][..], &[1][..])
+        );
+        assert_eq!(before.followed_by(&after), windows);
     }
 }

@@ -73,6 +73,7 @@ fn as_it_stands(rows: Rows, period_s: f64, origin_s: f64) -> Record {
         reference: rows.reference,
         effort: rows.effort,
         jittered: false,
+        joints: Vec::new(),
     }
 }
 
@@ -91,6 +92,7 @@ fn interpolated(rows: &Rows, period_s: f64, median: f64, origin_s: f64) -> Recor
         reference: rows.reference.as_deref().map(on_base),
         effort: on_base(&rows.effort),
         jittered: jitters(&rows.time_s, median),
+        joints: Vec::new(),
         time_s: at.iter().map(|t| t - origin_s).collect(),
     }
 }

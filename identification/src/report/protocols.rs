@@ -1,12 +1,14 @@
 //! The force error by the protocols that papers use, side by side: they mix them, and the figures
 //! differ by what counts as a sample and by what was fitted.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use crate::evidence::findings::Findings;
 use crate::evidence::inverse_dynamics::Compared;
-use crate::motion::filter::TRIM;
 use crate::motion::kinematics::Kinematics;
+use crate::motion::mask::is_inside;
 
 /// A force error by one protocol, `100 ‖f − f̂‖ / ‖f‖` of low-passed efforts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -77,7 +79,7 @@ impl Protocol {
 
 /// The motion with every n-th sample in place of the moving ones, but for the filter's ends.
 fn with_samples(motion: &Kinematics, every: usize) -> Kinematics {
-    let mask = samples(motion.len(), every);
+    let mask = samples(&motion.pieces, every);
     Kinematics {
         moving: mask.clone(),
         fitted: mask,
@@ -85,26 +87,34 @@ fn with_samples(motion: &Kinematics, every: usize) -> Kinematics {
     }
 }
 
-fn samples(rows: usize, every: usize) -> Vec<bool> {
-    (0..rows)
-        .map(|row| row >= TRIM && row + TRIM < rows && row % every == 0)
+fn samples(pieces: &[Range<usize>], every: usize) -> Vec<bool> {
+    let rows = 0..pieces.last().map_or(0, |last| last.end);
+    rows.map(|row| row % every == 0 && is_inside(pieces, row))
         .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::filter::TRIM;
+
+    fn record(rows: usize) -> Vec<Range<usize>> {
+        std::iter::once(0..rows).collect()
+    }
 
     #[test]
     fn the_ends_of_the_filter_count_in_no_protocol() {
-        let all = samples(2 * TRIM + 10, 1);
+        let all = samples(&record(2 * TRIM + 10), 1);
         let counted: Vec<usize> = (0..all.len()).filter(|row| all[*row]).collect();
         assert_eq!(counted, (TRIM..TRIM + 10).collect::<Vec<usize>>());
     }
 
     #[test]
     fn the_published_protocol_keeps_every_fifth_sample() {
-        let (all, fifth) = (samples(1000, 1), samples(1000, DECIMATION));
+        let (all, fifth) = (
+            samples(&record(1000), 1),
+            samples(&record(1000), DECIMATION),
+        );
         let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count();
         assert_eq!(count(&fifth), count(&all).div_ceil(5));
         assert!((0..1000).all(|row| !fifth[row] || row % 5 == 0));

@@ -10,6 +10,8 @@
 //! - voltage: `V = Kv (Kp (r − q) − v)`, v from a two-sample mean, then differenced; effort over
 //!   voltage is found from the record.
 
+use std::ops::Range;
+
 use crate::record::dataset::Dataset;
 use crate::record::form::ControllerForm;
 use crate::record::samples::Record;
@@ -18,7 +20,7 @@ use crate::record::units::Effort;
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise
 /// of the record.
 const LARGEST_MISFIT: f64 = 0.10;
-/// Rows at each end that say nothing: the setpoint beyond them is not known.
+/// Rows at each end of a piece that say nothing: the setpoint beyond them is not known.
 const EDGE_ROWS: usize = 3;
 /// Correlation from which recorded and computed effort belong together.
 const LEAST_CORRELATION: f64 = 0.7;
@@ -102,7 +104,7 @@ impl Law {
         record.reference.as_ref()?;
         let mut law = Self::described(form)?;
         if let Form::Voltage { gain } = law.form {
-            let computed = Self { limit: None, ..law }.teacher_forced(record, law.start(record));
+            let computed = Self { limit: None, ..law }.teacher_forced(record, Self::start);
             let sums = computed.iter().zip(&record.effort);
             let (own, cross) = sums.fold((0.0, 0.0), |(own, cross), (c, e)| {
                 (own + c * c, cross + c * e)
@@ -170,7 +172,7 @@ impl Law {
         if matches!(law.form, Form::Voltage { .. }) || (law.on_load && record.load.is_none()) {
             return None;
         }
-        let computed = law.teacher_forced(record, law.at_first(record));
+        let computed = law.teacher_forced(record, Self::at_first);
         let sums = computed.iter().zip(&record.effort);
         let (cc, ce, ee) = sums.fold((0.0, 0.0, 0.0), |(cc, ce, ee), (c, e)| {
             (cc + c * c, ce + c * e, ee + e * e)
@@ -208,8 +210,19 @@ impl Law {
         }
     }
 
-    /// The effort from recorded positions.
-    fn teacher_forced(&self, record: &Record, mut memory: Memory) -> Vec<f64> {
+    /// The effort from recorded positions; each piece begins with a state of its own.
+    fn teacher_forced(&self, record: &Record, start: fn(&Self, &Record) -> Memory) -> Vec<f64> {
+        if record.joints.is_empty() {
+            return self.teacher_forced_piece(record, start(self, record));
+        }
+        let pieces = record.pieces().into_iter();
+        let parts = pieces.map(|piece| record.part(piece));
+        parts
+            .flat_map(|part| self.teacher_forced_piece(&part, start(self, &part)))
+            .collect()
+    }
+
+    fn teacher_forced_piece(&self, record: &Record, mut memory: Memory) -> Vec<f64> {
         let positions = self.measured(record);
         (0..record.len())
             .map(|row| self.step(record, &mut memory, row, positions[row]))
@@ -217,9 +230,11 @@ impl Law {
     }
 
     fn misfit_on(&self, record: &Record) -> f64 {
-        let computed = self.teacher_forced(record, self.start(record));
-        let inside = EDGE_ROWS..computed.len().saturating_sub(EDGE_ROWS);
-        let pairs = inside.map(|row| (computed[row], record.effort[row]));
+        let computed = self.teacher_forced(record, Self::start);
+        let inside =
+            |piece: Range<usize>| piece.start + EDGE_ROWS..piece.end.saturating_sub(EDGE_ROWS);
+        let rows = record.pieces().into_iter().flat_map(inside);
+        let pairs = rows.map(|row| (computed[row], record.effort[row]));
         let (error, all) = pairs.fold((0.0, 0.0), |(error, all), (c, e)| {
             (error + (c - e).powi(2), all + e * e)
         });

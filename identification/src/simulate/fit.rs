@@ -111,7 +111,8 @@ pub(crate) fn fit(
             .map(|(value, entry)| value / entry.scale),
     );
     let inside = |row: &usize| mask(*row) && !record.interpolated[*row];
-    let rows: Vec<usize> = (SETTLING_ROWS..record.len())
+    let rows: Vec<usize> = record
+        .settled(SETTLING_ROWS)
         .step_by(STRIDE)
         .filter(inside)
         .collect();
@@ -148,7 +149,7 @@ pub(crate) fn half_widths(model: &Simulated, drive: &Drive, record: &Record) -> 
         .zip(&entries)
         .map(|(value, entry)| value / entry.scale);
     let at = DVector::from_iterator(values.len(), scaled);
-    let rows: Vec<usize> = (SETTLING_ROWS..record.len()).step_by(STRIDE).collect();
+    let rows: Vec<usize> = record.settled(SETTLING_ROWS).step_by(STRIDE).collect();
     let problem = Problem {
         start: model,
         drive,
@@ -214,6 +215,7 @@ mod tests {
             effort: vec![0.0; time_s.len()],
             rows: Vec::new(),
             jittered: false,
+            joints: Vec::new(),
             interpolated: vec![false; time_s.len()],
             time_s,
         };

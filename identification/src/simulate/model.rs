@@ -86,7 +86,7 @@ impl Simulated {
         };
         let delay_s = (model.delay_s - hold_s).max(0.0);
         let saturation = model.saturation.per_effort;
-        let duration_s = dataset.train.period_s * dataset.train.len() as f64;
+        let duration_s = dataset.train.duration_s();
         (mass > 0.0).then_some(Self {
             mechanics: Mechanics { mass, shape },
             terms,

@@ -17,7 +17,7 @@ use crate::record::samples::Record;
 
 /// Longest sub-step, s.
 const SUB_STEP_S: f64 = 2.5e-4;
-/// Rows at the start that are not judged: the state there is an estimate.
+/// Rows at the start of a piece that are not judged: the state there is an estimate.
 pub(crate) const SETTLING_ROWS: usize = 300;
 /// Bandwidth of the soft controller where the real one is not known, rad/s.
 const SOFT_BANDWIDTH: f64 = 60.0;
@@ -48,9 +48,22 @@ pub(crate) struct Run {
     pub load: Vec<f64>,
 }
 
-/// Simulates a model along a record.
+/// Simulates a model along a record; at a joint the axis starts anew from where it was recorded.
 #[must_use]
 pub(crate) fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
+    if record.joints.is_empty() {
+        return simulate_piece(model, drive, record);
+    }
+    let mut run = Run::default();
+    for piece in record.pieces() {
+        let next = simulate_piece(model, drive, &record.part(piece));
+        run.motor.extend(next.motor);
+        run.load.extend(next.load);
+    }
+    run
+}
+
+fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     let rows = record.len();
     let period_s = record.period_s;
     let steps = (period_s / SUB_STEP_S).ceil().max(1.0);
@@ -123,7 +136,8 @@ fn held(efforts: &[f64], from: f64, length: f64) -> f64 {
 /// also of the load, where both are there.
 #[must_use]
 pub(crate) fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> bool) -> f64 {
-    let rows = (SETTLING_ROWS..record.len()).filter(|row| mask(*row) && !record.interpolated[*row]);
+    let settled = record.settled(SETTLING_ROWS);
+    let rows = settled.filter(|row| mask(*row) && !record.interpolated[*row]);
     let (sum, count) = rows.fold((0.0, 0.0), |(sum, count), row| {
         (
             sum + (run.motor[row] - record.position[row]).powi(2),

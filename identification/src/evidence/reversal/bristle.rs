@@ -49,8 +49,7 @@ pub(crate) fn error(observed: &Observed<'_>, deflection: f64) -> Vec<f64> {
         .collect();
     observed
         .motion
-        .filter
-        .apply(&force)
+        .low_passed(&force)
         .iter()
         .zip(&observed.friction)
         .map(|(force, seen)| seen - force)

@@ -16,7 +16,7 @@ pub(crate) fn error(observed: &Observed<'_>) -> Vec<f64> {
         .zip(&motion.direction)
         .map(|(level, d)| level * d)
         .collect();
-    let slipping = motion.filter.apply(&slipping);
+    let slipping = motion.low_passed(&slipping);
     (0..motion.len())
         .map(|at| {
             let (from, to) = (at.saturating_sub(3), (at + 3).min(motion.len() - 1));

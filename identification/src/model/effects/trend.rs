@@ -10,7 +10,7 @@ pub(crate) struct Trend;
 
 /// Time over the training record.
 fn scaled(time_s: f64, dataset: &Dataset) -> f64 {
-    time_s / (dataset.train.period_s * dataset.train.len() as f64)
+    time_s / dataset.train.duration_s()
 }
 
 impl Effect for Trend {
