@@ -1,6 +1,5 @@
 //! What a record lacks: findings on every measured output.
 
-pub(crate) mod actuator;
 pub(crate) mod at_reversals;
 pub(crate) mod difference;
 pub(crate) mod findings;

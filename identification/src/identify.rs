@@ -2,8 +2,9 @@
 //!
 //! This is the only file that sees every room. What a step does stands in its room.
 
+use axis_model::EffectName;
+
 use crate::error::IdentificationError;
-use crate::evidence::actuator::{self, Pair};
 use crate::evidence::at_reversals::{self, LoadScale, Witnesses};
 use crate::evidence::difference::{self, Difference};
 use crate::evidence::findings::{Findings, Stages};
@@ -13,7 +14,10 @@ use crate::evidence::plausibility;
 use crate::evidence::reversal;
 use crate::evidence::selection::{self, Selection};
 use crate::evidence::slow_ripple::slow_ripple;
-use crate::fit::bench::{Bench, Model};
+use crate::fit::bench::Bench;
+use crate::fit::fitted::Fitted;
+use crate::fit::tuning::{self, Pair};
+use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::{self, Motions};
 use crate::record::dataset::Dataset;
@@ -28,7 +32,7 @@ pub fn identify(
     dataset: &Dataset,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Identification, IdentificationError> {
-    let low_cutoff_hz = actuator::delay_cutoff_hz(dataset.train.period_s);
+    let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
     let motions = Motions::of(dataset, low_cutoff_hz)?;
     plausibility::check(dataset, &motions.train)?;
     let (bench, low) = (
@@ -50,8 +54,8 @@ pub fn identify(
 
 /// The declared model, its nonlinear parameters fitted.
 fn declared(pair: Pair<'_>) -> Model {
-    let mut model = selection::declared_model(pair.bench.dataset);
-    selection::prepare(pair, &mut model);
+    let mut model = Model::declared(pair.bench.dataset);
+    tuning::prepare(pair, &mut model);
     model
 }
 
@@ -65,12 +69,12 @@ fn stages(
     let (bench, dataset) = (pair.bench, pair.bench.dataset);
     progress("scoring candidate effects");
     let effort = on_effort(pair, &declared, &motions.validate, progress);
-    let coefficients = bench.fit(&effort.model).coefficients;
+    let inverse = bench.fit(&effort.model);
     progress("looking at motor and load");
-    let difference = on_difference(bench, &effort.model, &coefficients);
+    let difference = on_difference(bench, &inverse);
     progress("simulating reversals: stick, bristle, gap");
-    let presliding = reversal::presliding(bench, &effort.model, &coefficients);
-    let mut reversals = free_run::reversals(dataset, &effort.model, &coefficients);
+    let presliding = reversal::presliding(bench, &inverse);
+    let mut reversals = free_run::reversals(dataset, &inverse);
     let at_reversals = Witnesses {
         inverse: presliding,
         free_run: reversals.as_ref().map(Reversals::summary),
@@ -92,7 +96,7 @@ fn stages(
         ripple: None,
     };
     let models = models(pair, declared, &stages);
-    stages.ripple = slow_ripple(dataset, &motions.train, &models.declared.model);
+    stages.ripple = slow_ripple(dataset, &motions.train, models.declared.fitted.model());
     (stages, models)
 }
 
@@ -105,13 +109,13 @@ fn on_effort(
 ) -> Selection {
     let mut selected = selection::select(pair, declared.clone(), progress);
     let other = Bench::new(pair.bench.dataset, validate);
-    selection::veto(pair.bench, &other, &mut selected, declared.terms.len());
+    selection::veto(pair.bench, &other, &mut selected.model);
     selected
 }
 
 /// Motor − load, where there is a load scale.
-fn on_difference(bench: &Bench<'_>, model: &Model, coefficients: &[f64]) -> Option<Difference> {
-    let transmitted = bench.transmitted(model, coefficients);
+fn on_difference(bench: &Bench<'_>, fitted: &Fitted) -> Option<Difference> {
+    let transmitted = bench.transmitted(fitted);
     let path = difference::Path {
         position: &bench.dataset.train.position,
         transmitted: &transmitted,
@@ -129,7 +133,7 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
         stages.presliding.as_ref(),
         simulated.and_then(Reversals::deflection),
     );
-    let declares_bristle = dataset.declared.iter().any(|name| name == "presliding");
+    let declares_bristle = dataset.declares(EffectName::Presliding);
     let has_bristle = declares_bristle || stages.at_reversals.presliding;
     let extended = match &stages.difference {
         Some(found) if found.moves_apart() => {
@@ -149,19 +153,12 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
 /// Where the declared model has no Coulomb friction, or the record leaves nothing to fit.
 pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
     let motion = motions::of_training(dataset)?;
-    let model = selection::declared_model(dataset);
-    let place = model
-        .terms
-        .iter()
-        .position(|term| term.effect.name() == "coulomb");
-    let fit = Bench::new(dataset, &motion).fit(&model);
-    // The declared effects in front of it have one column each.
-    place
-        .and_then(|place| fit.coefficients.get(place).copied())
-        .ok_or_else(|| {
-            IdentificationError::new(format!(
-                "{}: the declared model has no Coulomb friction",
-                dataset.name
-            ))
-        })
+    let fitted = Bench::new(dataset, &motion).fit(&Model::declared(dataset));
+    let own = fitted.of(EffectName::Coulomb).and_then(<[f64]>::first);
+    own.copied().ok_or_else(|| {
+        IdentificationError::new(format!(
+            "{}: the declared model has no Coulomb friction",
+            dataset.name
+        ))
+    })
 }

@@ -3,6 +3,8 @@
 //! Nothing is decided here. [`forms`] holds the form of `identify --json` and the curves; every
 //! other file fills one part of it.
 
+use axis_model::EffectName;
+
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
@@ -45,10 +47,10 @@ pub(crate) fn identification(findings: &Findings<'_>) -> Identification {
 /// The report, but for the free run, which has a curve of its own.
 fn report(findings: &Findings<'_>) -> Report {
     let dataset = findings.dataset;
-    let found = findings.found.names();
+    let found = &findings.found;
     Report {
         dataset: dataset.name.clone(),
-        declared: dataset.declared.clone(),
+        declared: words(&dataset.declared),
         candidates: ranking::candidates(findings),
         train: errors::on_training(findings),
         validate: errors::on_validation(findings),
@@ -61,9 +63,13 @@ fn report(findings: &Findings<'_>) -> Report {
         as_defined: errors::as_defined(findings),
         parameters: parameters::parameters(findings),
         verdict: findings.verdict.word().into(),
-        warnings: excitation::warnings(dataset, findings.motion, &found),
-        found,
+        warnings: excitation::warnings(dataset, findings.motion, found.names()),
+        found: words(found.names()),
     }
+}
+
+fn words(names: &[EffectName]) -> Vec<String> {
+    names.iter().map(ToString::to_string).collect()
 }
 
 fn residual(findings: &Findings<'_>) -> ResidualReport {

@@ -403,7 +403,7 @@ fn broken_records_name_file_line_and_column() {
             &["no column position_m", "position_um"],
         ),
         (
-            "unknown declared effect",
+            "declared: unknown effect",
             record(4000, None),
             "[declared]\neffects = [\"gravity\"]\n",
             &["gravity", "known:"],

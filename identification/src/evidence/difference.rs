@@ -9,9 +9,12 @@
 
 use std::f64::consts::TAU;
 
+use axis_model::EffectName;
+
 use crate::evidence::selection::Scored;
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::search::{descend, smallest};
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::simulate::load::Behind;
@@ -31,7 +34,7 @@ const SMALLEST_RMS_COUNTS: f64 = 1.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Difference {
     /// Accepted effects, in the order in which they were found.
-    pub found: Vec<&'static str>,
+    pub found: Vec<EffectName>,
     /// All candidates.
     pub scored: Vec<Scored>,
     /// Rms that the declared model leaves, µm (or µrad).
@@ -65,12 +68,12 @@ enum Column {
 }
 
 impl Column {
-    const fn name(self) -> &'static str {
+    const fn called(self) -> Called {
         match self {
-            Self::Constant => "constant",
-            Self::WindUp => "compliance",
-            Self::Play(_) => "backlash",
-            Self::Pitch { .. } => "pitch_error",
+            Self::Constant => Called::Structure("constant"),
+            Self::WindUp => Called::Effect(EffectName::Compliance),
+            Self::Play(_) => Called::Effect(EffectName::Backlash),
+            Self::Pitch { .. } => Called::Effect(EffectName::PitchError),
         }
     }
 
@@ -157,13 +160,13 @@ pub(crate) fn difference(
     let target = motion.difference.as_deref()?;
     let bench = Bench::new(motion, path, target);
     let mut terms = vec![Column::Constant];
-    if dataset.declared.iter().any(|name| name == "compliance") {
+    if dataset.declares(EffectName::Compliance) {
         terms.push(Column::WindUp);
     }
-    if dataset.declared.iter().any(|name| name == "backlash") {
+    if dataset.declares(EffectName::Backlash) {
         terms.push(best_gap(&bench, &terms, dataset));
     }
-    if dataset.declared.iter().any(|name| name == "pitch_error") {
+    if dataset.declares(EffectName::PitchError) {
         let base = bench.fit(&terms);
         terms.extend(best_pitch(&bench, &terms, &base));
     }
@@ -184,7 +187,7 @@ pub(crate) fn difference(
         let best = candidates.iter().position(|(scored, ..)| scored.accepted);
         if let Some(best) = best {
             terms.push(candidates[best].1);
-            outcome.found.push(candidates[best].1.name());
+            outcome.found.extend(candidates[best].1.called().name());
         }
         for (place, (mut scored, ..)) in candidates.into_iter().enumerate() {
             scored.accepted = Some(place) == best;
@@ -240,7 +243,7 @@ impl Difference {
             .terms
             .iter()
             .copied()
-            .filter(|term| !self.found.contains(&term.name()))
+            .filter(|term| !self.found.iter().any(|name| term.called() == *name))
             .collect();
         Some((
             bench.rms_um(&declared, &self.declared),
@@ -267,17 +270,16 @@ fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
 }
 
 fn candidates(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset, base: &Fit) -> Vec<Column> {
-    let has = |name: &str| {
-        terms.iter().any(|term| term.name() == name) || dataset.declared.iter().any(|d| d == name)
-    };
+    let has =
+        |name: EffectName| terms.iter().any(|term| term.called() == name) || dataset.declares(name);
     let mut list = Vec::new();
-    if !has("compliance") {
+    if !has(EffectName::Compliance) {
         list.push(Column::WindUp);
     }
-    if !has("backlash") {
+    if !has(EffectName::Backlash) {
         list.push(best_gap(bench, terms, dataset));
     }
-    if !has("pitch_error") {
+    if !has(EffectName::PitchError) {
         list.extend(best_pitch(bench, terms, base));
     }
     list
@@ -421,7 +423,7 @@ fn judge(
     let accepted =
         physical && matters && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
     let scored = Scored {
-        effect: column.name(),
+        effect: column.called(),
         parameter,
         gain,
         physical,

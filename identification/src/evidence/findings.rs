@@ -5,6 +5,8 @@
 //! there ([`AtReversals`]). Motor − load judges what stands between the two ([`Difference`]). An
 //! axis that passes its reversals fast shows ripple there only ([`RippleAtReversals`]).
 
+use axis_model::EffectName;
+
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::difference::Difference;
 use crate::evidence::free_run::Reversals;
@@ -33,16 +35,15 @@ pub(crate) struct Stages {
 }
 
 /// The effects that are lacking, in the order in which they were found.
-pub(crate) struct Found(Vec<&'static str>);
+pub(crate) struct Found(Vec<EffectName>);
 
 impl Found {
     /// Each effect once, by the first output that shows it: effort, reversals, difference, effort
     /// about fast reversals. What is declared is not lacking.
-    pub(crate) fn of(stages: &Stages, declared: &[String]) -> Self {
+    pub(crate) fn of(stages: &Stages, declared: &[EffectName]) -> Self {
         let mut found = Self(Vec::new());
         for effect in stages.accepted() {
-            let is_declared = declared.iter().any(|name| name == effect);
-            if !is_declared && !found.has(effect) {
+            if !declared.contains(&effect) && !found.has(effect) {
                 found.0.push(effect);
             }
         }
@@ -50,29 +51,29 @@ impl Found {
     }
 
     /// Whether an effect is among them.
-    pub(crate) fn has(&self, effect: &str) -> bool {
+    pub(crate) fn has(&self, effect: EffectName) -> bool {
         self.0.contains(&effect)
     }
 
     /// Their names.
-    pub(crate) fn names(&self) -> Vec<String> {
-        self.0.iter().map(|name| (*name).to_owned()).collect()
+    pub(crate) fn names(&self) -> &[EffectName] {
+        &self.0
     }
 }
 
 impl Stages {
     /// What was accepted, output by output; an effect that two outputs show comes twice.
-    fn accepted(&self) -> Vec<&'static str> {
-        let mut list = self.effort.found.clone();
+    fn accepted(&self) -> Vec<EffectName> {
+        let mut list = self.effort.found();
         let AtReversals {
             presliding,
             backlash,
             ..
         } = self.at_reversals;
-        list.extend(presliding.then_some("presliding"));
-        list.extend(backlash.then_some("backlash"));
+        list.extend(presliding.then_some(EffectName::Presliding));
+        list.extend(backlash.then_some(EffectName::Backlash));
         list.extend(self.difference.iter().flat_map(|d| d.found.iter()));
-        list.extend(self.ripple.is_some().then_some("torque_ripple"));
+        list.extend(self.ripple.is_some().then_some(EffectName::TorqueRipple));
         list
     }
 }
@@ -113,9 +114,9 @@ impl<'a> Findings<'a> {
         let validate = models.each(|model| model.on(dataset, validation));
         let found = Found::of(&stages, &dataset.declared);
         let residual = ResidualStructure::of(motion, &train, &stages.effort.scored);
-        let declares_gap = dataset.declared.iter().any(|name| name == "backlash");
+        let declares_gap = dataset.declares(EffectName::Backlash);
         let left = Left {
-            nameless: &stages.effort.nameless,
+            nameless: &stages.effort.nameless(),
             residual,
             force_percent: train.extended.force_percent,
             at_reversals: stages.at_reversals.unexplained,
@@ -123,7 +124,7 @@ impl<'a> Findings<'a> {
                 .difference
                 .as_ref()
                 .is_some_and(|difference| moves_apart(dataset, difference)),
-            has_gap: declares_gap || found.has("backlash"),
+            has_gap: declares_gap || found.has(EffectName::Backlash),
         };
         let verdict = Verdict::of(&left);
         Self {

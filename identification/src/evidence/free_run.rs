@@ -6,7 +6,7 @@
 //! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
 //! rival.
 
-use crate::fit::bench::Model;
+use crate::fit::fitted::Fitted;
 use crate::model::effects::{Named, geometric};
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
@@ -147,11 +147,7 @@ const fn ordered(value: f64) -> u64 {
 /// Judges the reversals of a training record with an inverse model to start from; `None` where that
 /// has no mass or friction.
 #[must_use]
-pub(crate) fn reversals(
-    dataset: &Dataset,
-    model: &Model,
-    coefficients: &[f64],
-) -> Option<Reversals> {
+pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals> {
     let record = &dataset.train;
     let drive = Drive::of(dataset);
     let smallest = FEWEST_COUNTS * dataset.resolution;
@@ -165,7 +161,7 @@ pub(crate) fn reversals(
         smallest,
     };
     let unit = dataset.kind.moving_velocity();
-    let start = |shape: Shape| Simulated::new(dataset, record.period_s, model, coefficients, shape);
+    let start = |shape: Shape| Simulated::new(dataset, record.period_s, fitted, shape);
     let rigid = judge.fitted(&start(Shape::default())?);
     let damping = 30.0 * rigid.model.mechanics.mass;
     let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);

@@ -1,14 +1,15 @@
 //! The inverse dynamics of one structure, fitted: what the declared and the extended model become.
 //!
-//! A structure is a list of terms with a delay and an actuator ([`Model`]), and a choice of what
+//! A structure is a list of parts ([`Model`]), and a choice of what
 //! stands where friction has its sign: the sign of the velocity, or Dahl's bristle of some
 //! deflection. The bristle changes the columns, not the list of terms. So a fitted structure sees
 //! every record through [`InverseDynamics::motion`].
 
-use crate::evidence::actuator::Pair;
 use crate::evidence::reversal::{self, bristle};
-use crate::evidence::selection;
-use crate::fit::bench::{Bench, Model};
+use crate::fit::bench::Bench;
+use crate::fit::fitted::Fitted;
+use crate::fit::tuning::{self, Pair};
+use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -33,10 +34,8 @@ impl<T> Compared<T> {
 
 /// A structure with its coefficients.
 pub(crate) struct InverseDynamics {
-    /// Terms, delay and actuator.
-    pub model: Model,
-    /// Coefficients of the terms' columns.
-    pub coefficients: Vec<f64>,
+    /// The parts with their coefficients.
+    pub fitted: Fitted,
     /// Deflection of the bristle, where there is one in place of the sign.
     pub deflection: Option<f64>,
 }
@@ -58,12 +57,8 @@ impl InverseDynamics {
     /// Nonlinear parameters are refined once more then: they were found with the sign.
     pub(crate) fn fitted(pair: Pair<'_>, mut model: Model, deflection: Option<f64>) -> Self {
         let Some(width) = deflection else {
-            let coefficients = pair.bench.fit(&model).coefficients;
-            return Self {
-                model,
-                coefficients,
-                deflection,
-            };
+            let fitted = pair.bench.fit(&model);
+            return Self { fitted, deflection };
         };
         let dataset = pair.bench.dataset;
         let [motion, slow] =
@@ -73,21 +68,16 @@ impl InverseDynamics {
             bench: &bench,
             low: &low,
         };
-        selection::refine(pair, &mut model);
-        let coefficients = bench.fit(&model).coefficients;
-        Self {
-            model,
-            coefficients,
-            deflection,
-        }
+        tuning::refine(pair, &mut model);
+        let fitted = bench.fit(&model);
+        Self { fitted, deflection }
     }
 
     /// The same structure with the coefficients of another record.
     pub(crate) fn refitted(&self, dataset: &Dataset, motion: &Kinematics) -> Self {
         let seen = self.motion(motion);
         Self {
-            model: self.model.clone(),
-            coefficients: Bench::new(dataset, &seen).fit(&self.model).coefficients,
+            fitted: Bench::new(dataset, &seen).fit(self.fitted.model()),
             deflection: self.deflection,
         }
     }
@@ -103,21 +93,20 @@ impl InverseDynamics {
     /// Force error over the moving samples of a record, percent.
     pub(crate) fn force_error_percent(&self, dataset: &Dataset, motion: &Kinematics) -> f64 {
         let seen = self.motion(motion);
-        Bench::new(dataset, &seen).force_error_percent(&self.model, &self.coefficients)
+        Bench::new(dataset, &seen).force_error_percent(&self.fitted)
     }
 
     /// What it leaves of a record.
     pub(crate) fn on(&self, dataset: &Dataset, motion: &Kinematics) -> Judgement {
-        let (model, coefficients) = (&self.model, &self.coefficients);
         let plain = Bench::new(dataset, motion);
-        let reversal_rms = reversal::error_rms(&plain, model, coefficients, self.deflection);
+        let reversal_rms = reversal::error_rms(&plain, &self.fitted, self.deflection);
         let seen = self.motion(motion);
         let bench = Bench::new(dataset, &seen);
         Judgement {
-            force_percent: bench.force_error_percent(model, coefficients),
+            force_percent: bench.force_error_percent(&self.fitted),
             reversal_rms: reversal_rms.unwrap_or(0.0),
-            residual: bench.residual(model, coefficients),
-            prediction: bench.predict(model, coefficients),
+            residual: bench.residual(&self.fitted),
+            prediction: bench.predict(&self.fitted),
         }
     }
 }

@@ -9,7 +9,10 @@
 pub(crate) mod bristle;
 pub(crate) mod stick;
 
-use crate::fit::bench::{Bench, Model};
+use axis_model::EffectName;
+
+use crate::fit::bench::Bench;
+use crate::fit::fitted::{Fitted, Term};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -53,16 +56,12 @@ pub(crate) struct Presliding {
 /// Judges presliding for a model; `None` where the model has no Coulomb friction or the record no
 /// reversals.
 #[must_use]
-pub(crate) fn presliding(
-    bench: &Bench<'_>,
-    model: &Model,
-    coefficients: &[f64],
-) -> Option<Presliding> {
+pub(crate) fn presliding(bench: &Bench<'_>, fitted: &Fitted) -> Option<Presliding> {
     let motion = bench.motion;
     if motion.slow.iter().filter(|slow| **slow).count() < 200 {
         return None;
     }
-    let observed = Observed::new(bench, model, coefficients)?;
+    let observed = Observed::new(bench, fitted)?;
     let rigid = stick::error(&observed);
     let (deflection, bristle) = bristle::best(&observed, bench.dataset.kind.moving_velocity());
     let t = block_t(&motion.slow, &rigid, &bristle);
@@ -82,11 +81,10 @@ pub(crate) fn presliding(
 #[must_use]
 pub(crate) fn error_rms(
     bench: &Bench<'_>,
-    model: &Model,
-    coefficients: &[f64],
+    fitted: &Fitted,
     deflection: Option<f64>,
 ) -> Option<f64> {
-    let observed = Observed::new(bench, model, coefficients)?;
+    let observed = Observed::new(bench, fitted)?;
     let error = match deflection {
         Some(deflection) => bristle::error(&observed, deflection),
         None => stick::error(&observed),
@@ -110,24 +108,22 @@ fn encoder_resolution(dataset: &Dataset) -> f64 {
 }
 
 impl<'a> Observed<'a> {
-    fn new(bench: &Bench<'a>, model: &Model, coefficients: &[f64]) -> Option<Self> {
+    fn new(bench: &Bench<'a>, fitted: &Fitted) -> Option<Self> {
+        fitted.of(EffectName::Coulomb)?;
         let motion = bench.motion;
         let mut level = vec![0.0; motion.len()];
         let mut others = vec![0.0; motion.len()];
-        let mut rest = coefficients.iter();
-        let mut has_coulomb = false;
-        for term in &model.terms {
-            has_coulomb |= term.effect.name() == "coulomb";
-            for column in term.effect.columns(motion, bench.dataset, term.parameter) {
-                let coefficient = rest.next()?;
-                if term.effect.is_level() {
+        for Term { part, own } in fitted.terms() {
+            let columns = part.effect.columns(motion, bench.dataset, part.parameter);
+            for (column, coefficient) in columns.iter().zip(own) {
+                if part.effect.is_level() {
                     let signed = column.iter().zip(&motion.direction);
                     level
                         .iter_mut()
                         .zip(signed)
                         .for_each(|(level, (c, d))| *level += coefficient * c * d);
                 } else {
-                    let column = motion.low_passed(&column);
+                    let column = motion.low_passed(column);
                     others
                         .iter_mut()
                         .zip(column)
@@ -142,7 +138,7 @@ impl<'a> Observed<'a> {
             .map(|(effort, others)| effort - others)
             .collect();
         let resolution = encoder_resolution(bench.dataset);
-        has_coulomb.then_some(Self {
+        Some(Self {
             motion,
             level,
             friction,

@@ -6,13 +6,16 @@
 //! t alone does not (false candidates reached 14, because gains sit in few blocks). Figures:
 //! docs/identification.md.
 
-use crate::evidence::actuator::{self, Pair};
-use crate::fit::bench::{Bench, Model, Saturation, Term};
+use axis_model::EffectName;
+
+use crate::fit::bench::Bench;
 use crate::fit::blocks::{Blocks, Fit, Gain};
-use crate::fit::search::{descend, smallest};
-use crate::model::effects::{Effect, Fitted, LIBRARY, Setting};
+use crate::fit::fitted::{Estimate, Fitted};
+use crate::fit::tuning::{self, Pair};
+use crate::model::effects::{self, Effect, LIBRARY, Setting};
+use crate::model::inverse::{Model, Origin, Part};
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
-use crate::record::dataset::Dataset;
 
 /// Smallest share of the held-out error.
 pub(crate) const SHARE: f64 = 0.05;
@@ -34,7 +37,7 @@ const MOST: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scored {
     /// Effect.
-    pub effect: &'static str,
+    pub effect: Called,
     /// Nonlinear parameter.
     pub parameter: f64,
     /// Gain on held-out blocks.
@@ -54,96 +57,33 @@ pub(crate) struct Scored {
 pub(crate) struct Selection {
     /// The model with everything that was accepted.
     pub model: Model,
-    /// Accepted effects, in the order in which they were found.
-    pub found: Vec<&'static str>,
-    /// Structures without a name that were found.
-    pub nameless: Vec<&'static str>,
     /// All candidates of all rounds.
     pub scored: Vec<Scored>,
 }
 
-/// The declared terms of the inverse model.
-#[must_use]
-pub(crate) fn declared_model(dataset: &Dataset) -> Model {
-    // Coulomb asymmetry and offset are the same force: one column stands for both.
-    let column = |name: &String| {
-        if name == "coulomb_asymmetry" {
-            "offset".to_owned()
-        } else {
-            name.clone()
-        }
-    };
-    let names: std::collections::BTreeSet<String> = dataset.declared.iter().map(column).collect();
-    let known = LIBRARY
-        .into_iter()
-        .filter(|effect| names.contains(effect.name()));
-    let start = |effect: &'static dyn Effect| match effect.name() {
-        "stribeck" => 5.0 * dataset.kind.moving_velocity(),
-        "friction_drift" => 0.3 * dataset.train.duration_s(),
-        "position_dependent_friction" => 1.0,
-        "torque_ripple" => dataset.lead_m_per_rev.map_or(100.0, |lead| 1.0 / lead),
-        _ => 0.0,
-    };
-    Model {
-        terms: known
-            .map(|effect| Term {
-                effect,
-                parameter: start(effect),
-            })
-            .collect(),
-        ..Model::default()
+impl Selection {
+    /// Accepted effects, in the order in which they were found.
+    #[must_use]
+    pub(crate) fn found(&self) -> Vec<EffectName> {
+        self.model
+            .found()
+            .into_iter()
+            .filter_map(Called::name)
+            .collect()
     }
-}
 
-/// Fits what the declared model has beyond linear coefficients.
-pub(crate) fn prepare(pair: Pair<'_>, model: &mut Model) {
-    let declared = |name: &str| {
-        pair.bench
-            .dataset
-            .declared
-            .iter()
-            .any(|declared| declared == name)
-    };
-    if declared("delay") {
-        model.delay_s = actuator::best_delay(pair.low, model, 2.5e-4);
-    }
-    if declared("torque_saturation") {
-        *model = actuator::with_saturation(pair.bench, model, None);
-    }
-    for at in 0..model.terms.len() {
-        start_term(pair.bench, model, at);
-    }
-    refine(pair, model);
-}
-
-/// Puts the nonlinear parameter of a declared term where the others leave the least.
-fn start_term(bench: &Bench<'_>, model: &mut Model, at: usize) {
-    let mut others = model.clone();
-    let term = others.terms.remove(at);
-    let residual = bench.residual(&others, &bench.fit(&others).coefficients);
-    let setting = Setting {
-        dataset: bench.dataset,
-        residual: &residual,
-    };
-    let grid = term.effect.grid(bench.motion, &setting);
-    if grid.len() > 1 {
-        let best = smallest(grid, &|parameter| {
-            bench.sse(&model.with_parameter(at, parameter))
-        });
-        model.terms[at].parameter = best.unwrap_or(term.parameter);
+    /// Structures without a name that were found.
+    #[must_use]
+    pub(crate) fn nameless(&self) -> Vec<Called> {
+        let found = self.model.found().into_iter();
+        found.filter(|called| called.name().is_none()).collect()
     }
 }
 
 /// Forward selection on a record, from the declared model. `progress` hears of every round.
 pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
-    let start = Start {
-        terms: start.terms.len(),
-        delay: start.delay_s != 0.0,
-        saturation: start.saturates(),
-        model: start,
-    };
     let mut selection = Selection {
-        model: start.model.clone(),
+        model: start,
         ..Selection::default()
     };
     for round in 0..MOST {
@@ -160,14 +100,6 @@ pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str
                 scored.effect,
                 100.0 * scored.gain.share
             ));
-            let list = if scored.nameless {
-                &mut selection.nameless
-            } else {
-                &mut selection.found
-            };
-            if !list.contains(&scored.effect) {
-                list.push(scored.effect);
-            }
             selection.model = model.clone();
         }
         selection
@@ -176,46 +108,26 @@ pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str
         if best.is_none() {
             break;
         }
-        refine(pair, &mut selection.model);
+        tuning::refine(pair, &mut selection.model);
     }
-    remove(pair.bench, &mut selection, &start);
+    remove(pair.bench, &mut selection.model);
     selection
 }
 
 /// Everything that a model could have besides, judged.
 fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model)> {
     let bench = pair.bench;
-    let base = bench.fit(model);
-    let residual = bench.residual(model, &base.coefficients);
+    let base = bench.cross_validate(model);
+    let residual = bench.residual(&bench.fit(model));
     let setting = Setting {
         dataset: bench.dataset,
         residual: &residual,
     };
-    let mut candidates: Vec<(Scored, Model)> = LIBRARY
+    LIBRARY
         .into_iter()
-        .filter(|effect| is_open(*effect, model, bench.dataset))
-        .filter_map(|effect| candidate(bench, model, &base, effect, &setting, round))
-        .collect();
-    if model.delay_s == 0.0 {
-        candidates.push(actuator::delay_candidate(pair, model, &base, round));
-    }
-    if !model.saturates() {
-        candidates.push(actuator::saturation_candidate(pair, model, &base, round));
-    }
-    candidates
-}
-
-fn is_open(effect: &'static dyn Effect, model: &Model, dataset: &Dataset) -> bool {
-    let present = model
-        .terms
-        .iter()
-        .any(|term| term.effect.name() == effect.name());
-    let declared = dataset.declared.iter().any(|name| name == effect.name());
-    if effect.repeats() {
-        true
-    } else {
-        !declared && !present
-    }
+        .filter(|effect| effect.repeats() || !model.has(effect.called()))
+        .filter_map(|effect| candidate(pair, model, &base, effect, &setting, round))
+        .collect()
 }
 
 fn is_accepted(scored: &Scored) -> bool {
@@ -229,76 +141,42 @@ fn is_accepted(scored: &Scored) -> bool {
 
 /// Whether what was fitted differs from zero: asked where the gain sits in few blocks.
 fn is_certain(bench: &Bench<'_>, scored: &Scored, model: &Model) -> bool {
-    if scored.gain.t >= CERTAIN_T {
-        return true;
-    }
-    let coefficients = bench.fit(model).coefficients;
-    let half_widths = bench.half_widths(model, &coefficients);
-    match scored.effect {
-        "torque_saturation" => half_widths
-            .saturation
-            .is_some_and(|half| half < model.saturation.per_effort),
-        "delay" => half_widths.delay_s.is_some_and(|half| half < model.delay_s),
-        _ => {
-            let width = model
-                .terms
-                .last()
-                .map_or(0, |term| term.effect.width(term.parameter));
-            let own = coefficients
-                .iter()
-                .zip(&half_widths.linear)
-                .rev()
-                .take(width);
-            own.into_iter().any(|(value, half)| value.abs() > *half)
-        }
-    }
+    let certain = || {
+        let estimates = bench.estimates(&bench.fit(model));
+        estimates.last().is_some_and(Estimate::is_certain)
+    };
+    scored.gain.t >= CERTAIN_T || certain()
 }
 
 /// Drops effects that make the error on another record larger by more than a little: what holds on
 /// one record only is no effect of the axis.
-pub(crate) fn veto(
-    bench: &Bench<'_>,
-    other: &Bench<'_>,
-    selection: &mut Selection,
-    declared: usize,
-) {
-    let error = |model: &Model| {
-        let coefficients = bench.fit(model).coefficients;
-        other.force_error_percent(model, &coefficients)
-    };
-    let mut at = declared;
-    while at < selection.model.terms.len() {
-        let mut without = selection.model.clone();
-        let name = without.terms.remove(at).effect.name();
-        if error(&selection.model) <= VETO * error(&without) {
-            at += 1;
-            continue;
+pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, model: &mut Model) {
+    let error = |model: &Model| other.force_error_percent(&bench.fit(model));
+    prune(model, &|full, without| error(full) <= VETO * error(without));
+}
+
+/// Drops what the later ones have made superfluous.
+fn remove(bench: &Bench<'_>, model: &mut Model) {
+    prune(model, &|full, without| {
+        let gain = Gain::of(&bench.cross_validate(without), &bench.cross_validate(full));
+        gain.share >= SHARE && gain.percent >= PERCENT
+    });
+}
+
+/// Drops the parts that were found and, one after the other, are not worth keeping: `keeps` is
+/// asked with the full model and with the model without the part.
+fn prune(model: &mut Model, keeps: &dyn Fn(&Model, &Model) -> bool) {
+    let asked: Vec<Part> = model
+        .outwards()
+        .into_iter()
+        .map(|place| model.parts[place].clone())
+        .filter(|part| part.origin == Origin::Found)
+        .collect();
+    for part in asked {
+        let without = model.without(&part);
+        if !keeps(model, &without) {
+            *model = without;
         }
-        selection.model = without;
-        if !selection.model.has(name) {
-            selection.found.retain(|found| *found != name);
-            selection.nameless.retain(|found| *found != name);
-        }
-    }
-    let undelayed = Model {
-        delay_s: 0.0,
-        ..selection.model.clone()
-    };
-    if selection.found.contains(&"delay") && error(&selection.model) > VETO * error(&undelayed) {
-        selection.found.retain(|found| *found != "delay");
-        selection.model = undelayed;
-    }
-    let ideal = Model {
-        saturation: Saturation::default(),
-        ..selection.model.clone()
-    };
-    if selection.found.contains(&"torque_saturation")
-        && error(&selection.model) > VETO * error(&ideal)
-    {
-        selection
-            .found
-            .retain(|found| *found != "torque_saturation");
-        selection.model = ideal;
     }
 }
 
@@ -310,182 +188,72 @@ pub(crate) fn is_enough(gain: &Gain) -> bool {
             .any(|(from, smallest)| gain.share >= *from && gain.t >= *smallest)
 }
 
-fn with(model: &Model, effect: &'static dyn Effect, parameter: f64) -> Model {
-    let mut model = model.clone();
-    model.terms.push(Term { effect, parameter });
-    model
-}
-
 fn candidate(
-    bench: &Bench<'_>,
+    pair: Pair<'_>,
     model: &Model,
     base: &Fit,
     effect: &'static dyn Effect,
     setting: &Setting<'_>,
     round: usize,
 ) -> Option<(Scored, Model)> {
-    let fixed = bench.design(model);
-    let sse = |parameter: f64| {
-        bench
-            .blocks(&bench.extended(&fixed, &Term { effect, parameter }))
-            .fit()
-            .sse
+    let extended = tuning::extended(pair, model, effect, setting)?;
+    let parameter = extended.parts.last()?.parameter;
+    let fit = pair.bench.cross_validate(&extended);
+    let mut gain = Gain::of(base, &fit);
+    if effect.is_judged_slow_too() {
+        let low = tuning::settled(pair.low, extended.clone(), effect);
+        let slow = Gain::of(
+            &pair.low.cross_validate(model),
+            &pair.low.cross_validate(&low),
+        );
+        gain.share = gain.share.min(slow.share);
+        gain.t = gain.t.min(slow.t);
+    }
+    let fitted = Fitted::new(extended, &fit.coefficients);
+    let scored = Scored {
+        effect: effect.called(),
+        parameter,
+        gain,
+        physical: is_physical(effect, parameter, &fitted),
+        accepted: false,
+        nameless: effect.is_nameless(),
+        round,
     };
-    let bounds = effect.bounds(bench.motion);
-    let inside = |k: &f64| !effect.is_tuned() || (*k >= bounds.0 && *k <= bounds.1);
-    let known = |k: &f64| inside(k) && is_new(bench, model, effect, *k);
-    let grid: Vec<f64> = effect
-        .grid(bench.motion, setting)
-        .into_iter()
-        .filter(known)
-        .collect();
-    // Nothing on the grid: the record cannot show the effect.
-    let start = smallest(grid, &sse)?;
-    let parameter = descend(start, effect.refine_step(bench.motion, start), bounds, &sse);
-    let extended = with(model, effect, parameter);
-    let fit = bench.fit(&extended);
-    let own = &fit.coefficients[base.coefficients.len().min(fit.coefficients.len())..];
-    let physical = effect.is_physical(&Fitted {
+    Some((scored, fitted.into_model()))
+}
+
+/// Whether the last part of a fitted model can be its effect.
+fn is_physical(effect: &dyn Effect, parameter: f64, fitted: &Fitted) -> bool {
+    // Without friction of its kind in the model nothing is too large beside it.
+    let first = |name| {
+        let own = fitted.of(name).and_then(<[f64]>::first);
+        own.copied().unwrap_or(f64::INFINITY)
+    };
+    let own = fitted.terms().next_back().map_or(&[][..], |term| term.own);
+    effect.is_physical(&effects::Fitted {
+        parameter,
         own,
-        coulomb: coefficient_of(model, bench, &fit, "coulomb"),
-        viscous: coefficient_of(model, bench, &fit, "viscous"),
-    });
-    let gain = Gain::of(base, &fit);
-    let nameless = effect.is_nameless();
-    Some((
-        Scored {
-            effect: effect.name(),
-            parameter,
-            gain,
-            physical,
-            accepted: false,
-            nameless,
-            round,
-        },
-        extended,
-    ))
-}
-
-/// A repeated ripple must have another wave number than the ones already found.
-fn is_new(bench: &Bench<'_>, model: &Model, effect: &'static dyn Effect, parameter: f64) -> bool {
-    let (low, high) = bench.motion.span();
-    let width = if effect.name() == "torque_ripple" {
-        2.0 / (high - low)
-    } else {
-        2.0 / bench.motion.duration_s()
-    };
-    let same = model
-        .terms
-        .iter()
-        .filter(|term| term.effect.name() == effect.name());
-    !effect.repeats()
-        || same
-            .into_iter()
-            .all(|term| (term.parameter - parameter).abs() > width)
-}
-
-fn coefficient_of(model: &Model, bench: &Bench<'_>, fit: &Fit, name: &str) -> f64 {
-    let mut place = 0;
-    for term in &model.terms {
-        if term.effect.name() == name {
-            return fit.coefficients.get(place).copied().unwrap_or(0.0);
-        }
-        place += term
-            .effect
-            .columns(bench.motion, bench.dataset, term.parameter)
-            .len();
-    }
-    f64::INFINITY
-}
-
-/// Joint refinement of all nonlinear parameters: without it the grid's coarseness leaves residuals
-/// that look like other effects.
-pub(crate) fn refine(pair: Pair<'_>, model: &mut Model) {
-    let bench = pair.bench;
-    for _ in 0..2 {
-        for at in 0..model.terms.len() {
-            let term = model.terms[at];
-            let step = 0.3 * term.effect.refine_step(bench.motion, term.parameter);
-            if step > 0.0 {
-                let sse = |parameter: f64| bench.sse(&model.with_parameter(at, parameter));
-                model.terms[at].parameter =
-                    descend(term.parameter, step, term.effect.bounds(bench.motion), &sse);
-            }
-        }
-        if model.delay_s != 0.0 {
-            model.delay_s = actuator::best_delay(pair.low, model, model.delay_s);
-        }
-        if model.saturates() {
-            *model = actuator::with_saturation(bench, model, Some(model.saturation.per_effort));
-        }
-    }
+        coulomb: first(EffectName::Coulomb),
+        viscous: first(EffectName::Viscous),
+    })
 }
 
 /// The model with the load's own inertia, where that lowers the held-out error: for an axis whose
 /// load moves otherwise than its motor.
 #[must_use]
 pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
-    let extended = with(
-        model,
-        &crate::model::effects::load_inertia::LoadInertia,
-        0.0,
-    );
+    let extended = model.with(Part::found(&effects::load_inertia::LoadInertia, 0.0));
     if bench.motion.load_acceleration.is_none() {
         return model.clone();
     }
-    let gain = Gain::of(&bench.fit(model), &bench.fit(&extended));
+    let gain = Gain::of(
+        &bench.cross_validate(model),
+        &bench.cross_validate(&extended),
+    );
     if gain.share >= SHARE && gain.t >= T[0].1 {
         extended
     } else {
         model.clone()
-    }
-}
-
-/// What stood at the start of a selection, and is not removed.
-struct Start {
-    terms: usize,
-    delay: bool,
-    saturation: bool,
-    model: Model,
-}
-
-/// Drops what the later ones have made superfluous.
-fn remove(bench: &Bench<'_>, selection: &mut Selection, start: &Start) {
-    let matters = |without: &Model, full: &Model| {
-        let gain = Gain::of(&bench.fit(without), &bench.fit(full));
-        gain.share >= SHARE && gain.percent >= PERCENT
-    };
-    let mut at = start.terms;
-    while at < selection.model.terms.len() {
-        let mut without = selection.model.clone();
-        let name = without.terms.remove(at).effect.name();
-        if matters(&without, &selection.model) {
-            at += 1;
-            continue;
-        }
-        selection.model = without;
-        if !selection.model.has(name) {
-            selection.found.retain(|found| *found != name);
-            selection.nameless.retain(|found| *found != name);
-        }
-    }
-    let undelayed = Model {
-        delay_s: 0.0,
-        ..selection.model.clone()
-    };
-    if !start.delay && selection.model.delay_s != 0.0 && !matters(&undelayed, &selection.model) {
-        selection.found.retain(|found| *found != "delay");
-        selection.model = undelayed;
-    }
-    let ideal = Model {
-        saturation: Saturation::default(),
-        ..selection.model.clone()
-    };
-    if !start.saturation && selection.model.saturates() && !matters(&ideal, &selection.model) {
-        selection
-            .found
-            .retain(|found| *found != "torque_saturation");
-        selection.model = ideal;
     }
 }
 

@@ -10,9 +10,11 @@ use std::f64::consts::TAU;
 
 use crate::evidence::inverse_dynamics::Compared;
 use crate::evidence::selection;
-use crate::fit::bench::{Bench, Model, Term};
+use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
+use crate::fit::fitted::Fitted;
 use crate::model::effects::torque_ripple::TorqueRipple;
+use crate::model::inverse::{Model, Part};
 use crate::motion::excitation::reversals;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
@@ -95,33 +97,33 @@ pub(crate) fn slow_ripple(
         return None;
     }
     let bench = Bench::new(dataset, &train);
-    let before = bench.fit(declared);
+    let before = bench.cross_validate(declared);
     let (model, after, found) = add_orders(&bench, declared.clone(), before.clone(), per_rev);
     if found.is_empty() {
         return None;
     }
-    let half_widths = bench.blocks(&bench.design(&model)).half_widths();
-    let pairs = found
-        .iter()
-        .zip(after.coefficients[before.coefficients.len()..].chunks(2));
-    let widths = half_widths[before.coefficients.len()..].chunks(2);
-    let orders = pairs
-        .zip(widths)
-        .map(|(((per_rev, gain), own), half)| OrderAtReversals {
+    let before = Fitted::new(declared.clone(), &before.coefficients);
+    let after = Fitted::new(model, &after.coefficients);
+    let widths = bench.estimates_of_coefficients(&after);
+    let orders = found.iter().zip(widths.iter().skip(declared.parts.len()));
+    let orders = orders.map(|((per_rev, gain), estimate)| {
+        let (own, half): (Vec<f64>, Vec<f64>) = estimate.own.iter().copied().unzip();
+        OrderAtReversals {
             per_rev: *per_rev,
             amplitude: own[0].hypot(own[1]),
             half_width: half[0].hypot(half[1]),
             gain: *gain,
-        });
+        }
+    });
     let orders: Vec<OrderAtReversals> = orders
         .filter(|order| order.amplitude >= WIDTHS * order.half_width)
         .collect();
-    let error = |motion: &Kinematics, model: &Model, fit: &Fit| {
-        Bench::new(dataset, motion).force_error_percent(model, &fit.coefficients)
+    let error = |motion: &Kinematics, fitted: &Fitted| {
+        Bench::new(dataset, motion).force_error_percent(fitted)
     };
     let compared = |motion: &Kinematics| Compared {
-        declared: error(motion, declared, &before),
-        extended: error(motion, &model, &after),
+        declared: error(motion, &before),
+        extended: error(motion, &after),
     };
     Some(RippleAtReversals {
         fastest,
@@ -195,15 +197,12 @@ fn add_orders(
     let (mut model, mut fit, mut found) = (start, fit, Vec::<(u32, Gain)>::new());
     while found.len() < MOST {
         let design = bench.design(&model);
-        let term = |order: u32| Term {
-            effect: &TorqueRipple,
-            parameter: f64::from(order) / per_rev,
-        };
+        let part = |order: u32| Part::found(&TorqueRipple, f64::from(order) / per_rev);
         let open =
             (1..=HIGHEST_ORDER).filter(|order| found.iter().all(|(known, _)| known != order));
         let judged = open.map(|order| {
             let fit_with = bench
-                .blocks(&bench.extended_once(&design, &term(order)))
+                .blocks(&bench.extended_once(&design, &part(order)))
                 .cross_validate();
             (Gain::of(&fit, &fit_with), order, fit_with)
         });
@@ -211,15 +210,13 @@ fn add_orders(
             .filter(|(gain, ..)| gain.share >= selection::SHARE && selection::is_enough(gain))
             .collect();
         judged.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
-        let agreed = judged.into_iter().find(|(_, order, _)| {
-            let mut model = model.clone();
-            model.terms.push(term(*order));
-            agree(bench.dataset, &halves, &model)
-        });
+        let agreed = judged
+            .into_iter()
+            .find(|(_, order, _)| agree(bench.dataset, &halves, &model.with(part(*order))));
         let Some((gain, order, better)) = agreed else {
             break;
         };
-        model.terms.push(term(order));
+        model = model.with(part(order));
         fit = better;
         found.push((order, gain));
     }
@@ -229,11 +226,9 @@ fn add_orders(
 /// Whether both halves see the last order of a model with about the same amplitude and phase.
 fn agree(dataset: &Dataset, halves: &[Kinematics; 2], model: &Model) -> bool {
     let [one, other] = halves.each_ref().map(|motion| {
-        let coefficients = Bench::new(dataset, motion).fit(model).coefficients;
-        [
-            coefficients[coefficients.len() - 2],
-            coefficients[coefficients.len() - 1],
-        ]
+        let fitted = Bench::new(dataset, motion).fit(model);
+        let last = fitted.terms().next_back();
+        last.map_or([0.0; 2], |term| [term.own[0], term.own[1]])
     });
     let apart = f64::hypot(one[0] - other[0], one[1] - other[1]);
     let mean = 0.5 * f64::hypot(one[0] + other[0], one[1] + other[1]);

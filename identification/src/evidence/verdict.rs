@@ -15,6 +15,7 @@ use crate::evidence::residual::{
     self, Structure, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE,
 };
 use crate::evidence::selection::Scored;
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -81,7 +82,7 @@ pub(crate) fn moves_apart(dataset: &Dataset, difference: &Difference) -> bool {
 #[derive(Clone, Debug)]
 pub(crate) struct Left<'a> {
     /// Structures that were found and have no name.
-    pub nameless: &'a [&'static str],
+    pub nameless: &'a [Called],
     /// Structure in the residual of moving samples.
     pub residual: ResidualStructure,
     /// Force error of the extended model, percent.
@@ -203,7 +204,7 @@ mod tests {
             (none(), true, ""),
             (
                 Left {
-                    nameless: &["force over time"],
+                    nameless: &[Called::Structure("force over time")],
                     ..none()
                 },
                 false,
@@ -285,7 +286,10 @@ mod tests {
     #[test]
     fn what_is_left_is_told_in_the_order_of_the_stages() {
         let left = Left {
-            nameless: &["force over position", "drifting force"],
+            nameless: &[
+                Called::Structure("force over position"),
+                Called::Structure("drifting force"),
+            ],
             residual: residual(0.2),
             at_reversals: true,
             apart: true,

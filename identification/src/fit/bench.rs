@@ -1,91 +1,21 @@
 //! A model on a record: low-passed columns, fit, prediction.
 //!
-//! The inverse model is `u = h(Σ θ · column)`, seen `delay` later, where h is the actuator: `q / (1
-//! − k |q|)` undoes a delivered effort of `u / (1 + k |u|)`. With k = 0 the fit is linear;
-//! otherwise it is linearised about an earlier fit (Gauss–Newton), so that blocks and
-//! cross-validation stay those of a linear fit. The saturation is put on the prediction, never on
-//! the recorded effort: noise in a regressor would look like an effect.
+//! The inverse model is `u = h(Σ θ · column)`, seen `delay` later, where h is the actuator
+//! ([`crate::model::inverse`]). With an ideal actuator the fit is linear. Otherwise it is
+//! linearised about an earlier fit (Gauss–Newton), so that blocks and cross-validation stay those
+//! of a linear fit.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::fit::blocks::{Blocks, Fit};
-use crate::model::effects::Effect;
+use crate::fit::fitted::{Estimate, Fitted, Term};
+use crate::model::effects::torque_saturation::Saturation;
+use crate::model::inverse::{Model, Part};
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
-
-/// An effect with its nonlinear parameter.
-#[derive(Clone, Copy)]
-pub(crate) struct Term {
-    /// Which effect.
-    pub effect: &'static dyn Effect,
-    /// Its nonlinear parameter.
-    pub parameter: f64,
-}
-
-/// Actuator whose delivered effort falls behind.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Saturation {
-    /// k of `u / (1 + k |u|)`, one over the unit of the effort.
-    pub per_effort: f64,
-    /// Coefficients about which the fit is linearised.
-    pub about: Vec<f64>,
-}
-
-/// The largest k·|q| that is followed; beyond it the inverse runs away.
-const LARGEST_LOSS: f64 = 0.8;
-
-impl Saturation {
-    /// Commanded effort for a wanted one.
-    #[must_use]
-    pub(crate) fn commanded(&self, wanted: f64) -> f64 {
-        wanted / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS))
-    }
-
-    /// Delivered effort for a commanded one.
-    #[must_use]
-    pub(crate) fn delivered(&self, commanded: f64) -> f64 {
-        commanded / (1.0 + self.per_effort * commanded.abs())
-    }
-
-    fn slope(&self, wanted: f64) -> f64 {
-        1.0 / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS)).powi(2)
-    }
-}
-
-/// An inverse model: terms, delay and actuator.
-#[derive(Clone, Default)]
-pub(crate) struct Model {
-    /// Terms; the declared ones first.
-    pub terms: Vec<Term>,
-    /// The recorded effort acts this much later than the record says, s.
-    pub delay_s: f64,
-    /// Actuator.
-    pub saturation: Saturation,
-}
-
-impl Model {
-    /// The model with another nonlinear parameter of a term.
-    #[must_use]
-    pub(crate) fn with_parameter(&self, at: usize, parameter: f64) -> Self {
-        let mut model = self.clone();
-        model.terms[at].parameter = parameter;
-        model
-    }
-
-    /// Whether the actuator falls behind.
-    #[must_use]
-    pub(crate) fn saturates(&self) -> bool {
-        self.saturation.per_effort != 0.0
-    }
-
-    /// Whether a term of this name is in it.
-    #[must_use]
-    pub(crate) fn has(&self, name: &str) -> bool {
-        self.terms.iter().any(|term| term.effect.name() == name)
-    }
-}
 
 /// Columns and target of a linear (or linearised) fit.
 #[derive(Clone, Debug)]
@@ -94,19 +24,6 @@ pub(crate) struct Design {
     target: Vec<f64>,
     slope: Option<Vec<f64>>,
     shift_rows: f64,
-}
-
-/// Half widths of 95 % intervals.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct HalfWidths {
-    /// Per coefficient.
-    pub linear: Vec<f64>,
-    /// Per term: of its nonlinear parameter, where it has one.
-    pub parameters: Vec<Option<f64>>,
-    /// Of the delay.
-    pub delay_s: Option<f64>,
-    /// Of the saturation.
-    pub saturation: Option<f64>,
 }
 
 type Columns = Rc<Vec<Vec<f64>>>;
@@ -118,7 +35,7 @@ pub(crate) struct Bench<'a> {
     pub dataset: &'a Dataset,
     /// The motion.
     pub motion: &'a Kinematics,
-    kept: RefCell<HashMap<(&'static str, u64), Columns>>,
+    kept: RefCell<HashMap<(Called, u64), Columns>>,
 }
 
 /// Values that are kept before all are forgotten: 32 MB.
@@ -135,22 +52,25 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn low_passed(&self, term: &Term) -> Vec<Vec<f64>> {
-        let raw = term
-            .effect
-            .columns(self.motion, self.dataset, term.parameter);
-        raw.iter()
-            .map(|column| self.motion.low_passed(column))
-            .collect()
+    /// Raw columns of a part.
+    fn raw(&self, part: &Part) -> Vec<Vec<f64>> {
+        let effect = part.effect;
+        effect.columns(self.motion, self.dataset, part.parameter)
     }
 
-    /// Low-passed columns of a term.
-    fn columns(&self, term: &Term) -> Columns {
-        let key = (term.effect.name(), term.parameter.to_bits());
+    fn low_passed(&self, part: &Part) -> Vec<Vec<f64>> {
+        let raw = self.raw(part);
+        let low_passed = |column: &Vec<f64>| self.motion.low_passed(column);
+        raw.iter().map(low_passed).collect()
+    }
+
+    /// Low-passed columns of a part.
+    fn columns(&self, part: &Part) -> Columns {
+        let key = (part.called(), part.parameter.to_bits());
         if let Some(known) = self.kept.borrow().get(&key) {
             return Rc::clone(known);
         }
-        let columns: Columns = Rc::new(self.low_passed(term));
+        let columns: Columns = Rc::new(self.low_passed(part));
         let mut kept = self.kept.borrow_mut();
         let values: usize = kept
             .values()
@@ -163,42 +83,46 @@ impl<'a> Bench<'a> {
         columns
     }
 
+    /// Rows by which the columns of a model are seen later.
+    fn shift_rows(&self, model: &Model) -> f64 {
+        model.delay_s() / self.motion.period_s
+    }
+
     /// Columns and target of a model.
     #[must_use]
     pub(crate) fn design(&self, model: &Model) -> Design {
-        let shift_rows = model.delay_s / self.motion.period_s;
-        let mut columns = Vec::new();
-        for term in &model.terms {
-            columns.extend(
-                self.columns(term)
-                    .iter()
-                    .map(|column| shifted(column, shift_rows)),
-            );
+        let shift_rows = self.shift_rows(model);
+        let (mut columns, mut about) = (Vec::new(), vec![0.0; self.motion.len()]);
+        for part in &model.parts {
+            let own = self.columns(part);
+            let from = columns.len();
+            columns.extend(own.iter().map(|column| shifted(column, shift_rows)));
+            add(&mut about, &columns[from..], &part.about);
         }
-        let target = self.motion.effort_lp.clone();
         let linear = Design {
             columns,
-            target,
+            target: self.motion.effort_lp.clone(),
             slope: None,
             shift_rows,
         };
-        if model.saturation.per_effort == 0.0 {
+        let saturation = model.saturation();
+        if saturation.is_ideal() {
             linear
         } else {
-            linear.about(&model.saturation)
+            linear.about(saturation, &about)
         }
     }
 
-    /// A design with one more term.
+    /// A design with one more part.
     #[must_use]
-    pub(crate) fn extended(&self, design: &Design, term: &Term) -> Design {
-        Self::with_columns(design, &self.columns(term))
+    pub(crate) fn extended(&self, design: &Design, part: &Part) -> Design {
+        Self::with_columns(design, &self.columns(part))
     }
 
-    /// The same for a term that will not be asked for again: nothing is kept.
+    /// The same for a part that will not be asked for again: nothing is kept.
     #[must_use]
-    pub(crate) fn extended_once(&self, design: &Design, term: &Term) -> Design {
-        Self::with_columns(design, &self.low_passed(term))
+    pub(crate) fn extended_once(&self, design: &Design, part: &Part) -> Design {
+        Self::with_columns(design, &self.low_passed(part))
     }
 
     fn with_columns(design: &Design, columns: &[Vec<f64>]) -> Design {
@@ -206,10 +130,7 @@ impl<'a> Bench<'a> {
         for column in columns {
             let mut column = shifted(column, design.shift_rows);
             if let Some(slope) = &design.slope {
-                column
-                    .iter_mut()
-                    .zip(slope)
-                    .for_each(|(value, slope)| *value *= slope);
+                multiply(&mut column, slope);
             }
             design.columns.push(column);
         }
@@ -228,72 +149,56 @@ impl<'a> Bench<'a> {
         )
     }
 
-    /// Fit of a model with its held-out errors.
+    /// A model with the coefficients that leave least.
     #[must_use]
-    pub(crate) fn fit(&self, model: &Model) -> Fit {
+    pub(crate) fn fit(&self, model: &Model) -> Fitted {
+        let coefficients = self.blocks(&self.design(model)).fit().coefficients;
+        Fitted::new(model.clone(), &coefficients)
+    }
+
+    /// Errors of a model on blocks that were held out of its fit.
+    #[must_use]
+    pub(crate) fn cross_validate(&self, model: &Model) -> Fit {
         self.blocks(&self.design(model)).cross_validate()
     }
 
-    /// Half widths of 95 % intervals of everything that was fitted: the columns' own and,
+    /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
     /// linearised, the nonlinear parameters.
     #[must_use]
-    pub(crate) fn half_widths(&self, model: &Model, coefficients: &[f64]) -> HalfWidths {
-        let mut design = self.design(model);
+    pub(crate) fn estimates(&self, fitted: &Fitted) -> Vec<Estimate> {
+        let model = fitted.model();
+        let tuned = |place: &usize| model.parts[*place].effect.is_tuned();
+        let tuned: Vec<usize> = model.outwards().into_iter().filter(tuned).collect();
+        self.estimates_with(fitted, &tuned)
+    }
+
+    /// The same where the nonlinear parameters are known.
+    #[must_use]
+    pub(crate) fn estimates_of_coefficients(&self, fitted: &Fitted) -> Vec<Estimate> {
+        self.estimates_with(fitted, &[])
+    }
+
+    fn estimates_with(&self, fitted: &Fitted, tuned: &[usize]) -> Vec<Estimate> {
+        let mut design = self.design(fitted.model());
         let columns = design.columns.len();
-        let mut slope = |step: f64, moved: &dyn Fn(f64) -> Model| {
-            let [up, down] = [step, -step].map(|step| self.predict_lp(&moved(step), coefficients));
-            design.columns.push(
-                up.iter()
-                    .zip(&down)
-                    .map(|(up, down)| (up - down) / (2.0 * step))
-                    .collect(),
-            );
-        };
-        let tuned: Vec<usize> = (0..model.terms.len())
-            .filter(|at| model.terms[*at].effect.is_tuned())
-            .collect();
-        for at in &tuned {
-            let parameter = model.terms[*at].parameter;
-            slope(1.0e-4 * parameter, &|step| {
-                model.with_parameter(*at, parameter + step)
-            });
-        }
-        if model.delay_s != 0.0 {
-            slope(1.0e-5, &|step| Model {
-                delay_s: model.delay_s + step,
-                ..model.clone()
-            });
-        }
-        let Saturation { per_effort, about } = &model.saturation;
-        if model.saturates() {
-            let moved = |step: f64| Saturation {
-                per_effort: per_effort + step,
-                about: about.clone(),
-            };
-            slope(1.0e-3 * per_effort, &|step| Model {
-                saturation: moved(step),
-                ..model.clone()
-            });
-        }
-        let all = self.blocks(&design).half_widths();
-        let (linear, rest) = all.split_at(columns);
-        let mut rest = rest.iter().copied();
-        let mut parameters = vec![None; model.terms.len()];
-        for at in tuned {
-            parameters[at] = rest.next();
-        }
-        let delay_s = if model.delay_s == 0.0 {
-            None
-        } else {
-            rest.next()
-        };
-        let saturation = if model.saturates() { rest.next() } else { None };
-        HalfWidths {
-            linear: linear.to_vec(),
-            parameters,
-            delay_s,
-            saturation,
-        }
+        let slopes = tuned.iter().map(|place| self.derivative(fitted, *place));
+        design.columns.extend(slopes);
+        let half_widths = self.blocks(&design).half_widths();
+        let (own, parameters) = half_widths.split_at(columns);
+        fitted.estimates(own, |place| {
+            let among = tuned.iter().position(|tuned| *tuned == place)?;
+            Some(parameters[among])
+        })
+    }
+
+    /// Derivative of the prediction by the nonlinear parameter of a part; low-passed.
+    fn derivative(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
+        let part = &fitted.model().parts[place];
+        let step = part.effect.derivative_step(part.parameter);
+        let [up, down] = [step, -step]
+            .map(|step| self.predict_lp(&fitted.with_parameter(place, part.parameter + step)));
+        let pairs = up.iter().zip(&down);
+        pairs.map(|(up, down)| (up - down) / (2.0 * step)).collect()
     }
 
     /// Sum of squares that a model leaves in the sample.
@@ -302,83 +207,63 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).fit().sse
     }
 
+    /// Prediction from the columns of each part.
+    fn predicted(&self, fitted: &Fitted, columns: impl Fn(&Part) -> Columns) -> Vec<f64> {
+        let shift_rows = self.shift_rows(fitted.model());
+        let mut wanted = vec![0.0; self.motion.len()];
+        for term in fitted.terms() {
+            let columns = columns(term.part);
+            let later: Vec<Vec<f64>> = columns.iter().map(|c| shifted(c, shift_rows)).collect();
+            add(&mut wanted, &later, term.own);
+        }
+        let saturation = fitted.model().saturation();
+        wanted.iter().map(|q| saturation.commanded(*q)).collect()
+    }
+
     /// Prediction in the low-passed domain.
     #[must_use]
-    pub(crate) fn predict_lp(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let linear = Model {
-            saturation: Saturation::default(),
-            ..model.clone()
-        };
-        let wanted = weighted(
-            &self.design(&linear).columns,
-            coefficients,
-            self.motion.len(),
-        );
-        wanted
-            .into_iter()
-            .map(|q| model.saturation.commanded(q))
-            .collect()
+    pub(crate) fn predict_lp(&self, fitted: &Fitted) -> Vec<f64> {
+        self.predicted(fitted, |part| self.columns(part))
+    }
+
+    /// Prediction that is not low-passed.
+    #[must_use]
+    pub(crate) fn predict(&self, fitted: &Fitted) -> Vec<f64> {
+        self.predicted(fitted, |part| Rc::new(self.raw(part)))
     }
 
     /// What the motor gives to the load side, but for its own mass: the delivered effort without
     /// what acts on the motor itself (ripple); low-passed.
     #[must_use]
-    pub(crate) fn transmitted(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let commanded = shifted(
-            &self.motion.effort_lp,
-            -model.delay_s / self.motion.period_s,
-        );
-        let mut transmitted: Vec<f64> = commanded
-            .into_iter()
-            .map(|u| model.saturation.delivered(u))
-            .collect();
-        let mut rest = coefficients.iter();
-        for term in &model.terms {
-            for column in self.columns(term).iter() {
-                let coefficient = rest.next().copied().unwrap_or(0.0);
-                if term.effect.acts_on_motor() {
-                    transmitted
-                        .iter_mut()
-                        .zip(column)
-                        .for_each(|(sum, value)| *sum -= coefficient * value);
-                }
+    pub(crate) fn transmitted(&self, fitted: &Fitted) -> Vec<f64> {
+        let commanded = shifted(&self.motion.effort_lp, -self.shift_rows(fitted.model()));
+        let saturation = fitted.model().saturation();
+        let delivered = commanded.into_iter().map(|u| saturation.delivered(u));
+        let mut transmitted: Vec<f64> = delivered.collect();
+        let on_motor = |term: &Term<'_>| term.part.effect.acts_on_motor();
+        for term in fitted.terms().filter(on_motor) {
+            for (column, coefficient) in self.columns(term.part).iter().zip(term.own) {
+                let pairs = transmitted.iter_mut().zip(column);
+                pairs.for_each(|(sum, value)| *sum -= coefficient * value);
             }
         }
         transmitted
     }
 
-    /// Prediction that is not low-passed.
-    #[must_use]
-    pub(crate) fn predict(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let raw = model.terms.iter().flat_map(|term| {
-            term.effect
-                .columns(self.motion, self.dataset, term.parameter)
-        });
-        let shift_rows = model.delay_s / self.motion.period_s;
-        let columns: Vec<Vec<f64>> = raw.map(|column| shifted(&column, shift_rows)).collect();
-        let wanted = weighted(&columns, coefficients, self.motion.len());
-        wanted
-            .into_iter()
-            .map(|q| model.saturation.commanded(q))
-            .collect()
-    }
-
     /// Residual in the low-passed domain.
     #[must_use]
-    pub(crate) fn residual(&self, model: &Model, coefficients: &[f64]) -> Vec<f64> {
-        let predicted = self.predict_lp(model, coefficients);
-        self.motion
-            .effort_lp
-            .iter()
-            .zip(predicted)
+    pub(crate) fn residual(&self, fitted: &Fitted) -> Vec<f64> {
+        let predicted = self.predict_lp(fitted);
+        let pairs = self.motion.effort_lp.iter().zip(predicted);
+        pairs
             .map(|(effort, predicted)| effort - predicted)
             .collect()
     }
 
     /// Force error over moving samples, percent.
     #[must_use]
-    pub(crate) fn force_error_percent(&self, model: &Model, coefficients: &[f64]) -> f64 {
-        let residual = self.residual(model, coefficients);
+    pub(crate) fn force_error_percent(&self, fitted: &Fitted) -> f64 {
+        let residual = self.residual(fitted);
         let norm = |values: &[f64]| {
             let moving = values
                 .iter()
@@ -391,18 +276,15 @@ impl<'a> Bench<'a> {
 }
 
 impl Design {
-    /// The design of a saturating actuator, linearised: `u − h(q0) + h'(q0) q0 = h'(q0) q`.
-    fn about(mut self, saturation: &Saturation) -> Self {
-        let wanted = weighted(&self.columns, &saturation.about, self.target.len());
+    /// The design of a saturating actuator, linearised about a wanted effort q0:
+    /// `u − h(q0) + h'(q0) q0 = h'(q0) q`.
+    fn about(mut self, saturation: Saturation, wanted: &[f64]) -> Self {
         let slope: Vec<f64> = wanted.iter().map(|q| saturation.slope(*q)).collect();
-        for ((target, q), slope) in self.target.iter_mut().zip(&wanted).zip(&slope) {
+        for ((target, q), slope) in self.target.iter_mut().zip(wanted).zip(&slope) {
             *target += slope * q - saturation.commanded(*q);
         }
         for column in &mut self.columns {
-            column
-                .iter_mut()
-                .zip(&slope)
-                .for_each(|(value, slope)| *value *= slope);
+            multiply(column, &slope);
         }
         Self {
             slope: Some(slope),
@@ -411,14 +293,18 @@ impl Design {
     }
 }
 
-fn weighted(columns: &[Vec<f64>], coefficients: &[f64], rows: usize) -> Vec<f64> {
-    let mut sum = vec![0.0; rows];
-    for (column, coefficient) in columns.iter().zip(coefficients) {
+/// Adds weighted columns to a sum.
+fn add(sum: &mut [f64], columns: &[Vec<f64>], weights: &[f64]) {
+    for (column, weight) in columns.iter().zip(weights) {
         sum.iter_mut()
             .zip(column)
-            .for_each(|(sum, value)| *sum += coefficient * value);
+            .for_each(|(sum, value)| *sum += weight * value);
     }
-    sum
+}
+
+fn multiply(column: &mut [f64], by: &[f64]) {
+    let pairs = column.iter_mut().zip(by);
+    pairs.for_each(|(value, by)| *value *= by);
 }
 
 /// A band-limited signal seen `by` samples later; cubic Lagrange interpolation.

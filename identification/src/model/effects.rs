@@ -4,11 +4,15 @@
 //! with its grid, and a test whether what was fitted is physical. Adding one touches its file and
 //! [`LIBRARY`].
 
+use axis_model::EffectName;
+
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 
 pub(crate) mod coulomb;
+pub(crate) mod delay;
 pub(crate) mod friction_drift;
 pub(crate) mod hum;
 pub(crate) mod inertia;
@@ -19,6 +23,7 @@ pub(crate) mod quadratic_drag;
 pub(crate) mod spring;
 pub(crate) mod stribeck;
 pub(crate) mod torque_ripple;
+pub(crate) mod torque_saturation;
 pub(crate) mod trend;
 pub(crate) mod viscous;
 pub(crate) mod viscous_asymmetry;
@@ -35,6 +40,8 @@ pub(crate) struct Setting<'a> {
 /// What was fitted so far, for the physical test.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fitted<'a> {
+    /// The nonlinear parameter.
+    pub parameter: f64,
     /// Coefficients of this effect's columns.
     pub own: &'a [f64],
     /// Coulomb coefficient of the same fit.
@@ -162,10 +169,21 @@ pub(crate) enum Against {
     Time,
 }
 
+/// Where between motion and recorded effort an effect acts, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Stage {
+    /// A force: columns of the regression.
+    Force,
+    /// When the effort acts.
+    Time,
+    /// What the drive makes of a command.
+    Actuator,
+}
+
 /// An effect of the inverse model.
 pub(crate) trait Effect: Sync {
-    /// Name, as in the interface.
-    fn name(&self) -> &'static str;
+    /// What it is called.
+    fn called(&self) -> Called;
 
     /// The equation, for people.
     fn equation(&self) -> &'static str;
@@ -174,7 +192,9 @@ pub(crate) trait Effect: Sync {
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, parameter: f64) -> Vec<Vec<f64>>;
 
     /// What it does to a simulated axis; `own` are the coefficients of its columns.
-    fn action(&self, at: &Instant, parameter: f64, own: &[f64]) -> Action;
+    fn action(&self, _at: &Instant, _parameter: f64, _own: &[f64]) -> Action {
+        Action::default()
+    }
 
     /// Number of columns at a nonlinear parameter.
     fn width(&self, _parameter: f64) -> usize {
@@ -191,8 +211,44 @@ pub(crate) trait Effect: Sync {
         vec![0.0]
     }
 
-    /// First step of the refinement about a value; zero where there is nothing to refine.
-    fn refine_step(&self, _motion: &Kinematics, _parameter: f64) -> f64 {
+    /// Start value of the nonlinear parameter where a dataset declares the effect.
+    fn start(&self, _dataset: &Dataset) -> f64 {
+        0.0
+    }
+
+    /// Whether a declared effect of another name is the same column.
+    fn stands_for(&self, _declared: EffectName) -> bool {
+        false
+    }
+
+    /// Where between motion and recorded effort it acts.
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    /// Whether it must hold at the lower cut-off too: quantisation that comes back through the loop
+    /// imitates it at the higher one.
+    fn is_judged_slow_too(&self) -> bool {
+        false
+    }
+
+    /// First step of the descent about the best of the grid; zero where there is nothing to refine.
+    fn first_step(&self, _motion: &Kinematics, _parameter: f64) -> f64 {
+        0.0
+    }
+
+    /// First step of the joint refinement with other effects: what the grid left is small by then.
+    fn later_step(&self, motion: &Kinematics, parameter: f64) -> f64 {
+        0.3 * self.first_step(motion, parameter)
+    }
+
+    /// Step of the derivative by the nonlinear parameter, for its interval.
+    fn derivative_step(&self, parameter: f64) -> f64 {
+        1.0e-4 * parameter
+    }
+
+    /// How far apart the nonlinear parameters of two of its kind must be, where it repeats.
+    fn least_distance(&self, _motion: &Kinematics) -> f64 {
         0.0
     }
 
@@ -213,6 +269,11 @@ pub(crate) trait Effect: Sync {
 
     /// Whether it acts on the motor and its screw rather than on the load.
     fn acts_on_motor(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a mass in motion: a simulation has it in its state, not among the forces.
+    fn is_mass(&self) -> bool {
         false
     }
 
@@ -237,7 +298,7 @@ pub(crate) trait Effect: Sync {
 }
 
 /// Every effect of the inverse model; the first four are the usual declared ones.
-pub(crate) static LIBRARY: [&dyn Effect; 13] = [
+pub(crate) static LIBRARY: [&dyn Effect; 15] = [
     &inertia::Inertia,
     &viscous::Viscous,
     &coulomb::Coulomb,
@@ -251,39 +312,15 @@ pub(crate) static LIBRARY: [&dyn Effect; 13] = [
     &spring::Spring,
     &hum::Hum,
     &trend::Trend,
+    &delay::Delay,
+    &torque_saturation::TorqueSaturation,
 ];
 
-/// Effects that are not columns of the inverse model: found by their own stage.
-pub(crate) const OTHERS: [&str; 7] = [
-    "coulomb_asymmetry",
-    "presliding",
-    "backlash",
-    "compliance",
-    "pitch_error",
-    "torque_saturation",
-    "delay",
-];
-
-/// The effect of a name, where it is one of the inverse model.
+/// The effect that is called so, where it is one of the inverse model.
 #[must_use]
-pub(crate) fn find(name: &str) -> Option<&'static dyn Effect> {
-    LIBRARY.into_iter().find(|effect| effect.name() == name)
-}
-
-/// Whether a name is a known effect.
-#[must_use]
-pub(crate) fn is_known(name: &str) -> bool {
-    OTHERS.contains(&name) || find(name).is_some_and(|effect| !effect.is_nameless())
-}
-
-/// All names that may be declared.
-#[must_use]
-pub(crate) fn known_names() -> Vec<&'static str> {
-    let named = LIBRARY
-        .into_iter()
-        .filter(|effect| !effect.is_nameless())
-        .map(Effect::name);
-    named.chain(OTHERS).collect()
+pub(crate) fn find(called: impl Into<Called>) -> Option<&'static dyn Effect> {
+    let called = called.into();
+    LIBRARY.into_iter().find(|effect| effect.called() == called)
 }
 
 /// `count` values from `low` to `high` with a constant ratio.

@@ -1,12 +1,18 @@
 //! What a record cannot identify, and what to record next.
 
+use axis_model::EffectName;
+
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 
 /// Warnings about a training record, one sentence each.
 #[must_use]
-pub(crate) fn warnings(dataset: &Dataset, motion: &Kinematics, found: &[String]) -> Vec<String> {
+pub(crate) fn warnings(
+    dataset: &Dataset,
+    motion: &Kinematics,
+    found: &[EffectName],
+) -> Vec<String> {
     let mut list = dataset.notes.clone();
     list.extend(same_force(dataset, found));
     let moving = |test: &dyn Fn(f64) -> bool| {
@@ -55,15 +61,10 @@ pub(crate) fn reversals(motion: &Kinematics) -> usize {
 }
 
 /// Explanations that no record can tell apart.
-fn same_force(dataset: &Dataset, found: &[String]) -> Vec<String> {
-    let has = |name: &str| {
-        found
-            .iter()
-            .chain(&dataset.declared)
-            .any(|known| known == name)
-    };
+fn same_force(dataset: &Dataset, found: &[EffectName]) -> Vec<String> {
+    let has = |name: EffectName| found.contains(&name) || dataset.declares(name);
     let text = "offset and coulomb_asymmetry are the same force (a constant one, at rest as in motion): no record tells them apart, and offset stands for both";
-    (has("offset") || has("coulomb_asymmetry"))
+    (has(EffectName::Offset) || has(EffectName::CoulombAsymmetry))
         .then(|| text.to_owned())
         .into_iter()
         .collect()

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use axis_model::EffectName;
+
 use crate::error::IdentificationError;
 use crate::record::checks;
 use crate::record::extent::{plateau, range, smallest_step};
@@ -36,7 +38,7 @@ pub struct Dataset {
     /// Controller, where it is known.
     pub controller: Option<ControllerForm>,
     /// Declared effects.
-    pub declared: Vec<String>,
+    pub declared: Vec<EffectName>,
     /// Training record.
     pub train: Record,
     /// Validation record.
@@ -50,7 +52,12 @@ pub struct Dataset {
 /// Share of the time that is kept for validation where there is no record of its own.
 const HELD_BACK: f64 = 0.3;
 /// The declared model where none is given.
-const USUALLY_DECLARED: [&str; 4] = ["inertia", "viscous", "coulomb", "offset"];
+const USUALLY_DECLARED: [EffectName; 4] = [
+    EffectName::Inertia,
+    EffectName::Viscous,
+    EffectName::Coulomb,
+    EffectName::Offset,
+];
 
 impl Dataset {
     /// Reads a dataset folder; `validate` and `declared` replace what the folder says.
@@ -80,7 +87,7 @@ impl Dataset {
         folder: &Path,
         form: DatasetForm,
         records: Records,
-        declared: Vec<String>,
+        declared: Vec<EffectName>,
         notes: Vec<String>,
     ) -> Self {
         let stated_limit = form.controller.as_ref().and_then(|c| c.force_limit_n);
@@ -105,6 +112,12 @@ impl Dataset {
             held_back: records.held_back,
             notes,
         }
+    }
+
+    /// Whether an effect is declared.
+    #[must_use]
+    pub fn declares(&self, effect: EffectName) -> bool {
+        self.declared.contains(&effect)
     }
 
     /// Middle and half of the travel of the training record.
@@ -180,26 +193,23 @@ fn check_folder(folder: &Path) -> Outcome<()> {
 }
 
 /// The declared effects, once each.
-fn declared_effects(folder: &Path, wanted: Option<Vec<String>>) -> Outcome<Vec<String>> {
-    let wanted = wanted.unwrap_or_else(|| USUALLY_DECLARED.map(String::from).to_vec());
-    let mut declared: Vec<String> = wanted.iter().map(|name| name.trim().to_owned()).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    declared.retain(|name| seen.insert(name.clone()));
-    let refused = |why: String| {
-        Err(IdentificationError::new(format!(
-            "{}: {why}",
-            folder.display()
-        )))
+fn declared_effects(folder: &Path, wanted: Option<Vec<String>>) -> Outcome<Vec<EffectName>> {
+    let refused = |why: String| IdentificationError::new(format!("{}: {why}", folder.display()));
+    let Some(wanted) = wanted else {
+        return Ok(USUALLY_DECLARED.to_vec());
     };
-    let is_unknown = |name: &&String| !crate::model::effects::is_known(name);
-    match declared.iter().find(is_unknown) {
-        Some(name) => refused(format!(
-            "unknown declared effect \"{name}\"; known: {}",
-            crate::model::effects::known_names().join(", ")
-        )),
-        None if declared.is_empty() => refused("no declared effects; give at least inertia".into()),
-        None => Ok(declared),
+    let mut declared = Vec::new();
+    for word in &wanted {
+        let name = word.trim().parse::<EffectName>();
+        let name = name.map_err(|unknown| refused(format!("declared: {unknown}")))?;
+        if !declared.contains(&name) {
+            declared.push(name);
+        }
     }
+    if declared.is_empty() {
+        return Err(refused("no declared effects; give at least inertia".into()));
+    }
+    Ok(declared)
 }
 
 #[cfg(test)]
@@ -250,10 +260,10 @@ mod tests {
             &["train.csv"],
         );
         let read = |declared: Option<Vec<String>>| Dataset::read(alone.path(), None, declared);
-        assert_eq!(read(None).unwrap().declared, ["inertia"]);
+        assert_eq!(read(None).unwrap().declared, [EffectName::Inertia]);
         let error = read(Some(vec!["magic".into()])).unwrap_err().to_string();
         assert!(
-            error.contains("unknown declared effect \"magic\"; known: "),
+            error.contains("declared: unknown effect \"magic\"; known: "),
             "{error}"
         );
         let error = read(Some(Vec::new())).unwrap_err().to_string();

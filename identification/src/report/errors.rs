@@ -32,7 +32,7 @@ fn difference_on_validation(findings: &Findings<'_>) -> Option<DifferenceUm> {
     let difference = findings.stages.difference.as_ref()?;
     let model = &findings.models.extended;
     let bench = Bench::new(findings.dataset, findings.validation);
-    let transmitted = bench.transmitted(&model.model, &model.coefficients);
+    let transmitted = bench.transmitted(&model.fitted);
     let path = Path {
         position: &findings.dataset.validate.position,
         transmitted: &transmitted,

@@ -3,6 +3,8 @@
 //! Both models are fitted to the positions of the training record, so that the comparison is one of
 //! structures. The declared model keeps of the shape at reversals what is declared of it.
 
+use axis_model::EffectName;
+
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::inverse_dynamics::Compared;
@@ -46,20 +48,15 @@ pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)
 /// The declared model, simulated.
 fn declared(findings: &Findings<'_>, reversals: &Reversals) -> Option<Simulated> {
     let dataset = findings.dataset;
-    let declares = |name: &str| dataset.declared.iter().any(|declared| declared == name);
     let best = reversals.best().model.mechanics.shape;
     let shape = Shape {
-        bristle: best.bristle.filter(|_| declares("presliding")),
-        gap: best.gap.filter(|_| declares("backlash")),
+        bristle: best
+            .bristle
+            .filter(|_| dataset.declares(EffectName::Presliding)),
+        gap: best.gap.filter(|_| dataset.declares(EffectName::Backlash)),
     };
     let declared = &findings.models.declared;
-    let start = Simulated::new(
-        dataset,
-        dataset.train.period_s,
-        &declared.model,
-        &declared.coefficients,
-        shape,
-    )?;
+    let start = Simulated::new(dataset, dataset.train.period_s, &declared.fitted, shape)?;
     Some(fit(&start, &reversals.drive, &dataset.train, &|_| true))
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::evidence::difference::Difference;
 use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
-use crate::fit::bench::{Bench, HalfWidths};
+use crate::fit::bench::Bench;
 use crate::model::effects::{Named, Naming};
 use crate::report::forms::Parameter;
 
@@ -65,46 +65,16 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
     let extended = &findings.models.extended;
     let seen = extended.motion(findings.motion);
     let bench = Bench::new(findings.dataset, &seen);
-    let half_widths = bench.half_widths(&extended.model, &extended.coefficients);
-    let mut named = of_the_terms(findings, &half_widths);
-    named.extend(of_the_actuator(findings, &half_widths));
-    named
-}
-
-fn of_the_terms(findings: &Findings<'_>, half_widths: &HalfWidths) -> Vec<Named> {
-    let extended = &findings.models.extended;
-    let linear = half_widths.linear.iter().copied();
-    let mut rest = extended.coefficients.iter().copied().zip(linear);
-    let mut named: Vec<Named> = Vec::new();
-    for (term, half_width) in extended.model.terms.iter().zip(&half_widths.parameters) {
-        let width = term.effect.width(term.parameter);
-        let own: Vec<(f64, f64)> = rest.by_ref().take(width).collect();
-        named.extend(term.effect.parameters(&Naming {
-            parameter: term.parameter,
-            parameter_half_width: *half_width,
-            coefficients: &own,
+    let estimates = bench.estimates(&extended.fitted);
+    let parameters = estimates.iter().flat_map(|estimate| {
+        estimate.part.effect.parameters(&Naming {
+            parameter: estimate.part.parameter,
+            parameter_half_width: estimate.parameter_half_width,
+            coefficients: &estimate.own,
             dataset: findings.dataset,
-        }));
-    }
-    named
-}
-
-/// Delay and saturation.
-fn of_the_actuator(findings: &Findings<'_>, half_widths: &HalfWidths) -> Vec<Named> {
-    let model = &findings.models.extended.model;
-    let delay = (model.delay_s != 0.0).then(|| Named {
-        name: "delay".into(),
-        value: model.delay_s,
-        half_width: half_widths.delay_s,
-        unit: "s".into(),
+        })
     });
-    let saturation = model.saturates().then(|| Named {
-        name: "torque_saturation".into(),
-        value: model.saturation.per_effort,
-        half_width: half_widths.saturation,
-        unit: format!("1/{}", findings.dataset.effort.unit()),
-    });
-    delay.into_iter().chain(saturation).collect()
+    parameters.collect()
 }
 
 /// Deflection and gap: from the free run with their intervals where that decided, else the

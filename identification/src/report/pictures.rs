@@ -1,10 +1,10 @@
 //! Each effect that was found, against what it is best seen against.
 
-use std::ops::Range;
-
 use crate::evidence::findings::Findings;
-use crate::fit::bench::{Bench, Model, Term};
-use crate::model::effects::Against;
+use crate::fit::bench::Bench;
+use crate::fit::fitted::Term;
+use crate::model::effects::{Against, Stage};
+use crate::model::inverse::Origin;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::report::forms::EffectCurve;
@@ -16,7 +16,6 @@ const POINTS: usize = 2500;
 struct Picture<'a> {
     dataset: &'a Dataset,
     bench: Bench<'a>,
-    coefficients: &'a [f64],
     /// What the whole model leaves, low-passed.
     residual: Vec<f64>,
     /// The moving samples that are shown.
@@ -25,24 +24,20 @@ struct Picture<'a> {
 
 /// The effects of the inverse model that were found, one picture each.
 pub(crate) fn effects(findings: &Findings<'_>) -> Vec<EffectCurve> {
-    let (declared, extended) = (&findings.models.declared, &findings.models.extended);
+    let extended = &findings.models.extended;
     let motion = extended.motion(findings.motion);
     let bench = Bench::new(findings.dataset, &motion);
     let picture = Picture {
         dataset: findings.dataset,
-        residual: bench.residual(&extended.model, &extended.coefficients),
+        residual: bench.residual(&extended.fitted),
         bench,
-        coefficients: &extended.coefficients,
         shown: thinned(&motion.moving),
     };
-    let mut place = 0;
-    let places = extended.model.terms.iter().map(|term| {
-        let from = place;
-        place += term.effect.width(term.parameter);
-        (term, from..place)
-    });
-    let found = places.skip(declared.model.terms.len());
-    found.map(|(term, own)| picture.of(term, own)).collect()
+    let is_found = |term: &Term<'_>| {
+        term.part.origin == Origin::Found && term.part.effect.stage() == Stage::Force
+    };
+    let found = extended.fitted.terms().filter(is_found);
+    found.map(|term| picture.of(term)).collect()
 }
 
 /// Every so many of the samples inside a mask.
@@ -53,21 +48,18 @@ fn thinned(mask: &[bool]) -> Vec<usize> {
 }
 
 impl Picture<'_> {
-    fn of(&self, term: &Term, own: Range<usize>) -> EffectCurve {
-        let alone = Model {
-            terms: vec![*term],
-            ..Model::default()
-        };
-        let effect = self.bench.predict_lp(&alone, &self.coefficients[own]);
-        let against = values(term.effect.against(), term.parameter, self.bench.motion);
+    fn of(&self, term: Term<'_>) -> EffectCurve {
+        let effect = self.bench.predict_lp(&term.alone());
+        let part = term.part;
+        let against = values(part.effect.against(), part.parameter, self.bench.motion);
         let point = |row: &usize| {
             let without = self.residual[*row] + effect[*row];
             [against[*row], without, effect[*row]]
         };
         EffectCurve {
-            effect: term.effect.name(),
-            equation: term.effect.equation(),
-            against: label(term.effect.against(), self.dataset.kind.position_unit()),
+            effect: part.called().as_str(),
+            equation: part.effect.equation(),
+            against: label(part.effect.against(), self.dataset.kind.position_unit()),
             points: self.shown.iter().map(point).collect(),
         }
     }

@@ -5,12 +5,16 @@
 
 use std::collections::BTreeSet;
 
-use crate::evidence::actuator;
+use axis_model::EffectName;
+
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::Judged;
 use crate::evidence::reversal::{self, Presliding, bristle};
 use crate::evidence::selection::Scored;
-use crate::fit::bench::{Bench, Model, Term};
+use crate::fit::bench::Bench;
+use crate::fit::tuning::settled;
+use crate::model::effects::find;
+use crate::model::inverse::{Model, Part};
 use crate::report::forms::Candidate;
 
 const EFFORT: &str = "effort of moving samples";
@@ -24,8 +28,9 @@ pub(crate) fn candidates(findings: &Findings<'_>) -> Vec<Candidate> {
     list.extend(on_reversals(findings));
     list.extend(on_free_run(findings));
     list.extend(on_difference(findings));
+    let names = findings.found.names();
     for candidate in &mut list {
-        candidate.accepted = findings.found.has(&candidate.effect);
+        candidate.accepted = names.iter().any(|name| name.as_str() == candidate.effect);
     }
     ranked(list)
 }
@@ -46,7 +51,7 @@ fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
     for scored in &findings.stages.effort.scored {
         let known = best
             .iter_mut()
-            .find(|candidate| candidate.effect == scored.effect);
+            .find(|candidate| candidate.effect == scored.effect.as_str());
         match known {
             Some(known) if known.share >= scored.gain.share => {}
             Some(known) => (known.share, known.evidence) = (scored.gain.share, scored.gain.t),
@@ -59,12 +64,12 @@ fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
 /// A candidate with the validation error of the declared model and this effect alone.
 fn on_effort_alone(findings: &Findings<'_>, scored: &Scored) -> Candidate {
     let bench = Bench::new(findings.dataset, findings.motion);
-    let model = with(&bench, &findings.models.declared.model, scored);
-    let coefficients = bench.fit(&model).coefficients;
+    let model = with(&bench, findings.models.declared.fitted.model(), scored);
+    let fitted = bench.fit(&model);
     let validation = Bench::new(findings.dataset, findings.validation);
     Candidate {
-        effect: scored.effect.into(),
-        validation_error_percent: Some(validation.force_error_percent(&model, &coefficients)),
+        effect: scored.effect.as_str().into(),
+        validation_error_percent: Some(validation.force_error_percent(&fitted)),
         evidence: scored.gain.t,
         share: scored.gain.share,
         judged_on: EFFORT,
@@ -74,22 +79,17 @@ fn on_effort_alone(findings: &Findings<'_>, scored: &Scored) -> Candidate {
 }
 
 fn with(bench: &Bench<'_>, declared: &Model, scored: &Scored) -> Model {
-    let mut model = declared.clone();
-    match crate::model::effects::find(scored.effect) {
-        Some(effect) => model.terms.push(Term {
-            effect,
-            parameter: scored.parameter,
-        }),
-        None if scored.effect == "delay" => model.delay_s = scored.parameter,
-        None => model = actuator::linearised(bench, &model, scored.parameter),
-    }
-    model
+    let Some(effect) = find(scored.effect) else {
+        return declared.clone();
+    };
+    let model = declared.with(Part::found(effect, scored.parameter));
+    settled(bench, model, effect)
 }
 
 fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
     let presliding = findings.stages.presliding?;
     Some(Candidate {
-        effect: "presliding".into(),
+        effect: EffectName::Presliding.as_str().into(),
         validation_error_percent: Some(with_bristle(findings, &presliding)),
         evidence: presliding.t,
         share: removed(presliding.dahl, presliding.rigid),
@@ -101,11 +101,11 @@ fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
 
 /// Force error on the validation record of the declared model with a bristle in place of the sign.
 fn with_bristle(findings: &Findings<'_>, presliding: &Presliding) -> f64 {
-    let (dataset, model) = (findings.dataset, &findings.models.declared.model);
+    let (dataset, model) = (findings.dataset, findings.models.declared.fitted.model());
     let [train, validate] = [findings.motion, findings.validation]
         .map(|motion| bristle::motion(motion, presliding.deflection));
-    let coefficients = Bench::new(dataset, &train).fit(model).coefficients;
-    Bench::new(dataset, &validate).force_error_percent(model, &coefficients)
+    let fitted = Bench::new(dataset, &train).fit(model);
+    Bench::new(dataset, &validate).force_error_percent(&fitted)
 }
 
 /// Share of a mean square that is gone, from both rms.
@@ -145,7 +145,7 @@ fn on_difference(findings: &Findings<'_>) -> Vec<Candidate> {
 fn of_the_difference(scored: &Scored) -> Candidate {
     let share_left = (1.0 - scored.gain.share).max(0.0);
     Candidate {
-        effect: scored.effect.into(),
+        effect: scored.effect.as_str().into(),
         // Of the position difference: what is left of its rms on held-out blocks.
         validation_error_percent: Some(100.0 * share_left.sqrt()),
         evidence: scored.gain.t,

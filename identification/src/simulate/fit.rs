@@ -186,10 +186,12 @@ pub(crate) fn half_widths(model: &Simulated, drive: &Drive, record: &Record) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::bench::{Model, Term};
+    use crate::fit::fitted::Fitted;
+    use crate::model::inverse::{Model, Part};
     use crate::record::dataset::Dataset;
     use crate::record::units::{AxisKind, Effort, EffortHold};
     use crate::simulate::axis::Shape;
+    use axis_model::EffectName;
 
     /// A law on a load that was not recorded: believed, not checked.
     fn controller() -> crate::record::form::ControllerForm {
@@ -281,15 +283,19 @@ mod tests {
     }
 
     fn model(dataset: &Dataset, coefficients: [f64; 4]) -> Simulated {
-        let terms = ["inertia", "viscous", "coulomb", "offset"].map(|name| Term {
-            effect: crate::model::effects::find(name).unwrap(),
-            parameter: 0.0,
-        });
+        let names = [
+            EffectName::Inertia,
+            EffectName::Viscous,
+            EffectName::Coulomb,
+            EffectName::Offset,
+        ];
+        let parts =
+            names.map(|name| Part::declared(crate::model::effects::find(name).unwrap(), 0.0));
         let model = Model {
-            terms: terms.to_vec(),
-            ..Model::default()
+            parts: parts.to_vec(),
         };
-        Simulated::new(dataset, 1.0e-3, &model, &coefficients, Shape::default()).unwrap()
+        let fitted = Fitted::new(model, &coefficients);
+        Simulated::new(dataset, 1.0e-3, &fitted, Shape::default()).unwrap()
     }
 
     #[test]

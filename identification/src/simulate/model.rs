@@ -1,15 +1,19 @@
 //! An identified model, ready to be simulated, and its parameters as one vector.
 
+use axis_model::EffectName;
+
 use super::axis::{Acting, Mechanics, Shape};
-use crate::fit::bench::{Model, Term};
-use crate::model::effects::{Action, Instant, Named, Naming};
+use crate::fit::fitted::Fitted;
+use crate::model::effects::torque_saturation::Saturation;
+use crate::model::effects::{Action, Instant, Named, Naming, Stage};
+use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
 
-/// A term with its coefficients.
+/// A force with its coefficients.
 #[derive(Clone)]
 pub(crate) struct Active {
-    term: Term,
+    part: Part,
     own: Vec<f64>,
 }
 
@@ -20,8 +24,8 @@ pub(crate) struct Simulated {
     pub mechanics: Mechanics,
     /// Terms other than the mass.
     terms: Vec<Active>,
-    /// k of `u / (1 + k |u|)`.
-    pub saturation: f64,
+    /// The actuator.
+    saturation: Saturation,
     /// Delay beyond the hold, s.
     pub delay_s: f64,
     travel: (f64, f64),
@@ -57,26 +61,16 @@ impl Simulated {
     pub(crate) fn new(
         dataset: &Dataset,
         period_s: f64,
-        model: &Model,
-        coefficients: &[f64],
+        fitted: &Fitted,
         shape: Shape,
     ) -> Option<Self> {
-        let mut rest = coefficients.iter().copied();
-        let (mut mass, mut terms) = (0.0, Vec::new());
-        for term in &model.terms {
-            let own: Vec<f64> = rest
-                .by_ref()
-                .take(term.effect.width(term.parameter))
-                .collect();
-            if own.is_empty() {
-                return None;
-            }
-            if term.effect.name() == "inertia" {
-                mass = own[0];
-            } else if term.effect.name() != "load_inertia" {
-                terms.push(Active { term: *term, own });
-            }
-        }
+        let mass = *fitted.of(EffectName::Inertia)?.first()?;
+        let is_force = |part: &Part| part.effect.stage() == Stage::Force && !part.effect.is_mass();
+        let forces = fitted.terms().filter(|term| is_force(term.part));
+        let terms = forces.map(|term| Active {
+            part: term.part.clone(),
+            own: term.own.to_vec(),
+        });
         // A simulated effort is held from its row on; an instantaneous record sees half a period of
         // that as delay.
         let hold_s = if dataset.hold == EffortHold::Instant {
@@ -84,12 +78,12 @@ impl Simulated {
         } else {
             0.0
         };
-        let delay_s = (model.delay_s - hold_s).max(0.0);
-        let saturation = model.saturation.per_effort;
+        let delay_s = (fitted.model().delay_s() - hold_s).max(0.0);
+        let saturation = fitted.model().saturation();
         let duration_s = dataset.train.duration_s();
         (mass > 0.0).then_some(Self {
             mechanics: Mechanics { mass, shape },
-            terms,
+            terms: terms.collect(),
             saturation,
             delay_s,
             travel: dataset.travel(),
@@ -114,15 +108,15 @@ impl Simulated {
             time_s,
             time_share: time_s / self.duration_s,
         };
-        let delivered = commanded / (1.0 + self.saturation * commanded.abs());
+        let delivered = self.saturation.delivered(commanded);
         let mut acting = Acting {
             motor: delivered,
             ..Acting::default()
         };
-        for Active { term, own } in &self.terms {
-            let Action { level, force } = term.effect.action(&at, term.parameter, own);
+        for Active { part, own } in &self.terms {
+            let Action { level, force } = part.effect.action(&at, part.parameter, own);
             acting.level += level;
-            if term.effect.acts_on_motor() {
+            if part.effect.acts_on_motor() {
                 acting.motor -= force;
             } else {
                 acting.load += force;
@@ -137,7 +131,7 @@ impl Simulated {
         let coulomb = self
             .terms
             .iter()
-            .find(|active| active.term.effect.name() == "coulomb");
+            .find(|active| active.part.is(EffectName::Coulomb));
         let force = coulomb
             .map_or(self.mechanics.mass, |active| active.own[0].abs())
             .max(f64::MIN_POSITIVE);
@@ -155,8 +149,8 @@ impl Simulated {
             ..positive(scale)
         };
         let mut entries = vec![positive(self.mechanics.mass)];
-        for Active { term, own } in &self.terms {
-            let is_coulomb = term.effect.name() == "coulomb";
+        for Active { part, own } in &self.terms {
+            let is_coulomb = part.is(EffectName::Coulomb);
             let scales = own.iter().map(|value| value.abs().max(0.05 * force));
             entries.extend(scales.map(|scale| {
                 if is_coulomb {
@@ -166,12 +160,12 @@ impl Simulated {
                 }
             }));
             entries.extend(
-                term.effect
+                part.effect
                     .is_tuned()
-                    .then(|| positive(term.parameter.abs())),
+                    .then(|| positive(part.parameter.abs())),
             );
         }
-        entries.extend((self.saturation != 0.0).then(|| positive(self.saturation)));
+        entries.extend((!self.saturation.is_ideal()).then(|| positive(self.saturation.per_effort)));
         entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
         if let Some(bristle) = self.mechanics.shape.bristle {
             entries.extend([
@@ -227,21 +221,21 @@ impl Simulated {
             next(),
             unit(&format!(" s^2/{length}")),
         )];
-        for Active { term, own } in &self.terms {
+        for Active { part, own } in &self.terms {
             let coefficients: Vec<(f64, f64)> = own.iter().map(|value| (*value, next())).collect();
-            let parameter_half_width = term.effect.is_tuned().then(&mut next);
+            let parameter_half_width = part.effect.is_tuned().then(&mut next);
             let naming = Naming {
-                parameter: term.parameter,
+                parameter: part.parameter,
                 parameter_half_width,
                 coefficients: &coefficients,
                 dataset,
             };
-            named.extend(term.effect.parameters(&naming));
+            named.extend(part.effect.parameters(&naming));
         }
-        if self.saturation != 0.0 {
+        if !self.saturation.is_ideal() {
             named.push(plain(
                 "torque_saturation",
-                self.saturation,
+                self.saturation.per_effort,
                 next(),
                 format!("1/{}", dataset.effort.unit()),
             ));
@@ -289,14 +283,14 @@ impl Simulated {
 
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
         each(&mut self.mechanics.mass);
-        for Active { term, own } in &mut self.terms {
+        for Active { part, own } in &mut self.terms {
             own.iter_mut().for_each(&mut *each);
-            if term.effect.is_tuned() {
-                each(&mut term.parameter);
+            if part.effect.is_tuned() {
+                each(&mut part.parameter);
             }
         }
-        if self.saturation != 0.0 {
-            each(&mut self.saturation);
+        if !self.saturation.is_ideal() {
+            each(&mut self.saturation.per_effort);
         }
         if self.delay_s != 0.0 {
             each(&mut self.delay_s);

@@ -1,14 +1,17 @@
 //! Coulomb friction: force Fc·sign(v); at standstill, whatever holds.
 
+use axis_model::EffectName;
+
 use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// Fc·sign(v).
 pub(crate) struct Coulomb;
 
 impl Effect for Coulomb {
-    fn name(&self) -> &'static str {
-        "coulomb"
+    fn called(&self) -> Called {
+        EffectName::Coulomb.into()
     }
 
     fn equation(&self) -> &'static str {

@@ -1,15 +1,18 @@
 //! Friction that changes with time from the start of the record (warm-up): `(a sign(v) + b
 //! v)·exp(−t / τ)`; every record starts cold.
 
+use axis_model::EffectName;
+
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// (a sign(v) + b v)·exp(−t/τ).
 pub(crate) struct FrictionDrift;
 
 impl Effect for FrictionDrift {
-    fn name(&self) -> &'static str {
-        "friction_drift"
+    fn called(&self) -> Called {
+        EffectName::FrictionDrift.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -47,13 +50,17 @@ impl Effect for FrictionDrift {
         }
     }
 
+    fn start(&self, dataset: &Dataset) -> f64 {
+        0.3 * dataset.train.duration_s()
+    }
+
     fn grid(&self, motion: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
         [0.05, 0.1, 0.2, 0.4, 0.8, 1.6]
             .map(|share| share * motion.duration_s())
             .to_vec()
     }
 
-    fn refine_step(&self, _: &Kinematics, tau: f64) -> f64 {
+    fn first_step(&self, _: &Kinematics, tau: f64) -> f64 {
         0.25 * tau
     }
 

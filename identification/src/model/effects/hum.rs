@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// a cos(2π f t) + b sin(2π f t).
@@ -17,8 +18,8 @@ const STRIDE: usize = 8;
 const LONGEST_SCAN_S: f64 = 40.0;
 
 impl Effect for Hum {
-    fn name(&self) -> &'static str {
-        "force over time"
+    fn called(&self) -> Called {
+        Called::Structure("force over time")
     }
 
     fn equation(&self) -> &'static str {
@@ -51,6 +52,10 @@ impl Effect for Hum {
         Action::force(own[0] * cos + own[1] * sin)
     }
 
+    fn least_distance(&self, motion: &Kinematics) -> f64 {
+        2.0 / motion.duration_s()
+    }
+
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
         let fastest = FASTEST_HZ.min(0.4 / (motion.period_s * STRIDE as f64));
         // The whole band on a part of the record, then about its best on all of it: frequencies
@@ -76,7 +81,7 @@ impl Effect for Hum {
             .collect()
     }
 
-    fn refine_step(&self, motion: &Kinematics, _: f64) -> f64 {
+    fn first_step(&self, motion: &Kinematics, _: f64) -> f64 {
         0.1 / motion.duration_s()
     }
 

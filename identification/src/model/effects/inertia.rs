@@ -1,14 +1,17 @@
 //! Inertia: force M·a.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use axis_model::EffectName;
+
+use super::{Effect, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// M·a.
 pub(crate) struct Inertia;
 
 impl Effect for Inertia {
-    fn name(&self) -> &'static str {
-        "inertia"
+    fn called(&self) -> Called {
+        EffectName::Inertia.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -19,8 +22,8 @@ impl Effect for Inertia {
         vec![motion.acceleration.clone()]
     }
 
-    fn action(&self, _: &Instant, _: f64, _: &[f64]) -> Action {
-        Action::default()
+    fn is_mass(&self) -> bool {
+        true
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

@@ -2,15 +2,16 @@
 //! it comes with a gap or a compliance that a load scale shows, and makes the total `M1·a1 +
 //! M2·a2`.
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use super::{Effect, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// M2·(a2 − a1).
 pub(crate) struct LoadInertia;
 
 impl Effect for LoadInertia {
-    fn name(&self) -> &'static str {
-        "load_inertia"
+    fn called(&self) -> Called {
+        Called::Structure("load_inertia")
     }
 
     fn equation(&self) -> &'static str {
@@ -26,8 +27,8 @@ impl Effect for LoadInertia {
         ]
     }
 
-    fn action(&self, _: &Instant, _: f64, _: &[f64]) -> Action {
-        Action::default()
+    fn is_mass(&self) -> bool {
+        true
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

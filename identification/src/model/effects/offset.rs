@@ -1,15 +1,18 @@
 //! Offset: a constant force. Coulomb friction that differs by direction is the same force: `Fc ±
 //! ΔF` is `Fc sign(v)` and a constant.
 
+use axis_model::EffectName;
+
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// A constant force.
 pub(crate) struct Offset;
 
 impl Effect for Offset {
-    fn name(&self) -> &'static str {
-        "offset"
+    fn called(&self) -> Called {
+        EffectName::Offset.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -18,6 +21,10 @@ impl Effect for Offset {
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
         vec![vec![1.0; motion.len()]]
+    }
+
+    fn stands_for(&self, declared: EffectName) -> bool {
+        declared == EffectName::CoulombAsymmetry
     }
 
     fn against(&self) -> Against {

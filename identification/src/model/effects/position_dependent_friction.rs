@@ -1,7 +1,10 @@
 //! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1
 //! over the travel of the training record.
 
+use axis_model::EffectName;
+
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// sign(v)·(a u + b u²).
@@ -28,8 +31,8 @@ pub(crate) fn scaled(motion: &Kinematics, dataset: &Dataset) -> Vec<f64> {
 }
 
 impl Effect for PositionDependentFriction {
-    fn name(&self) -> &'static str {
-        "position_dependent_friction"
+    fn called(&self) -> Called {
+        EffectName::PositionDependentFriction.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -65,6 +68,10 @@ impl Effect for PositionDependentFriction {
 
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
         Action::level(polynomial(own, at.scaled))
+    }
+
+    fn start(&self, _: &Dataset) -> f64 {
+        1.0
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {

@@ -1,14 +1,17 @@
 //! Quadratic drag: `q v |v|`.
 
+use axis_model::EffectName;
+
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// q·v·|v|.
 pub(crate) struct QuadraticDrag;
 
 impl Effect for QuadraticDrag {
-    fn name(&self) -> &'static str {
-        "quadratic_drag"
+    fn called(&self) -> Called {
+        EffectName::QuadraticDrag.into()
     }
 
     fn equation(&self) -> &'static str {

@@ -3,14 +3,15 @@
 
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::effects::position_dependent_friction::{polynomial, scaled};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// a u + b u².
 pub(crate) struct Spring;
 
 impl Effect for Spring {
-    fn name(&self) -> &'static str {
-        "force over position"
+    fn called(&self) -> Called {
+        Called::Structure("force over position")
     }
 
     fn equation(&self) -> &'static str {

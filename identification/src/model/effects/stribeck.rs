@@ -1,7 +1,10 @@
 //! Stribeck fall: friction above the Coulomb level at low speed, `c·sign(v)·exp(−(v / vs)²)` (Bo
 //! and Pavelescu 1982).
 
+use axis_model::EffectName;
+
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, geometric};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// c·sign(v)·exp(−(v/vs)²).
@@ -11,8 +14,8 @@ pub(crate) struct Stribeck;
 const LARGEST_RATIO: f64 = 4.0;
 
 impl Effect for Stribeck {
-    fn name(&self) -> &'static str {
-        "stribeck"
+    fn called(&self) -> Called {
+        EffectName::Stribeck.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -39,12 +42,16 @@ impl Effect for Stribeck {
         Action::level(own[0] * (-(at.velocity / vs).powi(2)).exp())
     }
 
+    fn start(&self, dataset: &Dataset) -> f64 {
+        5.0 * dataset.kind.moving_velocity()
+    }
+
     fn grid(&self, _: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
         let moving = setting.dataset.kind.moving_velocity();
         geometric(0.7 * moving, 40.0 * moving, 14)
     }
 
-    fn refine_step(&self, _: &Kinematics, vs: f64) -> f64 {
+    fn first_step(&self, _: &Kinematics, vs: f64) -> f64 {
         0.15 * vs
     }
 

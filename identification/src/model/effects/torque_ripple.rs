@@ -5,7 +5,10 @@
 
 use std::f64::consts::TAU;
 
+use axis_model::EffectName;
+
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 
@@ -20,8 +23,8 @@ const FASTEST_HZ: f64 = 70.0;
 const STRIDE: usize = 4;
 
 impl Effect for TorqueRipple {
-    fn name(&self) -> &'static str {
-        "torque_ripple"
+    fn called(&self) -> Called {
+        EffectName::TorqueRipple.into()
     }
 
     fn equation(&self) -> &'static str {
@@ -58,6 +61,15 @@ impl Effect for TorqueRipple {
         Action::force(own[0] * cos + own[1] * sin)
     }
 
+    fn start(&self, dataset: &Dataset) -> f64 {
+        dataset.lead_m_per_rev.map_or(100.0, |lead| 1.0 / lead)
+    }
+
+    fn least_distance(&self, motion: &Kinematics) -> f64 {
+        let (low, high) = motion.span();
+        2.0 / (high - low)
+    }
+
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
         let (low, high) = motion.span();
         let step = 0.25 / (high - low);
@@ -67,7 +79,7 @@ impl Effect for TorqueRipple {
             .collect()
     }
 
-    fn refine_step(&self, motion: &Kinematics, _: f64) -> f64 {
+    fn first_step(&self, motion: &Kinematics, _: f64) -> f64 {
         let (low, high) = motion.span();
         0.05 / (high - low)
     }

@@ -3,6 +3,7 @@
 
 use super::position_dependent_friction::polynomial;
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// a s + b s², s = time over the record.
@@ -14,8 +15,8 @@ fn scaled(time_s: f64, dataset: &Dataset) -> f64 {
 }
 
 impl Effect for Trend {
-    fn name(&self) -> &'static str {
-        "drifting force"
+    fn called(&self) -> Called {
+        Called::Structure("drifting force")
     }
 
     fn equation(&self) -> &'static str {

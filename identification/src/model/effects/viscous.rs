@@ -1,14 +1,17 @@
 //! Viscous friction: force Fv·v.
 
+use axis_model::EffectName;
+
 use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// Fv·v.
 pub(crate) struct Viscous;
 
 impl Effect for Viscous {
-    fn name(&self) -> &'static str {
-        "viscous"
+    fn called(&self) -> Called {
+        EffectName::Viscous.into()
     }
 
     fn equation(&self) -> &'static str {

@@ -2,15 +2,18 @@
 //!
 //! Janot, Gautier and Brunot saw it on EMPS (2019) and blamed screw fatigue.
 
+use axis_model::EffectName;
+
 use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// c·|v|.
 pub(crate) struct ViscousAsymmetry;
 
 impl Effect for ViscousAsymmetry {
-    fn name(&self) -> &'static str {
-        "viscous_asymmetry"
+    fn called(&self) -> Called {
+        EffectName::ViscousAsymmetry.into()
     }
 
     fn equation(&self) -> &'static str {

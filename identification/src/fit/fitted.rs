@@ -1,0 +1,135 @@
+//! A fitted model: every part with the coefficients of its own columns.
+//!
+//! A regression gives one list of coefficients, in the order of the columns. Here, and nowhere
+//! else, it is cut into the parts' own.
+
+use axis_model::EffectName;
+
+use crate::model::inverse::{Model, Part};
+
+/// A model with its coefficients.
+#[derive(Clone, Default)]
+pub(crate) struct Fitted {
+    model: Model,
+    own: Vec<Vec<f64>>,
+}
+
+/// A part with the coefficients of its own columns.
+#[derive(Clone, Copy)]
+pub(crate) struct Term<'a> {
+    /// The part.
+    pub part: &'a Part,
+    /// Its coefficients, one a column.
+    pub own: &'a [f64],
+}
+
+/// A part with half widths of 95 % intervals.
+#[derive(Clone)]
+pub(crate) struct Estimate {
+    /// The part.
+    pub part: Part,
+    /// Coefficients with their half widths, one a column.
+    pub own: Vec<(f64, f64)>,
+    /// Half width of its nonlinear parameter, where that is a quantity.
+    pub parameter_half_width: Option<f64>,
+}
+
+/// The first values of a list, taken off it.
+fn take<'a, T>(rest: &mut &'a [T], count: usize) -> &'a [T] {
+    let (own, others) = rest.split_at(count.min(rest.len()));
+    *rest = others;
+    own
+}
+
+impl Fitted {
+    /// A model with the coefficients of its columns.
+    #[must_use]
+    pub(crate) fn new(model: Model, coefficients: &[f64]) -> Self {
+        let mut rest = coefficients;
+        let own = model
+            .parts
+            .iter()
+            .map(|part| take(&mut rest, part.width()).to_vec())
+            .collect();
+        Self { model, own }
+    }
+
+    /// The model.
+    #[must_use]
+    pub(crate) const fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The model, without the coefficients.
+    #[must_use]
+    pub(crate) fn into_model(self) -> Model {
+        self.model
+    }
+
+    /// Its parts, each with its own coefficients.
+    pub(crate) fn terms(&self) -> impl DoubleEndedIterator<Item = Term<'_>> {
+        let pairs = self.model.parts.iter().zip(&self.own);
+        pairs.map(|(part, own)| Term { part, own })
+    }
+
+    /// Coefficients of the part of a name, where it is in the model.
+    #[must_use]
+    pub(crate) fn of(&self, name: EffectName) -> Option<&[f64]> {
+        let named = self.terms().find(|term| term.part.is(name));
+        named.map(|term| term.own)
+    }
+
+    /// The same coefficients with another nonlinear parameter of a part.
+    #[must_use]
+    pub(crate) fn with_parameter(&self, place: usize, parameter: f64) -> Self {
+        Self {
+            model: self.model.with_parameter(place, parameter),
+            own: self.own.clone(),
+        }
+    }
+
+    /// Its parts with half widths: those of the columns in their order, and those of the parts with
+    /// a tuned parameter, by place.
+    #[must_use]
+    pub(crate) fn estimates(
+        &self,
+        half_widths: &[f64],
+        tuned: impl Fn(usize) -> Option<f64>,
+    ) -> Vec<Estimate> {
+        let mut rest = half_widths;
+        let mut estimate = |(place, term): (usize, Term<'_>)| {
+            let half_widths = take(&mut rest, term.own.len());
+            let own = term.own.iter().copied().zip(half_widths.iter().copied());
+            Estimate {
+                part: term.part.clone(),
+                own: own.collect(),
+                parameter_half_width: tuned(place),
+            }
+        };
+        self.terms().enumerate().map(&mut estimate).collect()
+    }
+}
+
+impl Term<'_> {
+    /// This part alone, as a fitted model.
+    #[must_use]
+    pub(crate) fn alone(&self) -> Fitted {
+        let model = Model {
+            parts: vec![self.part.clone()],
+        };
+        Fitted::new(model, self.own)
+    }
+}
+
+impl Estimate {
+    /// Whether what was fitted differs from zero: a coefficient, or the parameter of a part without
+    /// columns.
+    #[must_use]
+    pub(crate) fn is_certain(&self) -> bool {
+        if self.own.is_empty() {
+            let half_width = self.parameter_half_width;
+            return half_width.is_some_and(|half| half < self.part.parameter);
+        }
+        self.own.iter().any(|(value, half)| value.abs() > *half)
+    }
+}

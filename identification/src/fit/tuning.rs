@@ -1,0 +1,177 @@
+//! Nonlinear parameters of a model: where the parts together leave the least.
+//!
+//! One parameter at a time, each on a grid first and then by descent; all of them once more
+//! together, because what one leaves on its grid looks like another. A delay is searched at the
+//! lower cut-off.
+
+use crate::fit::bench::Bench;
+use crate::fit::fitted::Fitted;
+use crate::fit::search::{descend, smallest};
+use crate::model::effects::{Effect, Setting, Stage};
+use crate::model::inverse::{Model, Part};
+
+/// Cut-off for the search of a delay: quantisation comes back through the controller as effort that
+/// follows measured noise, and looks like a delay at 100 Hz but not here.
+const DELAY_CUTOFF_HZ: f64 = 30.0;
+/// The linearisation about the last fit is renewed so often.
+const RENEWALS: usize = 3;
+/// Rounds of the joint refinement.
+const ROUNDS: usize = 2;
+
+/// The cut-off for the delay search at a sample period.
+#[must_use]
+pub(crate) fn delay_cutoff_hz(period_s: f64) -> f64 {
+    DELAY_CUTOFF_HZ.min(crate::motion::filter::cutoff_hz(period_s))
+}
+
+/// A record with the cut-off of the errors, and the same with that of the delay search.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair<'a> {
+    /// As the errors are defined.
+    pub bench: &'a Bench<'a>,
+    /// For the delay.
+    pub low: &'a Bench<'a>,
+}
+
+impl<'a> Pair<'a> {
+    /// The bench on which an effect's parameter is searched.
+    fn of(&self, effect: &dyn Effect) -> &'a Bench<'a> {
+        if effect.stage() == Stage::Time {
+            self.low
+        } else {
+            self.bench
+        }
+    }
+}
+
+/// The model linearised about its own fit, after a step in the parameter of an effect; only an
+/// actuator is not linear.
+#[must_use]
+pub(crate) fn settled(bench: &Bench<'_>, model: Model, effect: &dyn Effect) -> Model {
+    if effect.stage() == Stage::Actuator {
+        linearised(bench, model)
+    } else {
+        model
+    }
+}
+
+/// The model linearised about its own fit, which starts from that with an ideal actuator.
+fn linearised(bench: &Bench<'_>, mut model: Model) -> Model {
+    let is_ideal = |part: &&Part| part.effect.stage() != Stage::Actuator;
+    let ideal = Model {
+        parts: model.parts.iter().filter(is_ideal).cloned().collect(),
+    };
+    put_about(&mut model, &bench.fit(&ideal));
+    for _ in 0..RENEWALS {
+        let fitted = bench.fit(&model);
+        put_about(&mut model, &fitted);
+    }
+    model
+}
+
+/// Puts the working point of the forces where a fit has them.
+fn put_about(model: &mut Model, fitted: &Fitted) {
+    let is_force = |part: &Part| part.effect.stage() == Stage::Force;
+    let forces = model.parts.iter_mut().filter(|part| is_force(part));
+    let terms = fitted.terms().filter(|term| is_force(term.part));
+    forces
+        .zip(terms)
+        .for_each(|(part, term)| part.about = term.own.to_vec());
+}
+
+/// The model with an effect more, its parameter where that leaves the least; `None` where the
+/// record cannot show the effect.
+#[must_use]
+pub(crate) fn extended(
+    pair: Pair<'_>,
+    model: &Model,
+    effect: &'static dyn Effect,
+    setting: &Setting<'_>,
+) -> Option<Model> {
+    let bench = pair.of(effect);
+    let fixed = bench.design(model);
+    let with = |parameter: f64| model.with(Part::found(effect, parameter));
+    let sse = |parameter: f64| {
+        if effect.stage() == Stage::Force {
+            let design = bench.extended(&fixed, &Part::found(effect, parameter));
+            bench.blocks(&design).fit().sse
+        } else {
+            bench.sse(&settled(bench, with(parameter), effect))
+        }
+    };
+    let bounds = effect.bounds(bench.motion);
+    let inside = |k: &f64| !effect.is_tuned() || (*k >= bounds.0 && *k <= bounds.1);
+    let grid = effect.grid(bench.motion, setting).into_iter();
+    let grid = grid.filter(|k| inside(k) && is_new(bench, model, effect, *k));
+    let start = smallest(grid.collect(), &sse)?;
+    let step = effect.first_step(bench.motion, start);
+    let parameter = descend(start, step, bounds, &sse);
+    Some(settled(bench, with(parameter), effect))
+}
+
+/// Whether an effect that repeats has another parameter than those of its kind in the model.
+fn is_new(bench: &Bench<'_>, model: &Model, effect: &'static dyn Effect, parameter: f64) -> bool {
+    if !effect.repeats() {
+        return true;
+    }
+    let least = effect.least_distance(bench.motion);
+    let same = |part: &&Part| part.called() == effect.called();
+    let mut known = model.parts.iter().filter(same);
+    known.all(|part| (part.parameter - parameter).abs() > least)
+}
+
+/// The nonlinear parameters of a declared model, from nothing: delay and actuator first, since all
+/// columns go through them.
+pub(crate) fn prepare(pair: Pair<'_>, model: &mut Model) {
+    let is_force = |place: &usize| model.parts[*place].effect.stage() == Stage::Force;
+    let (forces, others): (Vec<usize>, Vec<usize>) =
+        model.outwards().into_iter().partition(is_force);
+    for place in others.into_iter().chain(forces) {
+        start(pair, model, place);
+    }
+    refine(pair, model);
+}
+
+/// Puts a nonlinear parameter where its grid leaves the least beside the other parts.
+fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
+    let effect = model.parts[place].effect;
+    let bench = pair.of(effect);
+    let residual = bench.residual(&bench.fit(&model.without(&model.parts[place])));
+    let setting = Setting {
+        dataset: bench.dataset,
+        residual: &residual,
+    };
+    let grid = effect.grid(bench.motion, &setting);
+    if grid.len() < 2 {
+        return;
+    }
+    let at = |parameter: f64| settled(bench, model.with_parameter(place, parameter), effect);
+    if let Some(best) = smallest(grid, &|parameter| bench.sse(&at(parameter))) {
+        *model = at(best);
+    }
+}
+
+/// Joint refinement of all nonlinear parameters: without it the grid's coarseness leaves residuals
+/// that look like other effects.
+pub(crate) fn refine(pair: Pair<'_>, model: &mut Model) {
+    for _ in 0..ROUNDS {
+        for place in model.outwards() {
+            refine_one(pair, model, place);
+        }
+    }
+}
+
+fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
+    let Part {
+        effect, parameter, ..
+    } = model.parts[place];
+    let bench = pair.of(effect);
+    let step = effect.later_step(bench.motion, parameter);
+    if step <= 0.0 {
+        return;
+    }
+    let at = |parameter: f64| settled(bench, model.with_parameter(place, parameter), effect);
+    let sse = |parameter: f64| bench.sse(&at(parameter));
+    let best = descend(parameter, step, effect.bounds(bench.motion), &sse);
+    *model = at(best);
+}

@@ -1,0 +1,124 @@
+//! A drive whose torque falls behind: of a commanded effort u it delivers `u / (1 + k |u|)`.
+//!
+//! No column. The inverse, `q / (1 − k |q|)`, is put on the prediction, never on the recorded
+//! effort: noise in a regressor would look like an effect. The fit is linearised about an earlier
+//! one ([`crate::fit::bench`]).
+
+use axis_model::EffectName;
+
+use super::{Effect, Fitted, Kinematics, Named, Naming, Setting, Stage};
+use crate::model::name::Called;
+use crate::record::dataset::Dataset;
+
+/// u / (1 + k |u|).
+pub(crate) struct TorqueSaturation;
+
+/// Shares of the largest effort that are tried as lost.
+const LOSSES: [f64; 8] = [0.004, 0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.4];
+/// Bounds of k times the largest effort: a tenth of the smallest loss that is tried, and what a
+/// drive that still does its work can lose.
+const BOUNDS: (f64, f64) = (0.1 * LOSSES[0], 0.6);
+/// The largest k·|q| that is followed; beyond it the inverse runs away.
+const LARGEST_LOSS: f64 = 0.8;
+
+/// The law of an actuator whose delivered effort falls behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Saturation {
+    /// k of `u / (1 + k |u|)`, one over the unit of the effort; zero: an ideal actuator.
+    pub per_effort: f64,
+}
+
+impl Saturation {
+    /// Whether the delivered effort is the commanded one.
+    #[must_use]
+    pub(crate) fn is_ideal(self) -> bool {
+        self.per_effort == 0.0
+    }
+
+    /// Commanded effort for a wanted one.
+    #[must_use]
+    pub(crate) fn commanded(self, wanted: f64) -> f64 {
+        wanted / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS))
+    }
+
+    /// Delivered effort for a commanded one.
+    #[must_use]
+    pub(crate) fn delivered(self, commanded: f64) -> f64 {
+        commanded / (1.0 + self.per_effort * commanded.abs())
+    }
+
+    /// Commanded over wanted effort, for small changes.
+    #[must_use]
+    pub(crate) fn slope(self, wanted: f64) -> f64 {
+        1.0 / (1.0 - (self.per_effort * wanted.abs()).min(LARGEST_LOSS)).powi(2)
+    }
+}
+
+fn largest_effort(motion: &Kinematics) -> f64 {
+    let pairs = motion.effort_lp.iter().zip(&motion.fitted);
+    let fitted = pairs.filter(|(_, fitted)| **fitted);
+    fitted.fold(f64::MIN_POSITIVE, |most, (effort, _)| {
+        most.max(effort.abs())
+    })
+}
+
+impl Effect for TorqueSaturation {
+    fn called(&self) -> Called {
+        EffectName::TorqueSaturation.into()
+    }
+
+    fn equation(&self) -> &'static str {
+        "delivered = u / (1 + k |u|)"
+    }
+
+    fn columns(&self, _: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    fn width(&self, _: f64) -> usize {
+        0
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Actuator
+    }
+
+    fn is_judged_slow_too(&self) -> bool {
+        true
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn grid(&self, motion: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
+        let largest = largest_effort(motion);
+        LOSSES.iter().map(|loss| loss / largest).collect()
+    }
+
+    fn first_step(&self, _: &Kinematics, k: f64) -> f64 {
+        0.3 * k
+    }
+
+    fn later_step(&self, motion: &Kinematics, k: f64) -> f64 {
+        self.first_step(motion, k)
+    }
+
+    fn derivative_step(&self, k: f64) -> f64 {
+        1.0e-3 * k
+    }
+
+    fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
+        let largest = largest_effort(motion);
+        (BOUNDS.0 / largest, BOUNDS.1 / largest)
+    }
+
+    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
+        fitted.parameter > 0.0
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let unit = format!("1/{}", naming.dataset.effort.unit());
+        vec![naming.nonlinear("torque_saturation", naming.parameter, unit)]
+    }
+}

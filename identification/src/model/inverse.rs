@@ -1,0 +1,186 @@
+//! The inverse model of an axis: motion in, commanded effort out.
+//!
+//! ```text
+//! q = Σ θ · column          wanted effort: the parts that are forces
+//! u = q / (1 − k |q|)       commanded effort of a drive that falls behind (torque saturation)
+//! u(t) acts at t + delay    (delay)
+//! ```
+//!
+//! All of them are parts of one list. A part that is a force has columns and one coefficient each;
+//! delay and saturation have a nonlinear parameter and no column.
+
+use axis_model::EffectName;
+
+use crate::model::effects::torque_saturation::Saturation;
+use crate::model::effects::{Effect, LIBRARY};
+use crate::model::name::Called;
+use crate::record::dataset::Dataset;
+
+/// Where a part comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The dataset declares it: it is not removed.
+    Declared,
+    /// The identification found it.
+    Found,
+}
+
+/// An effect with its nonlinear parameter.
+#[derive(Clone)]
+pub(crate) struct Part {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Its nonlinear parameter.
+    pub parameter: f64,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Coefficients of its columns about which a saturating actuator is linearised; empty: zero.
+    pub about: Vec<f64>,
+}
+
+impl Part {
+    /// A part that was found.
+    #[must_use]
+    pub(crate) fn found(effect: &'static dyn Effect, parameter: f64) -> Self {
+        Self {
+            effect,
+            parameter,
+            origin: Origin::Found,
+            about: Vec::new(),
+        }
+    }
+
+    /// A part that was declared.
+    #[must_use]
+    pub(crate) fn declared(effect: &'static dyn Effect, parameter: f64) -> Self {
+        Self {
+            origin: Origin::Declared,
+            ..Self::found(effect, parameter)
+        }
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub(crate) fn called(&self) -> Called {
+        self.effect.called()
+    }
+
+    /// Number of its columns.
+    #[must_use]
+    pub(crate) fn width(&self) -> usize {
+        self.effect.width(self.parameter)
+    }
+
+    /// Whether it is the same effect with the same nonlinear parameter.
+    #[must_use]
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.called() == other.called() && self.parameter == other.parameter
+    }
+
+    /// Whether it has this name.
+    #[must_use]
+    pub(crate) fn is(&self, name: EffectName) -> bool {
+        self.called() == name
+    }
+}
+
+/// An inverse model: a list of parts, the declared ones first, the others in the order in which
+/// they were found.
+#[derive(Clone, Default)]
+pub(crate) struct Model {
+    /// Its parts.
+    pub parts: Vec<Part>,
+}
+
+impl Model {
+    /// What a dataset declares, as far as it is an effect of the inverse model.
+    #[must_use]
+    pub(crate) fn declared(dataset: &Dataset) -> Self {
+        let is_declared = |effect: &&'static dyn Effect| {
+            let called = effect.called();
+            let stands_for = |name: &EffectName| called == *name || effect.stands_for(*name);
+            dataset.declared.iter().any(stands_for)
+        };
+        let parts = LIBRARY.into_iter().filter(is_declared);
+        Self {
+            parts: parts
+                .map(|effect| Part::declared(effect, effect.start(dataset)))
+                .collect(),
+        }
+    }
+
+    /// The part of a name, where it is in the model; the first one of those that repeat.
+    #[must_use]
+    pub(crate) fn of(&self, name: EffectName) -> Option<&Part> {
+        self.parts.iter().find(|part| part.is(name))
+    }
+
+    /// Whether a part of this name is in it.
+    #[must_use]
+    pub(crate) fn has(&self, name: impl Into<Called>) -> bool {
+        let called = name.into();
+        self.parts.iter().any(|part| part.called() == called)
+    }
+
+    /// The recorded effort acts this much later than the record says, s.
+    #[must_use]
+    pub(crate) fn delay_s(&self) -> f64 {
+        self.of(EffectName::Delay)
+            .map_or(0.0, |part| part.parameter)
+    }
+
+    /// The actuator; an ideal one where it does not saturate.
+    #[must_use]
+    pub(crate) fn saturation(&self) -> Saturation {
+        Saturation {
+            per_effort: self
+                .of(EffectName::TorqueSaturation)
+                .map_or(0.0, |part| part.parameter),
+        }
+    }
+
+    /// The model with one more part.
+    #[must_use]
+    pub(crate) fn with(&self, part: Part) -> Self {
+        let mut model = self.clone();
+        model.parts.push(part);
+        model
+    }
+
+    /// The model without one of its parts.
+    #[must_use]
+    pub(crate) fn without(&self, part: &Part) -> Self {
+        let mut model = self.clone();
+        model.parts.retain(|other| !other.is_same(part));
+        model
+    }
+
+    /// The model with another nonlinear parameter of a part.
+    #[must_use]
+    pub(crate) fn with_parameter(&self, place: usize, parameter: f64) -> Self {
+        let mut model = self.clone();
+        model.parts[place].parameter = parameter;
+        model
+    }
+
+    /// Places of the parts in the order in which they are refined: from the forces to the recorded
+    /// effort, that is forces, delay, actuator.
+    #[must_use]
+    pub(crate) fn outwards(&self) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..self.parts.len()).collect();
+        places.sort_by_key(|place| self.parts[*place].effect.stage());
+        places
+    }
+
+    /// The parts that were found, once each, in the order in which they were found.
+    #[must_use]
+    pub(crate) fn found(&self) -> Vec<Called> {
+        let mut list = Vec::new();
+        for part in self.parts.iter().filter(|p| p.origin == Origin::Found) {
+            if !list.contains(&part.called()) {
+                list.push(part.called());
+            }
+        }
+        list
+    }
+}
