@@ -137,7 +137,7 @@ fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
 fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
     let mut rows = Vec::new();
     let mut bursts = Vec::new();
-    // The prototype's bursts for its 2 kHz loop, design.md.
+    // The prototype's bursts for its 2 kHz loop.
     for (gap_um, prototype_um) in [(0.0, 12.0), (100.0, 43.0), (200.0, 65.0), (400.0, 101.0)] {
         let circle = circle(10.0, 500.0);
         let points = run(&gap_inside(1.0e-6 * gap_um), &circle);

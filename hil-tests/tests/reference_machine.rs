@@ -10,8 +10,8 @@ use workbench::session::{Place, Session};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 use workbench::tuning;
 
-/// R mm, F mm/min; uncompensated and tuned-at-F2000 burst of the prototype, µm
-/// (reference-axis.toml).
+/// R mm, F mm/min; uncompensated and tuned-at-F2000 burst of the prototype that
+/// `plant-sim/src/reference.toml` describes, µm.
 const CIRCLES: [(f64, f64, f64, f64); 5] = [
     (100.0, 2000.0, 33.71, 6.59),
     (100.0, 8000.0, 46.34, 19.98),

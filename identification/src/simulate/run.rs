@@ -6,7 +6,7 @@
 //! compare structures, but no free run, and not reported as one.
 //!
 //! Its states (stick, bristle, gap) are what the inverse model cannot have. Parameters start from
-//! the inverse model and are fitted by Levenberg–Marquardt to the recorded position ([`fit`]).
+//! the inverse model and are fitted by Levenberg–Marquardt to the recorded position (`fit.rs`).
 
 use super::axis::Axis;
 use super::controller::{self, Law};
