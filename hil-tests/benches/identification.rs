@@ -28,9 +28,17 @@ fn main() {
     for rows in ROWS {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let hidden = vec![
-            Stribeck(1.5, 4.0e-3),
-            TorqueRipple(15.0, 6.0),
-            Presliding(8.0e-6),
+            Stribeck {
+                ratio: 1.5,
+                velocity_m_per_s: 4.0e-3,
+            },
+            TorqueRipple {
+                amplitude_n: 15.0,
+                order_per_rev: 6.0,
+            },
+            Presliding {
+                deflection_m: 8.0e-6,
+            },
         ];
         let plan = Plan {
             hidden,

@@ -9,11 +9,11 @@
 //! table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
 pub mod architecture;
+pub mod confusion;
 pub mod golden;
 pub mod losses;
 pub mod matrix;
 pub mod paths;
-pub mod plans;
 pub mod program;
 pub mod records;
 pub mod rig;

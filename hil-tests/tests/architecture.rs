@@ -4,7 +4,7 @@
 //! of functions.
 
 use hil_tests::architecture::crates::{self, Member};
-use hil_tests::architecture::{Graph, Sources, workspace};
+use hil_tests::architecture::{Graph, Sources, rooms, workspace};
 
 /// Crates whose circles are still open. In `servo` a set of parameters and the conversion of the
 /// set name each other.
@@ -41,6 +41,16 @@ fn no_file_uses_one_that_uses_it() {
             assert_no_circle(&member.name, &sources(&member).uses());
         }
     }
+}
+
+#[test]
+fn no_room_of_the_identification_uses_a_later_one() {
+    let members = members();
+    let member = members
+        .iter()
+        .find(|member| member.name == "identification");
+    let wrong = rooms::against_the_order(&sources(member.unwrap()), &rooms::IDENTIFICATION);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// A search that finds no file or no use would find no circle either.

@@ -9,8 +9,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use hil_tests::golden::{self, row};
-use hil_tests::plans::plans;
-use hil_tests::records;
+use hil_tests::records::{self, plans::plans};
 use identification::{Dataset, Identification, Report, identify};
 use workbench::presentation::plots::{self, Curve};
 

@@ -1,0 +1,107 @@
+//! A record: the axis runs along its motion, and what a drive would log is written down.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::Path;
+
+use plant_sim::axis::{Axis, AxisParameters};
+
+use super::axis::{self, LOAD_RESOLUTION_M, Measured, mass_kg, motor_resolution_m};
+use super::control::{
+    Controller, INTEGRAL_PER_S, POSITION_GAIN_PER_S, VELOCITY_FILTER, velocity_gain_n_s_per_m,
+};
+use super::draws::Draws;
+use super::hidden::foreign_n;
+use super::motion;
+use super::plan::{Plan, Positions, Sensor};
+use super::{LEAD_M, PERIOD_S};
+
+/// Writes `train.csv`, `validate.csv` and `dataset.toml` of a plan into a folder.
+///
+/// # Errors
+/// Where the folder cannot be written.
+pub fn write(folder: &Path, plan: &Plan) -> io::Result<()> {
+    let mut draws = Draws::of(plan.seed);
+    let parameters = axis::parameters(plan, &mut draws);
+    for name in ["train.csv", "validate.csv"] {
+        let path = motion::path(plan.rows, &mut draws);
+        let text = record(plan, &parameters, &path, &mut draws);
+        std::fs::write(folder.join(name), text)?;
+    }
+    std::fs::write(
+        folder.join("dataset.toml"),
+        dataset(plan, mass_kg(&parameters)),
+    )
+}
+
+/// Runs the axis along a path and writes the record.
+fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], draws: &mut Draws) -> String {
+    let seed = draws.between(0.0, 1.0e9) as u64;
+    let mut axis = Axis::new(parameters.clone(), seed);
+    let mut controller = Controller::new(mass_kg(parameters));
+    let mut text = head(plan.positions);
+    for row in 0..path.len() {
+        let time_s = PERIOD_S * row as f64;
+        let measured = Measured::of(&mut axis);
+        let force_n = controller.step(path, row, measured.at(plan.closed_on));
+        let recorded_n = force_n + plan.noise_n * draws.normal();
+        let load = load_cell(plan.positions, measured.load_m);
+        writeln!(
+            text,
+            "{time_s:.3},{:.9},{:.10}{load},{recorded_n:.2}",
+            path[row], measured.motor_m
+        )
+        .expect("a String takes it");
+        let foreign_n = foreign_n(&plan.hidden, *axis.motion(), time_s);
+        axis.advance(force_n + foreign_n, PERIOD_S);
+    }
+    text
+}
+
+fn head(positions: Positions) -> String {
+    let load = match positions {
+        Positions::Motor => "",
+        Positions::MotorAndLoad => ",load_position_m",
+    };
+    format!("time_s,reference_m,position_m{load},force_n\n")
+}
+
+fn load_cell(positions: Positions, load_m: f64) -> String {
+    match positions {
+        Positions::Motor => String::new(),
+        Positions::MotorAndLoad => format!(",{load_m:.8}"),
+    }
+}
+
+/// What an identification is told of the record.
+fn dataset(plan: &Plan, mass_kg: f64) -> String {
+    let resolution_m = motor_resolution_m();
+    let load = match plan.positions {
+        Positions::Motor => String::new(),
+        Positions::MotorAndLoad => {
+            format!("load_encoder_resolution_m = {LOAD_RESOLUTION_M:e}\n")
+        }
+    };
+    format!(
+        "name = \"seed {}\"\nsample_period_s = {PERIOD_S}\neffort_hold = \"zero-order\"\n\
+         [axis]\nkind = \"linear\"\nlead_m_per_rev = {LEAD_M}\n\
+         encoder_resolution_m = {resolution_m:e}\n{load}{}\
+         [declared]\neffects = [\"inertia\", \"viscous\", \"coulomb\", \"offset\"]\n",
+        plan.seed,
+        controller_table(plan, mass_kg)
+    )
+}
+
+fn controller_table(plan: &Plan, mass_kg: f64) -> String {
+    let gain = velocity_gain_n_s_per_m(mass_kg);
+    let sensor = match plan.closed_on {
+        Sensor::Motor => "motor",
+        Sensor::Load => "load",
+    };
+    format!(
+        "[controller]\nposition_gain_per_s = {POSITION_GAIN_PER_S}\n\
+         velocity_gain_n_s_per_m = {gain}\nintegral_per_s = {INTEGRAL_PER_S}\n\
+         velocity_filter = {VELOCITY_FILTER}\nacceleration_feedforward_kg = {mass_kg}\n\
+         position_sensor = \"{sensor}\"\n"
+    )
+}
