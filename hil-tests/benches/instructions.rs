@@ -34,7 +34,7 @@ use servo::objects::{self, Parameter};
 use workbench::compensation::{AxisCompensation, Compensation, Pulse};
 use workbench::drive_parameters;
 use workbench::error::Outcome;
-use workbench::network::link::InProcess;
+use workbench::network::in_process::InProcess;
 use workbench::network::master::Master;
 use workbench::trajectory::Circle;
 

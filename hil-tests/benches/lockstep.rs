@@ -15,7 +15,8 @@ use hil_tests::rig::shared_bus;
 use protocol::CanFrame;
 use protocol::cob::{AxisIds, FrameKind, HEARD_BY_PLANT, HEARD_BY_SERVO};
 use workbench::compensation::AxisCompensation;
-use workbench::network::link::{Interfaces, axis_ids};
+use workbench::network::interfaces::Interfaces;
+use workbench::network::link::axis_ids;
 use workbench::network::master::Master;
 
 const CYCLES: u32 = 5000;

@@ -10,7 +10,7 @@ use protocol::cob::AxisIds;
 use protocol::{CanFrame, Fault, Station};
 use servo::Servo;
 use servo::watchdog::Counts;
-use workbench::network::link::InProcess;
+use workbench::network::in_process::InProcess;
 use workbench::network::master::Master;
 
 use crate::rig::{PLANT, SERVO, enabled};

@@ -8,7 +8,8 @@ use protocol::sdo::Expedited;
 use servo::objects::{COMMIT, COMMIT_KEY, Parameter, TABLE};
 use workbench::compensation::AxisCompensation;
 use workbench::error::{Failure, Outcome};
-use workbench::network::link::{InProcess, Link};
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 /// The reference machine without noise, for figures that have to repeat to the digit.

@@ -11,7 +11,7 @@ use workbench::interrupt::Interrupt;
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     let out = tempfile::tempdir().unwrap();
     let machine = MachineArguments::default();
-    commission::command(
+    commission::run(
         &Commission {
             machine,
             out: out.path().to_path_buf(),

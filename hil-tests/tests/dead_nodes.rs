@@ -9,7 +9,8 @@ use hil_tests::rig::{PLANT, SERVO, enabled, one_axis};
 use protocol::cob::FrameKind;
 use protocol::states::DriveState;
 use protocol::{AxisIds, Fault, Message, message};
-use workbench::network::link::{InProcess, Link};
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 /// From rest, 26 mm/s at most.

@@ -9,7 +9,7 @@ use hil_tests::rig::{absolute_scale, enabled, set, vertical, vertical_axes};
 use plant_sim::machine::PositionSensor;
 use protocol::states::{BrakeState, DriveState};
 use servo::objects::Parameter;
-use workbench::network::link::InProcess;
+use workbench::network::in_process::InProcess;
 use workbench::network::master::Master;
 
 fn table_m(master: &mut Master<InProcess>) -> f64 {

@@ -8,12 +8,13 @@ use hil_tests::rig::{dry_friction, gap_inside, gap_outside, quiet_reference};
 use hil_tests::{Scope, on_all_cores};
 use plant_sim::Machine;
 use workbench::ballbar::{self, Point};
-use workbench::commands::commission;
+use workbench::commissioning::reversal_curves::six_curves;
+use workbench::commissioning::reversal_run::reversal_rows;
 use workbench::compensation::AxisCompensation;
-use workbench::interrupt::Interrupt;
 use workbench::network::master::AxisCycle;
+use workbench::network::place::Place;
 use workbench::presentation::plots::{self, Trace};
-use workbench::session::{Place, Session};
+use workbench::session::{Session, Stand};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
@@ -100,14 +101,7 @@ fn fig_1_and_4_a_gap_outside_the_loop_gives_a_step_of_gap_plus_twice_the_wind_up
 fn fig_4_the_table_stands_while_the_motor_crosses_the_gap() {
     let gap_m = 1.0e-4;
     let machine = gap_outside(gap_m);
-    let rows = commission::reversal_rows(
-        &machine,
-        &Place::InProcess,
-        &none(),
-        &circle(100.0, 500.0),
-        &Interrupt::never(),
-    )
-    .unwrap();
+    let rows = reversal_rows(&Stand::in_process(&machine), &none(), &circle(100.0, 500.0)).unwrap();
     let of = |row: &(f64, AxisCycle)| row.1.truth.unwrap();
     // While table − motor goes through the middle half of the gap.
     let crossing: Vec<(f64, f64)> = rows
@@ -178,15 +172,13 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
 #[test]
 fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
     let machine = dry_friction();
-    let rows = commission::reversal_rows(
-        &machine,
-        &Place::InProcess,
+    let rows = reversal_rows(
+        &Stand::in_process(&machine),
         &none(),
         &circle(100.0, 2000.0),
-        &Interrupt::never(),
     )
     .unwrap();
-    for (place, svg) in commission::six_curves(&machine, "Fig. 8(a)", &rows)
+    for (place, svg) in six_curves(&machine, "Fig. 8(a)", &rows)
         .unwrap()
         .iter()
         .enumerate()

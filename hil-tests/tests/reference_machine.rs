@@ -5,8 +5,8 @@ use hil_tests::rig::quiet_reference;
 use hil_tests::{Scope, on_all_cores};
 use workbench::ballbar::{self, CircleFigures};
 use workbench::compensation::{AxisCompensation, Compensation};
-use workbench::interrupt::Interrupt;
-use workbench::session::{Place, Session};
+use workbench::network::place::Place;
+use workbench::session::{Session, Stand};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 use workbench::tuning;
 
@@ -91,14 +91,9 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
     if Scope::now().leaves_row_to("tests/commission.rs, which tunes at R 100 F 2000") {
         return;
     }
-    let tuned = tuning::pulse(
-        &quiet_reference(),
-        &Place::InProcess,
-        &circle(100.0, 2000.0),
-        0.0,
-        &Interrupt::never(),
-    )
-    .unwrap();
+    let machine = quiet_reference();
+    let stand = Stand::in_process(&machine);
+    let tuned = tuning::pulse(&stand, &circle(100.0, 2000.0), 0.0).unwrap();
     let cells = Scope::now().rows("reference-machine", &CIRCLES, 1, 3);
     let rows = on_all_cores(cells, |cell| figures(cell, &tuned.compensation)).concat();
     golden::check_some(

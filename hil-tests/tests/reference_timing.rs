@@ -4,7 +4,8 @@
 use hil_tests::rig::quiet_reference;
 use workbench::ballbar;
 use workbench::compensation::{AxisCompensation, Compensation};
-use workbench::session::{Place, Session};
+use workbench::network::place::Place;
+use workbench::session::Session;
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 const ACCELERATION_M_PER_S2: f64 = 5.0;

@@ -11,7 +11,8 @@ use protocol::states::{ControlWord, DriveState};
 use protocol::{AxisIds, Fault, Message};
 use servo::objects::{DECLARED_PERIOD, Parameter};
 use workbench::compensation::AxisCompensation;
-use workbench::network::link::{InProcess, Link};
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 fn configured(machine: &Machine) -> Master<InProcess> {

@@ -21,7 +21,8 @@ use protocol::states::DriveState;
 use protocol::{Message, SyncCounter};
 use quadrant_host::Pace;
 use workbench::compensation::AxisCompensation;
-use workbench::network::link::{Interfaces, Link};
+use workbench::network::interfaces::Interfaces;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 /// Force limit of the reference axis in % of which torque differences are told.

@@ -17,7 +17,8 @@ use protocol::message::NmtCommand;
 use protocol::states::{BrakeState, ControlWord};
 use protocol::{AxisIds, Fault, Message};
 use servo::objects::Parameter;
-use workbench::network::link::{InProcess, Link};
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 /// Largest way that a controlled stop may take, mm: issue 7.

@@ -7,9 +7,8 @@ use hil_tests::golden::{self, Measured, row};
 use hil_tests::{Scope, on_all_cores};
 use identification::Report;
 use plant_sim::Machine;
-use workbench::commands::commission;
-use workbench::interrupt::Interrupt;
-use workbench::session::Place;
+use workbench::commissioning::identified_axes;
+use workbench::session::Stand;
 
 /// An axis: its effect, the keys that differ from the plain axis, and what it declares.
 struct Hidden {
@@ -167,9 +166,9 @@ fn commissioned(pair: &[Hidden]) -> (Vec<(String, Vec<String>)>, Vec<Measured>) 
         .collect();
     let text = format!("name = \"{}\"\n{HEAD}{axes}", pair[0].effect);
     let machine = Machine::parse("machine.toml", &text).unwrap();
-    let results =
-        commission::identify_axes(&machine, &Place::InProcess, out.path(), &Interrupt::never())
-            .unwrap();
+    let stand = Stand::in_process(&machine);
+    identified_axes::record(&stand, out.path()).unwrap();
+    let results = identified_axes::identify(&stand, out.path()).unwrap();
     let each = pair.iter().zip(&results);
     let found = each
         .clone()

@@ -15,7 +15,8 @@ use protocol::message::{Decoded, decode};
 use protocol::{Fault, Message};
 use quadrant_host::Pace;
 use workbench::compensation::AxisCompensation;
-use workbench::network::link::{Interfaces, Link, axis_ids};
+use workbench::network::interfaces::Interfaces;
+use workbench::network::link::{Link, axis_ids};
 use workbench::network::master::Master;
 
 /// The scenarios of a scope by their names, and what the runner says when all of them passed.

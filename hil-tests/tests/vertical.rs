@@ -18,7 +18,8 @@ use protocol::states::{BrakeState, ControlWord, DriveState};
 use protocol::{Fault, Message};
 use servo::objects::Parameter;
 use workbench::compensation::AxisCompensation;
-use workbench::network::link::{InProcess, Link};
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 /// Largest way of the table where torque holds it, µm: issue 7.

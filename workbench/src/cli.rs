@@ -1,9 +1,17 @@
-//! The command line.
+//! The command line: what can be said on it, and what it means.
+//!
+//! The texts of this file are those of `quadrant --help`.
+
+mod machine_arguments;
+mod values;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
+
+pub use machine_arguments::{MachineArguments, Pace, PaceArguments, machine_file};
+pub use values::circle;
+use values::{fault_plan, node_id};
 
 /// A servo axis that removes its own reversal errors, and the bench that proves it.
 #[derive(Debug, Parser)]
@@ -32,21 +40,6 @@ pub enum Command {
     Servo(Servo),
     /// Print the built-in reference machine file, to start your own from
     Machine,
-}
-
-/// Where the machine is.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub struct MachineArguments {
-    /// Machine file (TOML); the built-in reference machine without it
-    #[arg(long, value_name = "FILE")]
-    pub machine: Option<PathBuf>,
-    /// CAN interface(s) with the nodes on them, comma-separated and given to the axes in turn; in
-    /// process without it
-    #[arg(long, value_name = "IFACE")]
-    pub can: Option<String>,
-    #[command(flatten)]
-    #[expect(missing_docs, reason = "flattened")]
-    pub pace: PaceArguments,
 }
 
 /// Arguments of `commission`.
@@ -149,52 +142,6 @@ pub struct Tune {
     pub start_delay_ms: f64,
 }
 
-/// Who beats the time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Pace {
-    /// The next SYNC waits for everybody
-    Lockstep,
-    /// SYNC follows the clock
-    Clock,
-}
-
-/// How a run on CAN interfaces is paced.
-#[derive(Clone, Copy, Debug, clap::Args)]
-pub struct PaceArguments {
-    /// Who beats the time on CAN interfaces
-    #[arg(long, value_enum, default_value_t = Pace::Lockstep)]
-    pub pace: Pace,
-    /// Lock-step: a cycle whose frames stay away closes without them after so long; the same for
-    /// the workbench and all nodes. Some milliseconds only where frames are lost on purpose
-    #[arg(long, value_name = "MS", default_value_t = DEADLINE_MS, value_parser = clap::value_parser!(u64).range(1..=60_000))]
-    pub deadline_ms: u64,
-}
-
-/// Long, because on a busy machine a process may have to wait for its turn.
-const DEADLINE_MS: u64 = 1000;
-
-impl Default for PaceArguments {
-    fn default() -> Self {
-        Self {
-            pace: Pace::Lockstep,
-            deadline_ms: DEADLINE_MS,
-        }
-    }
-}
-
-impl PaceArguments {
-    /// The pace of nodes and workbench.
-    #[must_use]
-    pub const fn chosen(self) -> quadrant_host::Pace {
-        match self.pace {
-            Pace::Lockstep => quadrant_host::Pace::Lockstep {
-                deadline: Duration::from_millis(self.deadline_ms),
-            },
-            Pace::Clock => quadrant_host::Pace::Clock,
-        }
-    }
-}
-
 /// Arguments of `plant`.
 #[derive(Debug, clap::Args)]
 pub struct Plant {
@@ -235,101 +182,4 @@ pub struct Servo {
     /// cycle] (the shares per mille)
     #[arg(long, hide = true, value_parser = fault_plan)]
     pub faults: Option<bus::FaultPlan>,
-}
-
-/// A node id in decimal or hexadecimal.
-fn node_id(text: &str) -> Result<u8, String> {
-    let number = text
-        .strip_prefix("0x")
-        .map_or_else(|| text.parse(), |hex| u8::from_str_radix(hex, 16));
-    match number.ok().and_then(protocol::NodeId::new) {
-        Some(id) => Ok(id.get()),
-        None => Err(format!(
-            "a CANopen node id is 1 to 127 (0x01 to 0x7F), got {text}"
-        )),
-    }
-}
-
-/// Faults begin here unless the plan says otherwise: when the axes are enabled.
-const FAULTS_FROM_CYCLE: u32 = 100;
-
-fn fault_plan(text: &str) -> Result<bus::FaultPlan, String> {
-    let numbers: Vec<u32> = text
-        .split(',')
-        .map(str::parse)
-        .collect::<Result<_, _>>()
-        .unwrap_or_default();
-    let (seed, shares, from_cycle) = match numbers[..] {
-        [seed, a, b, c, d] => (seed, [a, b, c, d], FAULTS_FROM_CYCLE),
-        [seed, a, b, c, d, from_cycle] => (seed, [a, b, c, d], from_cycle),
-        _ => {
-            return Err(format!(
-                "five or six whole numbers, seed,lost,doubled,late,corrupted[,from cycle], got {text}"
-            ));
-        }
-    };
-    if shares.iter().sum::<u32>() > 1000 {
-        return Err(format!(
-            "the shares are per mille of all frames and make at most 1000 together, got {shares:?}"
-        ));
-    }
-    let [
-        lost_per_mille,
-        doubled_per_mille,
-        late_per_mille,
-        corrupted_per_mille,
-    ] = shares.map(|share| u16::try_from(share).unwrap_or(u16::MAX));
-    Ok(bus::FaultPlan {
-        seed: u64::from(seed),
-        lost_per_mille,
-        doubled_per_mille,
-        late_per_mille,
-        corrupted_per_mille,
-        from_cycle,
-        ..bus::FaultPlan::default()
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fault_plan_has_four_shares_and_perhaps_a_first_cycle() {
-        let plan = fault_plan("7,50,0,10,0").unwrap();
-        assert_eq!(
-            (
-                plan.seed,
-                plan.lost_per_mille,
-                plan.late_per_mille,
-                plan.from_cycle
-            ),
-            (7, 50, 10, 100)
-        );
-        assert_eq!(fault_plan("7,50,0,10,0,2000").unwrap().from_cycle, 2000);
-    }
-
-    #[test]
-    fn a_fault_plan_that_is_none_is_refused_with_what_was_wanted() {
-        for wrong in [
-            "",
-            "7",
-            "7,50,0,10",
-            "7,50,0,10,0,1,1",
-            "7,50,0,-10,0",
-            "a,b,c,d,e",
-        ] {
-            assert!(
-                fault_plan(wrong)
-                    .unwrap_err()
-                    .contains("five or six whole numbers"),
-                "{wrong}"
-            );
-        }
-        assert!(
-            fault_plan("7,500,500,1,0")
-                .unwrap_err()
-                .contains("at most 1000")
-        );
-    }
 }

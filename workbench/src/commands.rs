@@ -1,5 +1,10 @@
-//! The commands of the `quadrant` program: one file each, which lists its steps.
+//! The commands of the `quadrant` program: one file and one `run` each, which lists the steps. What
+//! the steps are made of lies below.
 
 pub mod circle;
 pub mod commission;
 pub mod identify;
+pub mod machine;
+pub mod plant;
+pub mod servo;
+pub mod tune;

@@ -37,3 +37,9 @@ impl From<plant_sim::MachineError> for Failure {
         Self(error.to_string())
     }
 }
+
+impl From<identification::IdentificationError> for Failure {
+    fn from(error: identification::IdentificationError) -> Self {
+        Self(error.to_string())
+    }
+}

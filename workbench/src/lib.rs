@@ -1,21 +1,34 @@
-//! The `quadrant` program as a library: what its commands do, without the command line.
+//! The `quadrant` program as a library, floor by floor. Each floor uses those below it.
 //!
-//! [`commands`] list the steps; everything else lies below them. The workbench is NMT master, SYNC
-//! producer, SDO client and source of setpoints on any bus ([`network`]); it moves machines
-//! ([`session`], [`trajectory`]), records them ([`axis_records`]), looks at circles ([`ballbar`]),
-//! tunes ([`tuning`]) and shows what came out ([`presentation`]). Whoever moves axes gets an
-//! [`interrupt`] token, so that the operator can stop them.
+//! ```text
+//! commands                                   one file each: the list of its steps
+//! cli            commissioning               arguments; the steps that are more than a call
+//! console, presentation                      results for people
+//! circle_test    tuning      axis_records    tests on a machine
+//! session                                    a machine that moves, and stops as one
+//! ballbar        trajectory                  what a circle shows; what the axes are to do
+//! network                                    master and nodes on any bus
+//! drive_parameters, compensation             what the drive is told
+//! model_file, output_files                   what is left on disk
+//! error, interrupt, progress                 the operator
+//! ```
+//!
+//! Whoever moves axes gets an [`interrupt`] token, so that the operator can stop them.
 
 pub mod axis_records;
 pub mod ballbar;
+pub mod circle_test;
 pub mod cli;
 pub mod commands;
+pub mod commissioning;
 pub mod compensation;
+pub mod console;
 pub mod drive_parameters;
 pub mod error;
 pub mod interrupt;
 pub mod model_file;
 pub mod network;
+pub mod output_files;
 pub mod presentation;
 pub mod progress;
 pub mod session;

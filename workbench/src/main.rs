@@ -1,4 +1,4 @@
-//! The `quadrant` program.
+//! The `quadrant` program: command line in, exit code out.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -8,10 +8,9 @@ use clap::Parser as _;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use workbench::cli::{Cli, Command};
-use workbench::commands::{circle, commission, identify};
+use workbench::commands::{circle, commission, identify, machine, plant, servo, tune};
 use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
-use workbench::network::nodes;
 
 /// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off,
 /// and printing then panics.
@@ -61,6 +60,7 @@ fn moving(command: impl FnOnce(&Interrupt) -> Outcome<()>) -> (Outcome<()>, Opti
     }
 }
 
+/// 0, 2 with a line on stderr, or that of the signal that ended the work.
 fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
     let Err(failure) = outcome else {
         return ExitCode::SUCCESS;
@@ -81,19 +81,24 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    exit_code(dispatch(cli.command))
+}
+
+/// Runs the command. One that moves a machine can be interrupted; what happens then is in the code.
+fn dispatch(command: Command) -> (Outcome<()>, Option<i32>) {
     let still = |outcome| (outcome, None);
-    exit_code(match cli.command {
+    match command {
         Command::Commission(arguments) => {
-            moving(|interrupt| commission::command(&arguments, interrupt))
+            moving(|interrupt| commission::run(&arguments, interrupt))
         }
-        Command::Circle(arguments) => moving(|interrupt| circle::command(&arguments, interrupt)),
-        Command::Tune(arguments) => moving(|interrupt| circle::tune(&arguments, interrupt)),
+        Command::Circle(arguments) => moving(|interrupt| circle::run(&arguments, interrupt)),
+        Command::Tune(arguments) => moving(|interrupt| tune::run(&arguments, interrupt)),
         Command::Identify(arguments) => still(identify::run(&arguments)),
-        Command::Plant(arguments) => still(nodes::plant(&arguments)),
-        Command::Servo(arguments) => still(nodes::servo(&arguments)),
+        Command::Plant(arguments) => still(plant::run(&arguments)),
+        Command::Servo(arguments) => still(servo::run(&arguments)),
         Command::Machine => {
-            print!("{}", plant_sim::Machine::reference_text());
+            machine::run();
             still(Ok(()))
         }
-    })
+    }
 }

@@ -1,6 +1,17 @@
-//! The buses of a machine, seen from the workbench: one link to them, in process or over CAN
-//! interfaces, the master that speaks on it, and single nodes for buses with other people's nodes.
+//! The buses of a machine, seen from the workbench.
+//!
+//! ```text
+//! master     NMT, SYNC, SDO, setpoints; the way up and down
+//! place      in this process, or on CAN interfaces
+//! link       what the master asks of the buses: in_process, interfaces
+//! candump    logs of what went over them
+//! node       one node alone, for a bus with other people's nodes on it
+//! ```
 
+pub mod candump;
+pub mod in_process;
+pub mod interfaces;
 pub mod link;
 pub mod master;
-pub mod nodes;
+pub mod node;
+pub mod place;

@@ -4,29 +4,64 @@
 use std::path::Path;
 
 use plant_sim::Machine;
-use quadrant_host::Pace;
 
 use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::network::link::{InProcess, Interfaces, Link};
+use crate::network::candump::write_logs;
+use crate::network::link::Link;
 use crate::network::master::{AxisCycle, Master};
+use crate::network::place::Place;
+use crate::trajectory::circle_limits::{Slowest, check_circle};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD, Move};
 
-/// Where the machine is.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Place {
-    /// Servo and plant in this process.
-    #[default]
-    InProcess,
-    /// On CAN interfaces.
-    Can {
-        /// Their names, separated by commas.
-        names: String,
-        /// Who beats the time.
-        pace: Pace,
-    },
+/// A machine at its place, and the operator who may stop it: what every test on it needs.
+#[derive(Clone, Debug)]
+pub struct Stand<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// Where it is.
+    pub place: Place,
+    /// The wish of the operator that it stops.
+    pub interrupt: Interrupt,
+}
+
+impl<'a> Stand<'a> {
+    /// A machine in this process, which nobody interrupts.
+    #[must_use]
+    pub fn in_process(machine: &'a Machine) -> Self {
+        Self {
+            machine,
+            place: Place::InProcess,
+            interrupt: Interrupt::never(),
+        }
+    }
+
+    /// Connects to the machine; nothing is sent yet. `run` tells the noise of one run from that of
+    /// another.
+    ///
+    /// # Errors
+    /// Where an interface cannot be opened.
+    pub fn connect(&self, run: u64) -> Outcome<Session<'a>> {
+        Session::connect(self.machine, &self.place, run, &self.interrupt)
+    }
+
+    /// No compensation on any axis.
+    #[must_use]
+    pub fn uncompensated(&self) -> Vec<AxisCompensation> {
+        vec![AxisCompensation::default(); self.machine.axes.len()]
+    }
+
+    /// Names of the axes.
+    #[must_use]
+    pub fn axis_names(&self) -> Vec<String> {
+        self.machine
+            .axes
+            .iter()
+            .map(|axis| axis.name.clone())
+            .collect()
+    }
 }
 
 /// A machine that moves, and stops as one where an axis has trouble or the operator wants it.
@@ -34,52 +69,6 @@ pub struct Session<'a, L: Link = Box<dyn Link>> {
     machine: &'a Machine,
     master: Master<L>,
     interrupt: Interrupt,
-}
-
-impl Link for Box<dyn Link> {
-    fn buses(&self) -> usize {
-        self.as_ref().buses()
-    }
-
-    fn bus_of(&self, axis: usize) -> usize {
-        self.as_ref().bus_of(axis)
-    }
-
-    fn send(&mut self, bus: usize, frame: protocol::CanFrame) -> Outcome<()> {
-        self.as_mut().send(bus, frame)
-    }
-
-    fn receive(
-        &mut self,
-        bus: usize,
-        timeout: std::time::Duration,
-    ) -> Outcome<Option<protocol::CanFrame>> {
-        self.as_mut().receive(bus, timeout)
-    }
-
-    fn receive_in_cycle(
-        &mut self,
-        bus: usize,
-        most: Option<std::time::Duration>,
-    ) -> Outcome<Option<protocol::CanFrame>> {
-        self.as_mut().receive_in_cycle(bus, most)
-    }
-
-    fn pass(&mut self, cycle: std::time::Duration) {
-        self.as_mut().pass(cycle);
-    }
-
-    fn truth(&self, axis: usize) -> Option<plant_sim::node::Truth> {
-        self.as_ref().truth(axis)
-    }
-
-    fn start_log(&mut self) {
-        self.as_mut().start_log();
-    }
-
-    fn take_logs(&mut self) -> Vec<bus::BusLog> {
-        self.as_mut().take_logs()
-    }
 }
 
 impl<'a> Session<'a> {
@@ -109,13 +98,7 @@ impl<'a> Session<'a> {
         run: u64,
         interrupt: &Interrupt,
     ) -> Outcome<Self> {
-        let link: Box<dyn Link> = match place {
-            Place::InProcess => Box::new(InProcess::new(machine, run)?),
-            Place::Can { names, pace } => {
-                Box::new(Interfaces::open(machine, names)?.with_pace(*pace))
-            }
-        };
-        Self::on(link, machine, interrupt)
+        Self::on(place.open(machine, run)?, machine, interrupt)
     }
 }
 
@@ -207,15 +190,13 @@ impl<'a, L: Link> Session<'a, L> {
         let from: Vec<f64> = (0..to.len())
             .map(|axis| self.master.axis(axis).reference_m)
             .collect();
-        let limits = self.machine.axes.iter().map(|axis| axis.limits);
-        let velocity = limits
-            .clone()
-            .map(|l| l.velocity_m_per_s)
-            .fold(f64::INFINITY, f64::min);
-        let acceleration = limits
-            .map(|l| l.acceleration_m_per_s2)
-            .fold(f64::INFINITY, f64::min);
-        let path = Move::new(&from, to, 0.5 * velocity, 0.5 * acceleration);
+        let slowest = Slowest::of(self.machine);
+        let path = Move::new(
+            &from,
+            to,
+            0.5 * slowest.velocity_m_per_s,
+            0.5 * slowest.acceleration_m_per_s2,
+        );
         self.follow(path.duration_s(), |time_s| path.at(time_s), |_, _| ())?;
         self.follow(SETTLE_S, |_| to.to_vec(), |_, _| ())
     }
@@ -302,19 +283,6 @@ impl<'a, L: Link> Session<'a, L> {
     }
 }
 
-/// Writes the logs of all buses into one candump log.
-///
-/// # Errors
-/// Where it cannot be written.
-pub fn write_logs(path: &Path, logs: &[bus::BusLog]) -> Outcome<()> {
-    let failed = |error: std::io::Error| Failure::file(path, &error);
-    let mut file = std::io::BufWriter::new(std::fs::File::create(path).map_err(failed)?);
-    logs.iter()
-        .try_for_each(|log| log.write(&mut file))
-        .map_err(failed)?;
-    std::io::Write::flush(&mut file).map_err(failed)
-}
-
 /// Rest after a move, so that nothing of it is left on the record.
 const SETTLE_S: f64 = 0.3;
 
@@ -326,50 +294,4 @@ fn point(angle_rad: f64, axes: &[AxisCycle]) -> Point {
         motor_m: of(&|axis| axis.truth.map_or(axis.motor_m, |truth| truth.motor_m)),
         reference_m: of(&|axis| axis.reference_m),
     }
-}
-
-/// Refuses a circle that the machine cannot run.
-///
-/// # Errors
-/// What does not fit, and the limit.
-pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
-    let [x, y, ..] = &machine.axes[..] else {
-        return Err(Failure::new(format!(
-            "machine {}: a circle needs two axes, this machine has {}",
-            machine.name,
-            machine.axes.len()
-        )));
-    };
-    for axis in [x, y] {
-        let limits = &axis.limits;
-        let acceleration = circle.feed_m_per_s * circle.feed_m_per_s / circle.radius_m;
-        for (what, wanted, limit, unit) in [
-            (
-                "--radius-mm",
-                circle.radius_m * 1.0e3,
-                limits.travel_m * 1.0e3,
-                "mm of travel",
-            ),
-            (
-                "--feed-mm-min",
-                circle.feed_m_per_s * 6.0e4,
-                limits.velocity_m_per_s * 6.0e4,
-                "mm/min of velocity",
-            ),
-            (
-                "--feed-mm-min with --radius-mm",
-                acceleration,
-                limits.acceleration_m_per_s2,
-                "m/s² of acceleration",
-            ),
-        ] {
-            if wanted > limit {
-                return Err(Failure::new(format!(
-                    "{what}: axis {} allows {limit} {unit}, the circle needs {wanted:.3}",
-                    axis.name
-                )));
-            }
-        }
-    }
-    Ok(())
 }

@@ -8,13 +8,14 @@ use plant_sim::Machine;
 use plant_sim::machine::PositionSensor;
 use protocol::Fault;
 use protocol::states::DriveState;
+use workbench::axis_records::dataset_folder::DatasetFolder;
 use workbench::axis_records::{self, Part};
 use workbench::cli::{Commission, MachineArguments};
 use workbench::commands::commission;
 use workbench::compensation::AxisCompensation;
 use workbench::error::Failure;
 use workbench::interrupt::Interrupt;
-use workbench::network::link::InProcess;
+use workbench::network::in_process::InProcess;
 use workbench::session::Session;
 
 /// Places on the bus of an axis.
@@ -283,17 +284,16 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
     )
     .unwrap();
     let folder = out.path().join("records-Y");
+    let folder_of_y = DatasetFolder {
+        path: &folder,
+        machine: &machine,
+        axis: &machine.axes[1],
+    };
     let failure = session
         .perform(&[], Some(&log), |session| {
             let mut records = Vec::new();
             axis_records::record(session, &machine, Part::Train, &mut records)?;
-            axis_records::write_part(
-                &folder,
-                &machine,
-                &machine.axes[1],
-                (Part::Train, &records[1]),
-                None,
-            )?;
+            folder_of_y.write(Part::Train, &records[1], None)?;
             session
                 .master_mut()
                 .link_mut()
@@ -301,13 +301,7 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
                 .connect(PLANT, false);
             let outcome = axis_records::record(session, &machine, Part::Validate, &mut records);
             let broke_off = outcome.as_ref().err();
-            axis_records::write_part(
-                &folder,
-                &machine,
-                &machine.axes[1],
-                (Part::Validate, &records[1]),
-                broke_off,
-            )?;
+            folder_of_y.write(Part::Validate, &records[1], broke_off)?;
             outcome
         })
         .unwrap_err();
@@ -348,7 +342,7 @@ fn a_fault_in_the_middle_of_commissioning_leaves_the_record_so_far_and_says_wher
         },
         out: out.clone(),
     };
-    let text = commission::command(&arguments, &Interrupt::never())
+    let text = commission::run(&arguments, &Interrupt::never())
         .unwrap_err()
         .to_string();
     assert!(

@@ -1,22 +1,20 @@
-//! `quadrant identify`.
+//! `quadrant identify`: which effect does the declared model of a recorded axis lack? Offline.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
-use identification::{Dataset, Identification, IdentificationError};
+use identification::{Dataset, Identification};
 
 use crate::cli;
-use crate::error::{Failure, Outcome};
+use crate::console;
+use crate::error::Outcome;
 use crate::model_file::{self, Known};
-use crate::presentation::page::{self, Page};
+use crate::output_files::{json, make_folder, write};
+use crate::presentation::page::Page;
+use crate::presentation::result_chapters::add_identification;
 use crate::progress;
 
-impl From<IdentificationError> for Failure {
-    fn from(error: IdentificationError) -> Self {
-        Self::new(error.to_string())
-    }
-}
-
-/// Identifies a dataset and writes what was asked for.
+/// Identifies a dataset, writes what was asked for and prints the result.
 ///
 /// # Errors
 /// Where the dataset is wrong, or a file cannot be written.
@@ -28,24 +26,27 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     )?;
     let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
     // Files first: whoever reads the output may stop early.
-    let json = json(&result)?;
     if let Some(path) = &arguments.json {
-        write(path, &json)?;
+        write(path, &json(&result.report)?)?;
     }
     if let Some(folder) = &arguments.out {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
-        write(&folder.join("identification.json"), &json)?;
-        write(&folder.join("prediction.csv"), &prediction_csv(&result))?;
-        write(&folder.join("model.toml"), &model_toml(&dataset, &result))?;
-        let mut page = Page::new(&format!("Identification of {}", dataset.name));
-        page::identification(&mut page, "Result", &result)?;
-        write(&folder.join("report.html"), &page.finish())?;
+        write_folder(folder, &dataset, &result)?;
     }
-    print(&result);
+    console::print_identification(&result);
     if let Some(folder) = &arguments.out {
         println!("report: {}", folder.join("report.html").display());
     }
     Ok(())
+}
+
+fn write_folder(folder: &Path, dataset: &Dataset, result: &Identification) -> Outcome<()> {
+    make_folder(folder)?;
+    write(&folder.join("identification.json"), &json(&result.report)?)?;
+    write(&folder.join("prediction.csv"), &prediction_csv(result))?;
+    write(&folder.join("model.toml"), &model_toml(dataset, result))?;
+    let mut page = Page::new(&format!("Identification of {}", dataset.name));
+    add_identification(&mut page, "Result", result)?;
+    write(&folder.join("report.html"), &page.finish())
 }
 
 /// The identified model: a machine file where the simulator has such an axis.
@@ -61,95 +62,15 @@ fn model_toml(dataset: &Dataset, result: &Identification) -> String {
     }
 }
 
-/// Writes a file.
-///
-/// # Errors
-/// Where it cannot be written.
-pub fn write(path: &Path, text: &str) -> Outcome<()> {
-    std::fs::write(path, text).map_err(|error| Failure::file(path, &error))
-}
-
-/// The JSON text of a result.
-///
-/// # Errors
-/// Never in practice: the form is plain data.
-pub fn json(result: &Identification) -> Outcome<String> {
-    serde_json::to_string_pretty(&result.report)
-        .map(|text| text + "\n")
-        .map_err(|error| Failure::new(error.to_string()))
-}
-
-/// Prints the result for people.
-pub fn print(result: &Identification) {
-    println!("{}", page::sentence(&result.report));
-    for row in page::error_table(result) {
-        let cells: Vec<String> = row
-            .iter()
-            .skip(1)
-            .map(|cell| format!("{cell:>28}"))
-            .collect();
-        println!(
-            "  {:<32}{}",
-            row.first().map_or("", String::as_str),
-            cells.join("")
-        );
-    }
-    if let Some(free_run) = &result.report.free_run {
-        let unit = if result.position_unit == "rad" {
-            "µrad"
-        } else {
-            "µm"
-        };
-        let [train, validate] = [&free_run.train, &free_run.validate].map(|e| {
-            format!(
-                "{:.3} → {:.3}",
-                e.position_error_um_before, e.position_error_um_after
-            )
-        });
-        println!(
-            "  free-run position error, {unit} rms: training {train}, validation {validate} (controller {})",
-            free_run.controller
-        );
-    }
-    for order in result
-        .report
-        .slow_ripple
-        .iter()
-        .flat_map(|ripple| &ripple.orders)
-    {
-        let (amplitude, half_width) = (order.amplitude, order.half_width);
-        println!(
-            "  torque ripple of order {} per rev: {amplitude:.4} ± {half_width:.4} {}",
-            order.per_rev, result.effort_unit
-        );
-    }
-    if let Some(ripple) = &result.report.slow_ripple {
-        println!(
-            "  about reversals (up to {:.1} {}/s): force error {:.2} → {:.2} % on the validation record",
-            ripple.fastest,
-            result.position_unit,
-            ripple.validate_force_error_before_percent,
-            ripple.validate_force_error_after_percent
-        );
-    }
-    for warning in &result.report.warnings {
-        println!("  note: {warning}");
-    }
-}
-
 /// `prediction.csv` of the validation record.
-#[must_use]
-pub fn prediction_csv(result: &Identification) -> String {
+fn prediction_csv(result: &Identification) -> String {
     let curves = &result.curves;
     let mut text = format!("time_s,{},declared,extended\n", result.effort_column);
-    for (((time, effort), declared), extended) in curves
-        .time_s
-        .iter()
-        .zip(&curves.effort)
-        .zip(&curves.declared)
-        .zip(&curves.extended)
-    {
-        text.push_str(&format!("{time},{effort},{declared:.6},{extended:.6}\n"));
+    let recorded = curves.time_s.iter().zip(&curves.effort);
+    let predicted = curves.declared.iter().zip(&curves.extended);
+    for ((time, effort), (declared, extended)) in recorded.zip(predicted) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{time},{effort},{declared:.6},{extended:.6}");
     }
     text
 }

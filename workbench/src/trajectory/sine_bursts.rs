@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 use plant_sim::machine::Limits;
 
+use super::smoothstep::smoothstep;
+
 /// A windowed sine burst.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burst {
@@ -89,8 +91,7 @@ pub fn at(bursts: &[Burst], time_s: f64) -> f64 {
 }
 
 fn smooth(u: f64) -> f64 {
-    let u = u.clamp(0.0, 1.0);
-    u.powi(3) * (10.0 - 15.0 * u + 6.0 * u * u)
+    smoothstep(u.clamp(0.0, 1.0))
 }
 
 #[cfg(test)]

@@ -1,0 +1,66 @@
+//! `quadrant tune`: compensation parameters from circles, as at a real machine.
+
+use crate::cli::{self, TuneMethod};
+use crate::compensation;
+use crate::console;
+use crate::error::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::output_files::write;
+use crate::session::Stand;
+use crate::trajectory::circle_limits::check_circle;
+use crate::tuning::{self, Tuned};
+
+/// Tunes, writes the compensation file and prints what was found.
+///
+/// # Errors
+/// Where an argument or the machine is wrong.
+pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
+    let (machine, place) = arguments.machine.machine_and_place()?;
+    let circle = cli::circle(arguments.radius_mm, arguments.feed_mm_min)?;
+    check_circle(&machine, &circle)?;
+    let start_delay_s = start_delay_s(arguments.start_delay_ms)?;
+    let stand = Stand {
+        machine: &machine,
+        place,
+        interrupt: interrupt.clone(),
+    };
+    let tuned = match arguments.method {
+        TuneMethod::Pulse => tuning::pulse(&stand, &circle, start_delay_s)?,
+    };
+    write(&arguments.out, &file(arguments, &stand, &tuned)?)?;
+    console::print_tuned(&stand.axis_names(), &tuned);
+    println!("wrote {}", arguments.out.display());
+    Ok(())
+}
+
+fn start_delay_s(start_delay_ms: f64) -> Outcome<f64> {
+    if !(0.0..=1000.0).contains(&start_delay_ms) {
+        return Err(Failure::new(format!(
+            "--start-delay-ms: must be 0 to 1000 ms, got {start_delay_ms}"
+        )));
+    }
+    Ok(1.0e-3 * start_delay_ms)
+}
+
+/// The compensation file, headed by the circle that it is good for.
+fn file(arguments: &cli::Tune, stand: &Stand<'_>, tuned: &Tuned) -> Outcome<String> {
+    let head = format!(
+        "# Tuned at R {} mm, F {} mm/min in {} circles: best there, and only there.\n",
+        arguments.radius_mm, arguments.feed_mm_min, tuned.circles
+    );
+    Ok(head + &compensation::text(&stand.axis_names(), &tuned.compensation)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_start_delay_is_at_most_a_second_and_never_negative() {
+        assert_eq!(start_delay_s(0.0), Ok(0.0));
+        assert_eq!(start_delay_s(250.0), Ok(0.25));
+        for wrong in [-1.0, 1000.1, f64::NAN] {
+            assert!(start_delay_s(wrong).is_err(), "{wrong}");
+        }
+    }
+}

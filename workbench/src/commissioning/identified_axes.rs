@@ -1,0 +1,127 @@
+//! Records of all axes of a machine, and what each axis lacks by them.
+//!
+//! Every record is on disk as soon as it ends or breaks off. Axes are identified at the same time,
+//! each in a thread of its own: their records have nothing in common.
+
+use std::path::{Path, PathBuf};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use identification::{Dataset, Identification, IdentificationError};
+use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
+
+use crate::axis_records::dataset_folder::DatasetFolder;
+use crate::axis_records::{self, AxisRecord, Part, RECORDING_RUN};
+use crate::error::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::model_file::{self, Known};
+use crate::progress;
+use crate::session::{Session, Stand};
+
+/// How often the computation is asked whether it is done, and the operator whether he still wants
+/// it.
+const ASK_EVERY: Duration = Duration::from_millis(50);
+
+/// The dataset folder of an axis.
+fn records_folder(out: &Path, axis: &MachineAxis) -> PathBuf {
+    out.join(format!("records-{}", axis.name))
+}
+
+/// Training and validation record of all axes, below `out`.
+///
+/// # Errors
+/// Where a file or the machine is wrong, or the operator interrupts.
+pub fn record(stand: &Stand<'_>, out: &Path) -> Outcome<()> {
+    let session = stand.connect(RECORDING_RUN)?;
+    let log = out.join("records.candump.log");
+    session.perform(&stand.uncompensated(), Some(&log), |session| {
+        Part::BOTH
+            .iter()
+            .try_for_each(|part| record_part(session, stand.machine, *part, out))
+    })
+}
+
+fn record_part(
+    session: &mut Session<'_>,
+    machine: &Machine,
+    part: Part,
+    out: &Path,
+) -> Outcome<()> {
+    progress::step(match part {
+        Part::Train => "recording: slow and fast runs, reversals",
+        Part::Validate => "recording the validation record",
+    });
+    let mut records = Vec::new();
+    let outcome = axis_records::record(session, machine, part, &mut records);
+    for (axis, record) in machine.axes.iter().zip(&records) {
+        let folder = DatasetFolder {
+            path: &records_folder(out, axis),
+            machine,
+            axis,
+        };
+        folder.write(part, record, outcome.as_ref().err())?;
+    }
+    outcome.map_err(|failure| broke_off(&failure, part, &records, out))
+}
+
+fn broke_off(failure: &Failure, part: Part, records: &[AxisRecord], out: &Path) -> Failure {
+    let rows = records.first().map_or(0, |record| record.rows.len());
+    let (file, out) = (part.file(), out.display());
+    Failure::new(format!(
+        "{failure}; {file} broke off after {rows} rows, what was recorded is in {out}"
+    ))
+}
+
+/// What each axis lacks, by its records below `out`.
+///
+/// # Errors
+/// Where a record is wrong, or the operator interrupts.
+pub fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
+    let works = stand.machine.axes.iter().map(|axis| {
+        let dataset = Dataset::read(&records_folder(out, axis), None, None)?;
+        Ok(begin(&axis.name, dataset))
+    });
+    let works = works.collect::<Outcome<Vec<_>>>()?;
+    works
+        .into_iter()
+        .map(|work| end(work, &stand.interrupt))
+        .collect()
+}
+
+/// An identification that is being computed.
+type Work = JoinHandle<Result<Identification, IdentificationError>>;
+
+fn begin(axis: &str, dataset: Dataset) -> Work {
+    progress::step(&format!("identifying axis {axis}"));
+    let axis = axis.to_owned();
+    std::thread::spawn(move || {
+        identification::identify(&dataset, &mut |text| {
+            progress::step(&format!("axis {axis}: {text}"));
+        })
+    })
+}
+
+/// Waits for a result. Nothing moves meanwhile, so an interruption need not wait for it.
+fn end(work: Work, interrupt: &Interrupt) -> Outcome<Identification> {
+    while !work.is_finished() {
+        interrupt.check()?;
+        std::thread::sleep(ASK_EVERY);
+    }
+    match work.join() {
+        Ok(result) => Ok(result?),
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// The identified models as a machine file.
+#[must_use]
+pub fn model(machine: &Machine, results: &[Identification]) -> String {
+    let of_axis = |(axis, result): (&MachineAxis, _)| {
+        let known = Known::of_machine(axis, machine.period_s);
+        (axis.name.clone(), known, result)
+    };
+    let models: Vec<(String, Known, &Identification)> =
+        machine.axes.iter().zip(results).map(of_axis).collect();
+    model_file::text(&format!("{}, identified", machine.name), &models)
+}

@@ -1,0 +1,120 @@
+//! Results on stdout, for people. Machines get JSON.
+
+use identification::Identification;
+
+use crate::ballbar::REVERSALS;
+use crate::circle_test::CircleReport;
+use crate::compensation::Compensation;
+use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
+use crate::tuning::Tuned;
+
+/// Prints the figures of a circle.
+pub fn print_circle(report: &CircleReport) {
+    let figures = &report.figures;
+    println!(
+        "circle R {} mm, F {} mm/min, compensation {}; deviation of the {}",
+        report.radius_mm, report.feed_mm_min, report.compensation, report.deviation_of
+    );
+    for ((_, _, name), peak) in REVERSALS.iter().zip(figures.peak_um) {
+        println!("  burst, {name:<18}{peak:>10.2} µm");
+    }
+    let one = |name: &str, value: f64| println!("  {name:<26}{value:>10.2} µm");
+    let two = |name: &str, [a, b]: [f64; 2]| println!("  {name:<26}{a:>10.2} / {b:.2} µm");
+    one("largest burst", figures.peak_max_um);
+    one("circular deviation G", figures.circular_deviation_g_um);
+    if let Some(h_um) = figures.circular_hysteresis_h_um {
+        one("circular hysteresis H", h_um);
+    }
+    let (fmax_um, fmin_um) = (
+        figures.radial_deviation_fmax_um,
+        figures.radial_deviation_fmin_um,
+    );
+    two("radial deviation Fmax/Fmin", [fmax_um, fmin_um]);
+    two("step X / Y", figures.step_um);
+    one("ellipse", figures.ellipse_um);
+    let load = report.bus_load_percent;
+    println!("  bus load, computed        {load:>10.1} %");
+    if report.missed_cycles > 0 {
+        println!("  missed cycles             {:>10}", report.missed_cycles);
+    }
+}
+
+/// Prints what tuning found.
+pub fn print_tuned(names: &[String], tuned: &Tuned) {
+    let bursts_um = tuned.before_um.into_iter().zip(tuned.after_um);
+    for ((name, compensation), (before, after)) in
+        names.iter().zip(&tuned.compensation).zip(bursts_um)
+    {
+        if let Compensation::Pulse(pulse) = compensation.reversal {
+            println!(
+                "axis {name}: {:.3} mm/s, {:.1} ms, start delay {:.1} ms: burst {before:.2} µm → {after:.2} µm ({:.0} % less)",
+                1.0e3 * pulse.height_m_per_s,
+                1.0e3 * pulse.time_constant_s,
+                1.0e3 * pulse.start_delay_s,
+                100.0 * (1.0 - after / before)
+            );
+        }
+    }
+    println!("{} circles", tuned.circles);
+}
+
+/// Prints what an axis lacks.
+pub fn print_identification(result: &Identification) {
+    println!("{}", sentence(&result.report));
+    print_errors(result);
+    print_free_run(result);
+    print_slow_ripple(result);
+    for warning in &result.report.warnings {
+        println!("  note: {warning}");
+    }
+}
+
+fn print_errors(result: &Identification) {
+    for row in error_table(result) {
+        let (name, figures) = row
+            .split_first()
+            .map_or(("", &[][..]), |(name, figures)| (name.as_str(), figures));
+        print!("  {name:<32}");
+        for cell in figures {
+            print!("{cell:>28}");
+        }
+        println!();
+    }
+}
+
+fn print_free_run(result: &Identification) {
+    let Some(free_run) = &result.report.free_run else {
+        return;
+    };
+    let [train, validate] = [&free_run.train, &free_run.validate].map(|errors| {
+        format!(
+            "{:.3} → {:.3}",
+            errors.position_error_um_before, errors.position_error_um_after
+        )
+    });
+    println!(
+        "  free-run position error, {} rms: training {train}, validation {validate} (controller {})",
+        position_error_unit(result),
+        free_run.controller
+    );
+}
+
+fn print_slow_ripple(result: &Identification) {
+    let Some(ripple) = &result.report.slow_ripple else {
+        return;
+    };
+    for order in &ripple.orders {
+        let (amplitude, half_width) = (order.amplitude, order.half_width);
+        println!(
+            "  torque ripple of order {} per rev: {amplitude:.4} ± {half_width:.4} {}",
+            order.per_rev, result.effort_unit
+        );
+    }
+    println!(
+        "  about reversals (up to {:.1} {}/s): force error {:.2} → {:.2} % on the validation record",
+        ripple.fastest,
+        result.position_unit,
+        ripple.validate_force_error_before_percent,
+        ripple.validate_force_error_after_percent
+    );
+}

@@ -1,0 +1,58 @@
+//! Where a machine is, and the way to its buses.
+
+use plant_sim::Machine;
+use quadrant_host::Pace;
+
+use super::in_process::InProcess;
+use super::interfaces::Interfaces;
+use super::link::Link;
+use crate::error::{Failure, Outcome};
+
+/// Where the machine is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Place {
+    /// Servo and plant in this process.
+    #[default]
+    InProcess,
+    /// On CAN interfaces.
+    Can {
+        /// Their names, separated by commas.
+        names: String,
+        /// Who beats the time.
+        pace: Pace,
+    },
+}
+
+impl Place {
+    /// The buses of a machine at this place. `run` tells the noise of one run from that of another.
+    ///
+    /// # Errors
+    /// Where an interface cannot be opened.
+    pub fn open(&self, machine: &Machine, run: u64) -> Outcome<Box<dyn Link>> {
+        Ok(match self {
+            Self::InProcess => Box::new(InProcess::new(machine, run)?),
+            Self::Can { names, pace } => {
+                Box::new(Interfaces::open(machine, names)?.with_pace(*pace))
+            }
+        })
+    }
+}
+
+/// On a clock, a bus that cannot carry the cycle misses deadlines; vcan would not show it, so the
+/// computed load decides.
+///
+/// # Errors
+/// The load, and what makes it less.
+pub fn refuse_overload(machine: &Machine, pace: Pace) -> Outcome<()> {
+    let load = machine.bus_load_per_mille();
+    if pace == Pace::Clock && load > protocol::load::CLOCK_PACED_LIMIT_PER_MILLE {
+        return Err(Failure::new(format!(
+            "machine {}: {}.{} % computed bus load, a clock-paced run takes at most {} %; give each axis its own interface, a longer period_s or CAN FD",
+            machine.name,
+            load / 10,
+            load % 10,
+            protocol::load::CLOCK_PACED_LIMIT_PER_MILLE / 10
+        )));
+    }
+    Ok(())
+}

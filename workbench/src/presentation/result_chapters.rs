@@ -1,0 +1,78 @@
+//! The chapters of a page about one identification.
+
+use identification::Identification;
+
+use super::page::Page;
+use super::result_pictures::{effect_pictures, free_run_picture, residual_pictures, time_picture};
+use super::result_tables::{
+    candidate_table, error_table, free_run_table, parameter_table, protocol_table,
+    reversal_shape_table, sentence, slow_ripple_table,
+};
+use crate::error::Outcome;
+
+/// The chapters of an identification.
+///
+/// # Errors
+/// Where a plot cannot be drawn.
+pub fn add_identification(page: &mut Page, title: &str, result: &Identification) -> Outcome<()> {
+    let report = &result.report;
+    page.heading(title);
+    page.key(&sentence(report));
+    page.table(&error_table(result));
+    page.pictures(&residual_pictures(result)?);
+    page.pictures(&[time_picture(result)?]);
+    page.pictures(&effect_pictures(result)?);
+    free_run(page, result)?;
+    slow_ripple(page, result);
+    page.paragraph("The force error by the protocols that papers use:");
+    page.table(&protocol_table(report));
+    page.paragraph(
+        "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):",
+    );
+    page.table(&candidate_table(report));
+    page.paragraph(
+        "Parameters of the extended model, with 95 % intervals (jackknife over blocks of 1 s, nonlinear ones linearised; low = high where there is none):",
+    );
+    page.table(&parameter_table(report));
+    for warning in &report.warnings {
+        page.paragraph(&format!("Note: {warning}."));
+    }
+    Ok(())
+}
+
+/// Free-run simulation: errors, shapes at reversals, picture.
+fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
+    let Some(free_run) = &result.report.free_run else {
+        return Ok(());
+    };
+    page.paragraph(if free_run.controller == "known" {
+        "Free run: the whole axis simulated in closed loop from the setpoints alone, parameters fitted to the positions of the training record:"
+    } else {
+        "The controller is not known: the recorded effort was applied and a soft controller kept the simulation near the record. No free run, but models compare:"
+    });
+    page.table(&free_run_table(result));
+    page.paragraph(
+        "What acts at reversals, by what the free run leaves on blocks that were not fitted:",
+    );
+    page.table(&reversal_shape_table(result));
+    page.pictures(&[free_run_picture(result)?]);
+    Ok(())
+}
+
+/// Ripple that was found about the reversals of an axis that is never slow for long.
+fn slow_ripple(page: &mut Page, result: &Identification) {
+    let Some(ripple) = &result.report.slow_ripple else {
+        return;
+    };
+    page.paragraph(&format!(
+        "Torque ripple about the reversals (samples up to {:.3} {}/s, low-pass {} Hz): force error {:.2} → {:.2} % on the training record, {:.2} → {:.2} % on the validation record:",
+        ripple.fastest,
+        result.position_unit,
+        ripple.cutoff_hz,
+        ripple.train_force_error_before_percent,
+        ripple.train_force_error_after_percent,
+        ripple.validate_force_error_before_percent,
+        ripple.validate_force_error_after_percent
+    ));
+    page.table(&slow_ripple_table(result));
+}
