@@ -8,6 +8,7 @@ pub(crate) mod inverse_dynamics;
 pub(crate) mod plausibility;
 pub(crate) mod residual;
 pub(crate) mod reversal;
+pub(crate) mod reversal_stage;
 pub(crate) mod selection;
 pub(crate) mod slow_ripple;
 pub(crate) mod verdict;

@@ -2,16 +2,15 @@
 //!
 //! Each measured output has its own judge. Moving samples of the effort judge columns, delay and
 //! saturation ([`Selection`]). Samples about reversals and the free-run position judge what acts
-//! there ([`AtReversals`]). Motor − load judges what stands between the two ([`Difference`]). An
+//! there ([`ReversalStage`]). Motor − load judges what stands between the two ([`Difference`]). An
 //! axis that passes its reversals fast shows ripple there only ([`RippleAtReversals`]).
 
 use axis_model::EffectName;
 
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::difference::Difference;
-use crate::evidence::free_run::Reversals;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
-use crate::evidence::reversal::Presliding;
+use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::RippleAtReversals;
 use crate::evidence::verdict::{Left, ResidualStructure, Verdict, moves_apart};
@@ -24,12 +23,8 @@ pub(crate) struct Stages {
     pub effort: Selection,
     /// Motor − load, where there is a load scale.
     pub difference: Option<Difference>,
-    /// The effort about reversals.
-    pub presliding: Option<Presliding>,
-    /// The free-run position.
-    pub reversals: Option<Reversals>,
-    /// What the last three say together of reversals.
-    pub at_reversals: AtReversals,
+    /// The effort about reversals and the free-run position.
+    pub reversals: ReversalStage,
     /// The effort about reversals of an axis that is never slow for long.
     pub ripple: Option<RippleAtReversals>,
 }
@@ -69,7 +64,7 @@ impl Stages {
             presliding,
             backlash,
             ..
-        } = self.at_reversals;
+        } = self.reversals.decided;
         list.extend(presliding.then_some(EffectName::Presliding));
         list.extend(backlash.then_some(EffectName::Backlash));
         list.extend(self.difference.iter().flat_map(|d| d.found.iter()));
@@ -119,7 +114,7 @@ impl<'a> Findings<'a> {
             nameless: &stages.effort.nameless(),
             residual,
             force_percent: train.extended.force_percent,
-            at_reversals: stages.at_reversals.unexplained,
+            at_reversals: stages.reversals.decided.unexplained,
             apart: stages
                 .difference
                 .as_ref()
@@ -139,5 +134,88 @@ impl<'a> Findings<'a> {
             residual,
             verdict,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::effects::find;
+    use crate::model::inverse::{Model, Part};
+
+    fn stages(effort: &[EffectName]) -> Stages {
+        let parts = effort.iter().filter_map(|name| find(*name));
+        let parts = parts.map(|effect| Part::found(effect, 1.0)).collect();
+        Stages {
+            effort: Selection {
+                model: Model { parts },
+                ..Selection::default()
+            },
+            difference: None,
+            reversals: ReversalStage {
+                inverse: None,
+                free_run: None,
+                decided: AtReversals::default(),
+                has_load_scale: false,
+            },
+            ripple: None,
+        }
+    }
+
+    fn ripple() -> RippleAtReversals {
+        RippleAtReversals {
+            fastest: 1.0,
+            cutoff_hz: 30.0,
+            orders: Vec::new(),
+            train_percent: Compared::default(),
+            validate_percent: Compared::default(),
+        }
+    }
+
+    #[test]
+    fn effects_are_found_output_by_output_and_in_the_order_of_each() {
+        use EffectName::{Backlash, Compliance, Delay, PitchError, Presliding, TorqueRipple};
+        let mut stages = stages(&[Delay, EffectName::Stribeck]);
+        stages.reversals.decided.presliding = true;
+        stages.reversals.decided.backlash = true;
+        let mut difference = Difference::default();
+        difference.found = vec![PitchError, Compliance];
+        stages.difference = Some(difference);
+        stages.ripple = Some(ripple());
+        let wanted = [
+            Delay,
+            EffectName::Stribeck,
+            Presliding,
+            Backlash,
+            PitchError,
+            Compliance,
+            TorqueRipple,
+        ];
+        assert_eq!(Found::of(&stages, &[]).names(), wanted);
+    }
+
+    #[test]
+    fn an_effect_that_two_outputs_show_is_found_once_where_it_was_seen_first() {
+        let mut stages = stages(&[EffectName::TorqueRipple, EffectName::Delay]);
+        stages.ripple = Some(ripple());
+        let found = Found::of(&stages, &[]);
+        assert_eq!(found.names(), [EffectName::TorqueRipple, EffectName::Delay]);
+    }
+
+    #[test]
+    fn what_is_declared_is_not_lacking() {
+        let mut stages = stages(&[EffectName::TorqueRipple, EffectName::Delay]);
+        stages.reversals.decided.presliding = true;
+        let declared = [EffectName::TorqueRipple, EffectName::Presliding];
+        let found = Found::of(&stages, &declared);
+        assert_eq!(found.names(), [EffectName::Delay]);
+        assert!(!found.has(EffectName::TorqueRipple) && found.has(EffectName::Delay));
+    }
+
+    #[test]
+    fn something_unexplained_at_reversals_is_no_effect() {
+        let mut stages = stages(&[]);
+        stages.reversals.decided.unexplained = true;
+        assert!(Found::of(&stages, &[]).names().is_empty());
     }
 }

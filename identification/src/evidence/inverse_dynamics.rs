@@ -1,9 +1,9 @@
 //! The inverse dynamics of one structure, fitted: what the declared and the extended model become.
 //!
-//! A structure is a list of parts ([`Model`]), and a choice of what
-//! stands where friction has its sign: the sign of the velocity, or Dahl's bristle of some
-//! deflection. The bristle changes the columns, not the list of terms. So a fitted structure sees
-//! every record through [`InverseDynamics::motion`].
+//! A structure is a list of parts ([`Model`]), and a choice of what stands where friction has its
+//! sign: the sign of the velocity, or Dahl's bristle of some deflection. The bristle changes the
+//! columns, not the list of parts. So a fitted structure sees every record through
+//! [`InverseDynamics::motion`].
 
 use crate::evidence::reversal::{self, bristle};
 use crate::fit::bench::Bench;

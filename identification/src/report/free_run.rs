@@ -22,7 +22,7 @@ const POINTS: usize = 6000;
 
 /// The free run's chapter with its picture: time, position error declared and extended, µm (µrad).
 pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)> {
-    let reversals = findings.stages.reversals.as_ref()?;
+    let reversals = findings.stages.reversals.free_run.as_ref()?;
     let models = Compared {
         declared: declared(findings, reversals)?,
         extended: reversals.best().model.clone(),

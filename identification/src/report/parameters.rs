@@ -81,11 +81,7 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
 /// deflection that the effort about reversals gave.
 fn of_the_shape(findings: &Findings<'_>) -> Vec<Named> {
     let length = findings.dataset.kind.position_unit();
-    let decided = findings.stages.reversals.as_ref().filter(|reversals| {
-        let accepted = reversals.accepted;
-        findings.stages.difference.is_none() && (accepted.presliding || accepted.backlash)
-    });
-    let Some(reversals) = decided else {
+    let Some(reversals) = findings.stages.reversals.accepted_shape() else {
         let deflection = findings.models.extended.deflection;
         let named = deflection.map(|value| plain("presliding_deflection", value, length));
         return named.into_iter().collect();

@@ -87,9 +87,9 @@ fn with(bench: &Bench<'_>, declared: &Model, scored: &Scored) -> Model {
 }
 
 fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
-    let presliding = findings.stages.presliding?;
+    let presliding = findings.stages.reversals.inverse?;
     Some(Candidate {
-        effect: EffectName::Presliding.as_str().into(),
+        effect: EffectName::Presliding.to_string(),
         validation_error_percent: Some(with_bristle(findings, &presliding)),
         evidence: presliding.t,
         share: removed(presliding.dahl, presliding.rigid),
@@ -115,12 +115,11 @@ fn removed(after_rms: f64, before_rms: f64) -> f64 {
 
 /// Bristle and gap; where there is a load scale the difference is the better judge of both.
 fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
-    let free_run = findings.stages.reversals.as_ref();
-    let Some(reversals) = free_run.filter(|_| findings.stages.difference.is_none()) else {
+    let Some(reversals) = findings.stages.reversals.free_run_alone() else {
         return Vec::new();
     };
-    let candidate = |effect: &str, judged: &Judged| Candidate {
-        effect: effect.into(),
+    let candidate = |effect: EffectName, judged: &Judged| Candidate {
+        effect: effect.to_string(),
         validation_error_percent: None,
         evidence: reversals.t(judged),
         share: removed(judged.held_out, reversals.rigid.held_out),
@@ -128,9 +127,9 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
         physical: true,
         accepted: false,
     };
-    let bristle = candidate("presliding", &reversals.bristle);
+    let bristle = candidate(EffectName::Presliding, &reversals.bristle);
     let gap = reversals.gap.as_ref();
-    let gap = gap.map(|gap| candidate("backlash", gap));
+    let gap = gap.map(|gap| candidate(EffectName::Backlash, gap));
     [bristle].into_iter().chain(gap).collect()
 }
 

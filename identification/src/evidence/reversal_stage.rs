@@ -1,0 +1,65 @@
+//! The stage of reversals: every witness is asked, then [`at_reversals`] decides, then the free
+//! run takes the decision over.
+
+use crate::evidence::at_reversals::{self, AtReversals, LoadScale, Witnesses};
+use crate::evidence::difference::Difference;
+use crate::evidence::free_run::{self, Reversals};
+use crate::evidence::reversal::{self, Presliding};
+use crate::fit::bench::Bench;
+use crate::fit::fitted::Fitted;
+
+/// What the witnesses said of reversals, and what was made of it.
+pub(crate) struct ReversalStage {
+    /// The inverse model, on the effort about reversals.
+    pub inverse: Option<Presliding>,
+    /// The free run, on the position.
+    pub free_run: Option<Reversals>,
+    /// What acts.
+    pub decided: AtReversals,
+    /// Whether there is a load scale: friction is judged where it acts then, not at the motor.
+    pub has_load_scale: bool,
+}
+
+impl ReversalStage {
+    /// Asks all witnesses about a fitted model of the training record.
+    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, difference: Option<&Difference>) -> Self {
+        let inverse = reversal::presliding(bench, fitted);
+        let mut free_run = free_run::reversals(bench.dataset, fitted);
+        let load_scale = difference.map(|found| LoadScale {
+            gap: found.gap.is_some(),
+        });
+        let witnesses = Witnesses {
+            inverse,
+            free_run: free_run.as_ref().map(Reversals::summary),
+            load_scale,
+        };
+        let decided = witnesses.decide();
+        if let Some(reversals) = &mut free_run {
+            let gap = decided.backlash || load_scale.is_some_and(|scale| scale.gap);
+            reversals.settle(decided.presliding, gap);
+        }
+        Self {
+            inverse,
+            free_run,
+            decided,
+            has_load_scale: difference.is_some(),
+        }
+    }
+
+    /// The free run, where it speaks of reversals: with a load scale the difference does.
+    pub(crate) fn free_run_alone(&self) -> Option<&Reversals> {
+        self.free_run.as_ref().filter(|_| !self.has_load_scale)
+    }
+
+    /// The free run, where its shape is the one that was accepted.
+    pub(crate) fn accepted_shape(&self) -> Option<&Reversals> {
+        self.free_run_alone()
+            .filter(|reversals| reversals.accepted.presliding || reversals.accepted.backlash)
+    }
+
+    /// Deflection of the bristle, if there is one.
+    pub(crate) fn deflection(&self) -> Option<f64> {
+        let free_run = self.free_run_alone().and_then(Reversals::deflection);
+        at_reversals::deflection(self.inverse.as_ref(), free_run)
+    }
+}
