@@ -11,10 +11,11 @@ use crate::model::effects::{Named, geometric};
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::simulate::axis::{Gap, Shape};
+use crate::simulate::drive::Drive;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{Drive, position_rms, simulate};
+use crate::simulate::run::{position_rms, simulate};
 
 /// Length of the blocks that are fitted and judged in turn, s.
 const BLOCK_S: f64 = 2.0;

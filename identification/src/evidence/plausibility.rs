@@ -7,7 +7,7 @@ use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::record::units::AxisKind;
-use crate::simulate::controller::Law;
+use crate::simulate::controller::law::Law;
 
 type Outcome = Result<(), IdentificationError>;
 

@@ -12,9 +12,10 @@ use crate::record::samples::Record;
 use crate::report::forms::{FreeRun, FreeRunErrors, ReversalShapes};
 use crate::report::parameters;
 use crate::simulate::axis::Shape;
+use crate::simulate::drive::Drive;
 use crate::simulate::fit::fit;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{Drive, Run, SETTLING_ROWS, position_rms, simulate};
+use crate::simulate::run::{Run, SETTLING_ROWS, position_rms, simulate};
 
 const MICRO: f64 = 1.0e6;
 /// Points of the picture, at most about twice as many.

@@ -4,8 +4,9 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
+use super::drive::Drive;
 use super::model::{Entry, Simulated};
-use super::run::{Drive, SETTLING_ROWS, simulate};
+use super::run::{SETTLING_ROWS, simulate};
 use crate::fit::blocks::Blocks;
 use crate::record::samples::Record;
 
@@ -237,48 +238,6 @@ mod tests {
             validate: record,
             held_back: false,
             notes: Vec::new(),
-        }
-    }
-
-    /// What a drive of 40 /s and 14 kN s/m does, its acceleration feedforward taken from
-    /// `acceleration` of the rows' second differences.
-    fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
-        let mut dataset = dataset();
-        let form = crate::record::form::ControllerForm {
-            position_sensor: None,
-            ..controller()
-        };
-        dataset.controller = Some(form);
-        let record = &mut dataset.train;
-        let (x, period_s) = (record.reference.clone().unwrap(), record.period_s);
-        record.position = x
-            .iter()
-            .scan(x[0], |held, now| Some(std::mem::replace(held, *now)))
-            .collect();
-        let difference = |path: &[f64], row: usize| (path[row] - path[row.max(1) - 1]) / period_s;
-        for row in 3..x.len() - 1 {
-            let about = |row: usize| (x[row + 1] - 2.0 * x[row] + x[row - 1]) / period_s / period_s;
-            let velocity = difference(&x, row) - difference(&record.position, row);
-            let error = 40.0 * (x[row] - record.position[row]) + velocity;
-            record.effort[row] = 14_000.0 * error + 80.0 * acceleration(about(row), about(row - 1));
-        }
-        dataset
-    }
-
-    #[test]
-    fn whenever_the_drive_takes_its_acceleration_the_law_is_known() {
-        // Shares of the newest second difference and of the one before it.
-        for (name, now, before) in [
-            ("half a row back", 0.5, 0.5),
-            ("a row back", 0.0, 1.0),
-            ("one and a half ahead", 2.5, -1.5),
-        ] {
-            let dataset = recorded_with(|newest, older| now * newest + before * older);
-            let misfit = crate::simulate::controller::Law::of(&dataset).map(|law| law.misfit);
-            assert!(
-                misfit.is_some_and(|misfit| misfit < 1.0e-9),
-                "{name}: {misfit:?}"
-            );
         }
     }
 

@@ -1,139 +1,100 @@
-//! Free-run simulation of the whole axis in closed loop, and the output-error fit.
+//! Free-run simulation of the whole axis in closed loop.
 //!
-//! The simulation gets the setpoints of a record and nothing else; its controller is that of
-//! `dataset.toml` where it is known ([`controller`]). Where it is not, the recorded effort is
-//! applied and a soft controller of our own keeps the simulation near the record: good enough to
-//! compare structures, but no free run, and not reported as one.
-//!
-//! Its states (stick, bristle, gap) are what the inverse model cannot have. Parameters start from
-//! the inverse model and are fitted by Levenberg–Marquardt to the recorded position (`fit.rs`).
+//! The simulation gets the setpoints of a record and nothing else; who computes the effort:
+//! [`drive`](crate::simulate::drive). Every row of the record is cut into equal sub-steps of at
+//! most 0.25 ms; forces are those of the middle of a sub-step. The states of the axis (stick,
+//! bristle, gap) are what the inverse model cannot have. At a joint of a record the axis starts
+//! anew from where it was recorded.
 
-use super::axis::Axis;
-use super::controller::{self, Law};
-use super::model::Simulated;
-
-use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
+use crate::simulate::axis::Axis;
+use crate::simulate::drive::{Drive, velocity};
+use crate::simulate::hold::HeldEfforts;
+use crate::simulate::model::Simulated;
 
-/// Longest sub-step, s.
+/// Longest sub-step, s: a velocity loop of 1000 rad/s still has four sub-steps a radian.
 const SUB_STEP_S: f64 = 2.5e-4;
 /// Rows at the start of a piece that are not judged: the state there is an estimate.
 pub(crate) const SETTLING_ROWS: usize = 300;
-/// Bandwidth of the soft controller where the real one is not known, rad/s.
-const SOFT_BANDWIDTH: f64 = 60.0;
 
-/// Who computes the effort.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Drive {
-    /// The controller of the record.
-    Known(Law),
-    /// The recorded effort and a soft controller.
-    Followed,
-}
-
-impl Drive {
-    /// The drive of a dataset.
-    #[must_use]
-    pub(crate) fn of(dataset: &Dataset) -> Self {
-        Law::of(dataset).map_or(Self::Followed, Self::Known)
-    }
-}
-
-/// Motor (and load) position of a simulation.
+/// A simulation along a record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Run {
     /// Motor position at the rows.
     pub motor: Vec<f64>,
-    /// Load position at the rows.
-    pub load: Vec<f64>,
 }
 
-/// Simulates a model along a record; at a joint the axis starts anew from where it was recorded.
+/// The sub-steps of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SubSteps {
+    count: f64,
+    length_s: f64,
+}
+
+impl SubSteps {
+    fn of(period_s: f64) -> Self {
+        let count = (period_s / SUB_STEP_S).ceil().max(1.0);
+        Self {
+            count,
+            length_s: period_s / count,
+        }
+    }
+
+    /// The middles of the sub-steps after their row, s.
+    fn middles(self) -> impl Iterator<Item = f64> {
+        (0..self.count as usize).map(move |step| (step as f64 + 0.5) * self.length_s)
+    }
+}
+
+/// Simulates a model along a record.
 #[must_use]
 pub(crate) fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     if record.joints.is_empty() {
         return simulate_piece(model, drive, record);
     }
-    let mut run = Run::default();
-    for piece in record.pieces() {
-        let next = simulate_piece(model, drive, &record.part(piece));
-        run.motor.extend(next.motor);
-        run.load.extend(next.load);
+    let pieces = record.pieces().into_iter();
+    let runs = pieces.map(|piece| simulate_piece(model, drive, &record.part(piece)));
+    Run {
+        motor: runs.flat_map(|run| run.motor).collect(),
     }
-    run
 }
 
 fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
-    let rows = record.len();
-    let period_s = record.period_s;
-    let steps = (period_s / SUB_STEP_S).ceil().max(1.0);
-    let h = period_s / steps;
-    let slope = |row: usize| match (record.position.get(row + 1), row.checked_sub(1)) {
-        (Some(next), Some(past)) => (next - record.position[past]) / (2.0 * period_s),
-        (Some(next), None) => (next - record.position[row]) / period_s,
-        (None, _) => 0.0,
+    let first = |values: &[f64]| values.first().copied().unwrap_or(0.0);
+    let mut axis = Axis::at(first(&record.position), velocity(record, 0));
+    let mut driving = drive.along(record, model.mechanics.mass);
+    let mut efforts = HeldEfforts::new(first(&record.effort), record.period_s, model.delay_s);
+    let steps = SubSteps::of(record.period_s);
+    let row = |row: usize| {
+        let at = axis.motor.x;
+        efforts.push(driving.effort(row, &axis));
+        axis = over_row(axis, model, &efforts, (record.time_s[row], steps));
+        at
     };
-    let mut axis = Axis::at(record.position.first().copied().unwrap_or(0.0), slope(0));
-    let mut memory = match drive {
-        Drive::Known(law) => law.start(record),
-        Drive::Followed => controller::Memory::default(),
-    };
-    let mut efforts = vec![
-        record.effort.first().copied().unwrap_or(0.0);
-        (model.delay_s / period_s).ceil() as usize + 2
-    ];
-    let mut run = Run {
-        motor: Vec::with_capacity(rows),
-        load: Vec::with_capacity(rows),
-    };
-    for row in 0..rows {
-        run.motor.push(axis.motor.x);
-        run.load.push(axis.load.x);
-        let effort = match drive {
-            Drive::Known(law) => {
-                let measured = if law.on_load {
-                    axis.load.x
-                } else {
-                    axis.motor.x
-                };
-                law.step(record, &mut memory, row, measured)
-            }
-            Drive::Followed => {
-                let stiffness = model.mechanics.mass * SOFT_BANDWIDTH.powi(2);
-                let damping = 1.4 * model.mechanics.mass * SOFT_BANDWIDTH;
-                record.effort[row]
-                    + stiffness * (record.position[row] - axis.motor.x)
-                    + damping * (slope(row) - axis.motor.v)
-            }
-        };
-        efforts.rotate_right(1);
-        efforts[0] = effort;
-        let time_s = record.time_s[row];
-        for step in 0..steps as usize {
-            let since = (step as f64 + 0.5) * h;
-            let commanded = held(
-                &efforts,
-                (since - 0.5 * h - model.delay_s) / period_s,
-                h / period_s,
-            );
-            let middle = axis.motor.x + 0.5 * h * axis.motor.v;
-            let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
-            axis = axis.after(&model.mechanics, acting, h);
-        }
+    Run {
+        motor: (0..record.len()).map(row).collect(),
     }
-    run
 }
 
-/// Mean of held efforts (the present one first) from a time on, in rows.
-fn held(efforts: &[f64], from: f64, length: f64) -> f64 {
-    let late = |at: f64| efforts[((-at.floor()).max(0.0) as usize).min(efforts.len() - 1)];
-    let edge = from.floor() + 1.0;
-    let before = (edge - from).min(length) / length;
-    before * late(from) + (1.0 - before) * late(edge)
+/// The axis a row later.
+fn over_row(
+    mut axis: Axis,
+    model: &Simulated,
+    efforts: &HeldEfforts,
+    (time_s, steps): (f64, SubSteps),
+) -> Axis {
+    let h = steps.length_s;
+    for since in steps.middles() {
+        let commanded = efforts.mean(since, h);
+        let middle = axis.motor.x + 0.5 * h * axis.motor.v;
+        let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
+        axis = axis.after(&model.mechanics, acting, h);
+    }
+    axis
 }
 
-/// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position;
-/// also of the load, where both are there.
+/// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position.
+/// Rows at the start of a piece and those in holes of the file do not count.
 #[must_use]
 pub(crate) fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> bool) -> f64 {
     let settled = record.settled(SETTLING_ROWS);
@@ -145,4 +106,52 @@ pub(crate) fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> b
         )
     });
     (sum / f64::max(count, 1.0)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::made;
+
+    #[test]
+    fn a_row_is_cut_into_equal_sub_steps_of_a_quarter_millisecond_at_most() {
+        for (period_s, count) in [(1.0e-4, 1.0), (2.5e-4, 1.0), (2.6e-4, 2.0), (1.0e-3, 4.0)] {
+            let steps = SubSteps::of(period_s);
+            assert_eq!(steps.count, count, "{period_s} s");
+            assert!((count * steps.length_s - period_s).abs() < 1.0e-18);
+        }
+        let middles: Vec<f64> = SubSteps::of(5.0e-4).middles().collect();
+        assert_eq!(middles, [1.25e-4, 3.75e-4]);
+    }
+
+    #[test]
+    fn the_rms_is_over_rows_of_the_mask_that_are_settled_and_recorded() {
+        let mut record = made::record(1.0e-3, vec![1.0; 310]);
+        let mut run = Run {
+            motor: vec![1.0; 310],
+        };
+        let rms = |run: &Run, record: &Record| position_rms(run, record, &|row| row != 305);
+        // Not settled; masked; in a hole.
+        record.interpolated[307] = true;
+        for row in [299, 305, 307] {
+            run.motor[row] = 100.0;
+        }
+        assert_eq!(rms(&run, &record), 0.0);
+        // Eight rows count: √((3² + 4²)/8).
+        (run.motor[300], run.motor[309]) = (4.0, -3.0);
+        assert!((rms(&run, &record) - 3.125_f64.sqrt()).abs() < 1.0e-15);
+        assert_eq!(position_rms(&run, &record, &|_| false), 0.0);
+    }
+
+    #[test]
+    fn each_piece_settles_anew() {
+        let mut record = made::record(1.0e-3, vec![0.0; 620]);
+        let run = Run {
+            motor: (0..620)
+                .map(|row| if row < 610 { 1.0 } else { 2.0 })
+                .collect(),
+        };
+        record.joints = vec![310];
+        assert!((position_rms(&run, &record, &|_| true) - 2.5_f64.sqrt()).abs() < 1.0e-15);
+    }
 }

@@ -1,0 +1,376 @@
+//! Whether the controller of a record is known.
+//!
+//! A described law counts as known where it gives the recorded effort from the recorded positions
+//! and setpoints. Two things no dataset says are found from the record: the time at which a drive
+//! takes its acceleration (the one that leaves least of the record is taken), and the effort over
+//! the voltage of a controller that has a voltage at its output. A law on a load that was not
+//! recorded cannot be checked: it is believed.
+
+use std::ops::Range;
+
+use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
+use crate::record::units::Effort;
+use crate::simulate::controller::law::{Form, Law, Measured, Memory};
+use crate::simulate::controller::timing::{Setpoints, TIMINGS, Timing};
+
+/// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise
+/// of the record.
+const LARGEST_MISFIT: f64 = 0.10;
+/// Rows at each end of a piece that say nothing: the setpoint beyond them is not known.
+const EDGE_ROWS: usize = 3;
+/// Correlation from which recorded and computed effort belong together.
+const LEAST_CORRELATION: f64 = 0.7;
+
+/// Sums over computed and recorded efforts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Products {
+    computed: f64,
+    cross: f64,
+    recorded: f64,
+}
+
+impl Products {
+    fn of(computed: &[f64], recorded: &[f64]) -> Self {
+        let pairs = computed.iter().zip(recorded);
+        pairs.fold(Self::default(), |sums, (c, r)| Self {
+            computed: sums.computed + c * c,
+            cross: sums.cross + c * r,
+            recorded: sums.recorded + r * r,
+        })
+    }
+
+    /// Recorded over computed.
+    fn ratio(&self) -> f64 {
+        self.cross / f64::max(self.computed, f64::MIN_POSITIVE)
+    }
+
+    fn correlation(&self) -> f64 {
+        let both = (self.computed * self.recorded).sqrt();
+        self.cross / f64::max(both, f64::MIN_POSITIVE)
+    }
+}
+
+/// The law that a dataset describes in forces, where its training record has setpoints.
+fn described(dataset: &Dataset) -> Option<Law> {
+    let in_forces = dataset.effort == Effort::Force;
+    let form = dataset.controller.as_ref().filter(|_| in_forces)?;
+    dataset.train.reference.as_ref()?;
+    Law::described(form)
+}
+
+impl Law {
+    /// The law of a dataset, where it is described and fits its training record.
+    #[must_use]
+    pub(crate) fn of(dataset: &Dataset) -> Option<Self> {
+        let record = &dataset.train;
+        let law = described(dataset)?.in_efforts(record);
+        if !law.is_checkable(record) {
+            return Some(law);
+        }
+        Some(law.timed(record)).filter(|law| law.misfit <= LARGEST_MISFIT)
+    }
+
+    /// Recorded over computed effort where the law is described in forces and the load it closes
+    /// on, if any, was recorded; `None` where they have nothing to do with each other.
+    #[must_use]
+    pub(crate) fn effort_over_computed(dataset: &Dataset) -> Option<f64> {
+        let record = &dataset.train;
+        let law = described(dataset)?.unlimited();
+        if matches!(law.form, Form::Voltage { .. }) || !law.is_checkable(record) {
+            return None;
+        }
+        let products = Products::of(&law.teacher_forced(record, Self::at_first), &record.effort);
+        (products.correlation().abs() > LEAST_CORRELATION).then(|| products.ratio())
+    }
+
+    /// Whether what it closes on was recorded.
+    fn is_checkable(&self, record: &Record) -> bool {
+        !self.on_load || record.load.is_some()
+    }
+
+    fn unlimited(self) -> Self {
+        Self {
+            limit: None,
+            ..self
+        }
+    }
+
+    /// The law with an effort at its output: a voltage is scaled to the recorded effort.
+    fn in_efforts(self, record: &Record) -> Self {
+        let Form::Voltage { gain } = self.form else {
+            return self;
+        };
+        let computed = self.unlimited().teacher_forced(record, Self::start);
+        let products = Products::of(&computed, &record.effort);
+        let gain = gain * products.cross / f64::max(products.computed, f64::MIN_POSITIVE);
+        Self {
+            form: Form::Voltage { gain },
+            ..self
+        }
+    }
+
+    /// The same law with the timing of the feedforward that leaves least of the record.
+    fn timed(self, record: &Record) -> Self {
+        let laws = TIMINGS.map(|timing| {
+            let law = self.with(timing);
+            Self {
+                misfit: law.misfit_on(record),
+                ..law
+            }
+        });
+        laws.into_iter()
+            .min_by(|one, other| one.misfit.total_cmp(&other.misfit))
+            .unwrap_or(self)
+    }
+
+    fn with(self, timing: Timing) -> Self {
+        let form = match self.form {
+            Form::Force { gains, .. } => Form::Force { gains, timing },
+            Form::Voltage { gain } => Form::Voltage { gain },
+        };
+        Self { form, ..self }
+    }
+
+    /// The effort from recorded positions; each piece begins with a state of its own.
+    fn teacher_forced(&self, record: &Record, start: fn(&Self, &Record) -> Memory) -> Vec<f64> {
+        if record.joints.is_empty() {
+            return self.teacher_forced_piece(record, start(self, record));
+        }
+        let pieces = record.pieces().into_iter();
+        let parts = pieces.map(|piece| record.part(piece));
+        parts
+            .flat_map(|part| self.teacher_forced_piece(&part, start(self, &part)))
+            .collect()
+    }
+
+    fn teacher_forced_piece(&self, record: &Record, mut memory: Memory) -> Vec<f64> {
+        let setpoints = Setpoints::of(record);
+        let rows = self.measured(record).iter().enumerate();
+        rows.map(|(row, position)| {
+            let position = *position;
+            self.effort(&setpoints, &mut memory, Measured { row, position })
+        })
+        .collect()
+    }
+
+    fn misfit_on(&self, record: &Record) -> f64 {
+        let computed = self.teacher_forced(record, Self::start);
+        let inside =
+            |piece: Range<usize>| piece.start + EDGE_ROWS..piece.end.saturating_sub(EDGE_ROWS);
+        let rows = record.pieces().into_iter().flat_map(inside);
+        let pairs = rows.map(|row| (computed[row], record.effort[row]));
+        let (error, all) = pairs.fold((0.0, 0.0), |(error, all), (c, e)| {
+            (error + (c - e).powi(2), all + e * e)
+        });
+        (error / f64::max(all, f64::MIN_POSITIVE)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::form::ControllerForm;
+    use crate::simulate::made;
+
+    /// 40 /s, 14 kN s/m, 80 kg.
+    fn controller() -> ControllerForm {
+        ControllerForm {
+            position_gain_per_s: Some(40.0),
+            velocity_gain_n_s_per_m: Some(14_000.0),
+            acceleration_feedforward_kg: Some(80.0),
+            ..ControllerForm::default()
+        }
+    }
+
+    /// The same gains with a voltage at the output, without feedforward.
+    fn voltage(gain: f64) -> ControllerForm {
+        ControllerForm {
+            velocity_gain_n_s_per_m: None,
+            velocity_gain_v_s_per_m: Some(gain),
+            ..controller()
+        }
+    }
+
+    /// A position that follows two sines a row late.
+    fn late() -> Record {
+        let path = made::two_sines(2000);
+        let position = std::iter::once(path[0]).chain(path.iter().copied());
+        Record {
+            reference: Some(path.clone()),
+            ..made::record(1.0e-3, position.take(path.len()).collect())
+        }
+    }
+
+    /// What the described controller does, times a factor.
+    fn recorded(form: &ControllerForm, factor: f64) -> Dataset {
+        let (law, mut record) = (Law::described(form).unwrap(), late());
+        let efforts = law.teacher_forced(&record, Law::at_first);
+        record.effort = efforts.iter().map(|effort| factor * effort).collect();
+        made::dataset(record, Some(form.clone()))
+    }
+
+    /// What a drive does whose feedforward weighs the rows' second differences by `acceleration`.
+    fn recorded_with(acceleration: impl Fn(f64, f64) -> f64) -> Dataset {
+        let mut record = late();
+        let (x, period_s) = (record.reference.clone().unwrap(), record.period_s);
+        let difference = |path: &[f64], row: usize| (path[row] - path[row.max(1) - 1]) / period_s;
+        for row in 3..x.len() - 1 {
+            let about = |row: usize| (x[row + 1] - 2.0 * x[row] + x[row - 1]) / period_s / period_s;
+            let velocity = difference(&x, row) - difference(&record.position, row);
+            let error = 40.0 * (x[row] - record.position[row]) + velocity;
+            record.effort[row] = 14_000.0 * error + 80.0 * acceleration(about(row), about(row - 1));
+        }
+        made::dataset(record, Some(controller()))
+    }
+
+    #[test]
+    fn whenever_the_drive_takes_its_acceleration_the_law_is_known() {
+        // Shares of the newest second difference and of the one before it.
+        for (timing, now, before) in [
+            (Timing::Central, 0.5, 0.5),
+            (Timing::Backward, 0.0, 1.0),
+            (Timing::Ahead, 2.5, -1.5),
+        ] {
+            let dataset = recorded_with(|newest, older| now * newest + before * older);
+            let law = Law::of(&dataset).unwrap();
+            assert!(law.misfit < 1.0e-9, "{timing:?}: {}", law.misfit);
+            assert!(matches!(law.form, Form::Force { timing: found, .. } if found == timing));
+        }
+    }
+
+    #[test]
+    fn a_law_is_known_up_to_a_tenth_of_the_effort() {
+        let form = ControllerForm {
+            acceleration_feedforward_kg: None,
+            ..controller()
+        };
+        for (factor, known) in [(0.91, true), (0.90, false), (1.11, true), (1.12, false)] {
+            let law = Law::of(&recorded(&form, factor));
+            assert_eq!(law.is_some(), known, "{factor} times");
+            let misfit = law.map_or(0.0, |law| law.misfit);
+            let wanted = if known {
+                (1.0 / factor - 1.0).abs()
+            } else {
+                0.0
+            };
+            assert!((misfit - wanted).abs() < 1.0e-3, "{factor}: {misfit}");
+        }
+    }
+
+    #[test]
+    fn the_ends_of_a_record_say_nothing() {
+        let mut dataset = recorded(&controller(), 1.0);
+        let last = dataset.train.len() - 1;
+        for row in [0, 1, 2, last - 2, last - 1, last] {
+            dataset.train.effort[row] += 1.0e3;
+        }
+        assert!(Law::of(&dataset).unwrap().misfit < 1.0e-9);
+        for row in [3, last - 3] {
+            let mut dataset = dataset.clone();
+            dataset.train.effort[row] += 1.0e3;
+            let law = Law::of(&dataset);
+            assert!(law.is_none_or(|law| law.misfit > 1.0e-3), "row {row}");
+        }
+    }
+
+    #[test]
+    fn each_piece_of_a_record_begins_with_a_state_and_ends_of_its_own() {
+        let law = Law::described(&controller()).unwrap();
+        let windows = late().windows(&[0..700, 900..2000]);
+        let efforts = law.teacher_forced(&windows, Law::at_first);
+        let second = law.teacher_forced(&windows.part(700..1800), Law::at_first);
+        assert_eq!(efforts.len(), 1800);
+        assert_eq!(efforts[700..], second);
+        let mut record = windows;
+        record.effort = efforts;
+        for row in [697, 698, 699, 700, 701, 702] {
+            record.effort[row] += 1.0e3;
+        }
+        assert!(law.misfit_on(&record) < 1.0e-9);
+        for row in [696, 703] {
+            let mut record = record.clone();
+            record.effort[row] += 1.0e3;
+            assert!(law.misfit_on(&record) > 1.0e-3, "row {row}");
+        }
+    }
+
+    #[test]
+    fn a_voltage_is_scaled_to_the_recorded_effort() {
+        let law = Law::of(&recorded(&voltage(7.0), 3.0)).unwrap();
+        assert!(matches!(law.form, Form::Voltage { gain } if (gain - 21.0).abs() < 1.0e-9));
+        assert!(law.misfit < 1.0e-9);
+    }
+
+    #[test]
+    fn a_law_on_a_load_that_was_not_recorded_is_believed() {
+        let form = ControllerForm {
+            position_sensor: Some("load".into()),
+            ..controller()
+        };
+        let mut dataset = recorded(&controller(), 5.0);
+        assert_eq!(Law::of(&dataset), None);
+        dataset.controller = Some(form);
+        assert_eq!(Law::of(&dataset).map(|law| law.misfit), Some(0.0));
+        assert_eq!(Law::effort_over_computed(&dataset), None);
+        dataset.train.load = Some(dataset.train.position.clone());
+        assert_eq!(Law::of(&dataset), None, "now it can be checked");
+        assert!(Law::effort_over_computed(&dataset).is_some());
+    }
+
+    #[test]
+    fn without_setpoints_forces_or_a_description_there_is_no_law() {
+        let whole = recorded(&controller(), 1.0);
+        assert!(Law::of(&whole).is_some());
+        let (mut silent, mut in_amperes, mut blind) = (whole.clone(), whole.clone(), whole);
+        silent.controller = None;
+        in_amperes.effort = Effort::Current;
+        blind.train.reference = None;
+        for dataset in [silent, in_amperes, blind] {
+            assert_eq!(Law::of(&dataset), None);
+            assert_eq!(Law::effort_over_computed(&dataset), None);
+        }
+    }
+
+    #[test]
+    fn the_ratio_of_recorded_to_computed_effort_shows_units_and_signs() {
+        for factor in [-1.0, 0.001, 4.5] {
+            let ratio = Law::effort_over_computed(&recorded(&controller(), factor)).unwrap();
+            assert!(
+                (ratio / factor - 1.0).abs() < 1.0e-9,
+                "{ratio}, not {factor}"
+            );
+        }
+        let limited = ControllerForm {
+            force_limit_n: Some(1.0),
+            ..controller()
+        };
+        let mut dataset = recorded(&controller(), 2.0);
+        dataset.controller = Some(limited);
+        let ratio = Law::effort_over_computed(&dataset).unwrap();
+        assert!((ratio - 2.0).abs() < 1.0e-9, "the limit is left out");
+        assert_eq!(
+            Law::effort_over_computed(&recorded(&voltage(7.0), 2.0)),
+            None
+        );
+    }
+
+    #[test]
+    fn efforts_that_hardly_go_together_have_no_ratio() {
+        // Correlations 1/√(1 + w²) of a wave with itself and w times another one.
+        let products = |w: f64| Products {
+            computed: 2.0,
+            cross: 2.0,
+            recorded: 2.0 + 2.0 * w * w,
+        };
+        for (w, correlation) in [(0.0, 1.0), (1.0, 0.5_f64.sqrt()), (2.0, 0.2_f64.sqrt())] {
+            assert!((products(w).correlation() - correlation).abs() < 1.0e-15);
+        }
+        let sums = Products::of(&[1.0, 2.0], &[3.0, -5.0]);
+        assert_eq!(
+            (sums.computed, sums.cross, sums.recorded),
+            (5.0, -7.0, 34.0)
+        );
+        assert_eq!(sums.ratio(), -1.4);
+    }
+}

@@ -1,0 +1,50 @@
+//! Records and datasets made for tests.
+
+use crate::record::dataset::Dataset;
+use crate::record::form::ControllerForm;
+use crate::record::samples::Record;
+use crate::record::units::{AxisKind, Effort, EffortHold};
+
+/// A record of positions alone, on time from zero.
+pub(crate) fn record(period_s: f64, position: Vec<f64>) -> Record {
+    let rows = position.len();
+    Record {
+        period_s,
+        position,
+        load: None,
+        reference: None,
+        effort: vec![0.0; rows],
+        time_s: (0..rows).map(|row| period_s * row as f64).collect(),
+        rows: Vec::new(),
+        jittered: false,
+        interpolated: vec![false; rows],
+        joints: Vec::new(),
+    }
+}
+
+/// A linear axis with nothing declared, in forces that are held from row to row.
+pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Dataset {
+    Dataset {
+        name: "made".into(),
+        kind: AxisKind::Linear,
+        effort: Effort::Force,
+        hold: EffortHold::ZeroOrder,
+        effort_lag_s: 0.0,
+        lead_m_per_rev: None,
+        resolution: 1.0e-9,
+        load_resolution: 0.0,
+        effort_limit: None,
+        controller,
+        declared: Vec::new(),
+        validate: train.clone(),
+        train,
+        held_back: false,
+        notes: Vec::new(),
+    }
+}
+
+/// Two sines of 20 mm and 4 mm, in rows of 1 ms.
+pub(crate) fn two_sines(rows: u32) -> Vec<f64> {
+    let path = |t: f64| 0.02 * (3.0 * t).sin() + 0.004 * (11.0 * t).sin();
+    (0..rows).map(|row| path(1.0e-3 * f64::from(row))).collect()
+}
