@@ -1,5 +1,6 @@
 //! What a record lacks: findings on every measured output.
 
+pub(crate) mod all_rows;
 pub(crate) mod at_reversals;
 pub(crate) mod difference;
 pub(crate) mod findings;

@@ -5,6 +5,7 @@
 use axis_model::EffectName;
 
 use crate::error::IdentificationError;
+use crate::evidence::all_rows::AllRows;
 use crate::evidence::difference::{self, Difference};
 use crate::evidence::findings::{Findings, Stages};
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
@@ -19,10 +20,14 @@ use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::{self, Motions};
 use crate::record::dataset::Dataset;
+use crate::record::excerpt::{EXCERPT, ExcerptSize, excerpt};
 use crate::report;
 use crate::report::forms::Identification;
 
 /// Identifies a dataset. `progress` hears of every step.
+///
+/// Of a record of more than 60 000 rows an excerpt is fitted, and a warning of the report says so.
+/// Errors and predictions are of all rows.
 ///
 /// # Errors
 /// Where the record leaves nothing to fit.
@@ -30,17 +35,28 @@ pub fn identify(
     dataset: &Dataset,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Identification, IdentificationError> {
+    identify_excerpt(dataset, EXCERPT, progress)
+}
+
+fn identify_excerpt(
+    dataset: &Dataset,
+    size: ExcerptSize,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Identification, IdentificationError> {
+    let excerpt = excerpt(dataset, size);
+    let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
-    let motions = Motions::of(dataset, low_cutoff_hz)?;
+    let motions = Motions::of(fitted_on, low_cutoff_hz)?;
     plausibility::check(dataset, &motions.train)?;
-    let bench = Bench::new(dataset, &motions.train);
-    let low = Bench::new(dataset, &motions.train_low);
+    let bench = Bench::new(fitted_on, &motions.train);
+    let low = Bench::new(fitted_on, &motions.train_low);
     let pair = Pair {
         bench: &bench,
         low: &low,
     };
     let findings = findings(pair, &motions, progress);
-    Ok(report::identification(&findings))
+    let all = excerpt.as_ref().map(|_| AllRows::of(&findings, dataset));
+    Ok(report::identification(&findings, all.as_ref()))
 }
 
 /// Every judge in its turn; later ones stand on what earlier ones accepted.

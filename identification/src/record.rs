@@ -2,13 +2,15 @@
 //!
 //! ```text
 //! dataset.toml ─▶ form ─▶ key_slips (notes)
-//! train.csv    ─▶ table ─▶┐
-//! train.log    ─▶ bus_log ▶┴ reading ─▶ checks ─▶ time_base ─▶ samples ─▶ dataset
+//! train.csv    ─▶ table ──▶┐
+//! train.log    ─▶ bus_log ─▶┴ reading ─▶ checks ─▶ time_base ─▶ samples
+//!                                       samples ─▶ dataset ─▶ excerpt (of a long record)
 //! ```
 
 pub(crate) mod bus_log;
 pub(crate) mod checks;
 pub(crate) mod dataset;
+pub(crate) mod excerpt;
 pub(crate) mod extent;
 pub(crate) mod form;
 pub(crate) mod key_slips;

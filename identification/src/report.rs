@@ -5,11 +5,15 @@
 
 use axis_model::EffectName;
 
+use crate::evidence::all_rows::AllRows;
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
 use crate::motion::{excitation, filter};
-use crate::report::forms::{Identification, Report, ResidualReport, RippleOrder, SlowRipple};
+use crate::record::excerpt::note;
+use crate::report::forms::{
+    Curves, Identification, Report, ResidualReport, RippleOrder, SlowRipple,
+};
 
 pub(crate) mod curves;
 pub(crate) mod errors;
@@ -20,22 +24,31 @@ pub(crate) mod pictures;
 pub(crate) mod protocols;
 pub(crate) mod ranking;
 
-/// The report with its curves.
-pub(crate) fn identification(findings: &Findings<'_>) -> Identification {
+/// The report with its curves; errors and predictions are of all rows where an excerpt was fitted.
+pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>) -> Identification {
     let dataset = findings.dataset;
-    let (free_run, free_run_curve) = free_run::report(findings).unzip();
-    let report = Report {
+    let judged_on = all.map_or(dataset, |all| all.dataset);
+    let (free_run, free_run_curve) = free_run::report(findings, judged_on).unzip();
+    let mut report = Report {
         free_run,
         ..report(findings)
     };
+    if let Some(all) = all {
+        report.train = errors::over_all_rows(&all.train);
+        report.validate = errors::over_all_rows(&all.validate);
+        report.warnings.insert(0, note(all.dataset, dataset));
+    }
     let residual = &findings.train.extended.residual;
     Identification {
         report,
-        curves: curves::curves(
-            findings,
-            pictures::effects(findings),
-            free_run_curve.unwrap_or_default(),
-        ),
+        curves: Curves {
+            effects: pictures::effects(findings),
+            free_run: free_run_curve.unwrap_or_default(),
+            ..all.map_or_else(
+                || curves::curves(findings),
+                |all| curves::of_all_rows(findings, all),
+            )
+        },
         travel: dataset.travel(),
         residual_rms: reversal::rms(residual, &findings.motion.moving),
         effort_unit: dataset.effort.unit(),

@@ -120,6 +120,20 @@ impl Dataset {
         self.declared.contains(&effect)
     }
 
+    /// The same axis with other records.
+    #[must_use]
+    pub(crate) fn with_records(&self, train: Record, validate: Record) -> Self {
+        Self {
+            name: self.name.clone(),
+            controller: self.controller.clone(),
+            declared: self.declared.clone(),
+            notes: self.notes.clone(),
+            train,
+            validate,
+            ..*self
+        }
+    }
+
     /// Middle and half of the travel of the training record.
     #[must_use]
     pub fn travel(&self) -> (f64, f64) {

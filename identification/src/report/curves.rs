@@ -3,40 +3,49 @@
 //! The fit lives on a uniform time base, the file on its own time stamps. The curves have one row
 //! for each row of the file, so where the two differ predictions go back by interpolation.
 
+use crate::evidence::all_rows::AllRows;
 use crate::evidence::findings::Findings;
-use crate::motion::kinematics::Kinematics;
-use crate::record::samples::Record;
+use crate::evidence::inverse_dynamics::Compared;
+use crate::record::dataset::Dataset;
 use crate::record::time_base::interpolate;
-use crate::report::forms::{Curves, EffectCurve};
+use crate::report::forms::Curves;
 
-/// The curves, with those of the effects and of the free run.
-pub(crate) fn curves(
-    findings: &Findings<'_>,
-    effects: Vec<EffectCurve>,
-    free_run: Vec<[f64; 3]>,
-) -> Curves {
-    let (record, motion) = (&findings.dataset.validate, findings.validation);
-    let judged = &findings.validate;
-    let rows = Rows::of(record, motion);
+/// The curves, but for those of the effects and of the free run.
+pub(crate) fn curves(findings: &Findings<'_>) -> Curves {
+    let (dataset, judged) = (findings.dataset, &findings.validate);
+    let effort = &findings.validation.effort;
+    let prediction = judged.each(|judged| &judged.prediction[..]);
     Curves {
-        effects,
-        free_run,
-        time_s: record.rows.iter().map(|(t, _)| *t).collect(),
-        effort: acting_effort(findings, &rows),
-        declared: rows.interpolated(&judged.declared.prediction),
-        extended: rows.interpolated(&judged.extended.prediction),
         moving: moving(findings),
+        ..on_rows(dataset, effort, prediction)
     }
 }
 
-/// The recorded effort, or, where a known lag stands between it and the motion, the acting one:
-/// that is what the predictions are of.
-fn acting_effort(findings: &Findings<'_>, rows: &Rows<'_>) -> Vec<f64> {
-    if findings.dataset.effort_lag_s > 0.0 {
-        rows.interpolated(&findings.validation.effort)
+/// The same for a long record: the moving samples are those of the excerpt, all else is of all
+/// rows.
+pub(crate) fn of_all_rows(findings: &Findings<'_>, all: &AllRows<'_>) -> Curves {
+    Curves {
+        moving: moving(findings),
+        ..on_rows(all.dataset, &all.effort, all.prediction.each(Vec::as_slice))
+    }
+}
+
+fn on_rows(dataset: &Dataset, effort: &[f64], prediction: Compared<&[f64]>) -> Curves {
+    let record = &dataset.validate;
+    let rows = Rows::new(&record.rows, record.jittered, &record.time_s);
+    // Where a known lag stands between the recorded effort and the motion, the acting one: that is
+    // what the predictions are of.
+    let effort = if dataset.effort_lag_s > 0.0 {
+        rows.interpolated(effort)
     } else {
-        let recorded = &findings.dataset.validate.rows;
-        recorded.iter().map(|(_, effort)| *effort).collect()
+        record.rows.iter().map(|(_, effort)| *effort).collect()
+    };
+    Curves {
+        time_s: record.rows.iter().map(|(t, _)| *t).collect(),
+        effort,
+        declared: rows.interpolated(prediction.declared),
+        extended: rows.interpolated(prediction.extended),
+        ..Curves::default()
     }
 }
 
@@ -64,10 +73,6 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    fn of(record: &Record, motion: &'a Kinematics) -> Self {
-        Self::new(&record.rows, record.jittered, &motion.time_s)
-    }
-
     fn new(rows: &[(f64, f64)], jittered: bool, uniform_s: &'a [f64]) -> Self {
         let first = rows.first().map_or(0.0, |(t, _)| *t);
         let origin = first - uniform_s.first().copied().unwrap_or(0.0);

@@ -1,10 +1,9 @@
 //! Errors of the declared and of the extended model: on both records, on the whole file, and with
 //! the defined low-pass where the fit had to use another.
 
-use crate::evidence::difference::Path;
+use crate::evidence::all_rows::{self, difference_um};
 use crate::evidence::findings::Findings;
 use crate::evidence::inverse_dynamics::{Compared, Judgement};
-use crate::fit::bench::Bench;
 use crate::motion::filter::cutoff_hz;
 use crate::motion::kinematics::Kinematics;
 use crate::record::samples::Record;
@@ -25,20 +24,22 @@ pub(crate) fn on_training(findings: &Findings<'_>) -> Errors {
 
 /// Errors on the validation record.
 pub(crate) fn on_validation(findings: &Findings<'_>) -> Errors {
-    errors(&findings.validate, difference_on_validation(findings))
+    let record = &findings.dataset.validate;
+    let um = difference_um(findings, record, findings.validation);
+    errors(&findings.validate, um)
 }
 
-fn difference_on_validation(findings: &Findings<'_>) -> Option<DifferenceUm> {
-    let difference = findings.stages.difference.as_ref()?;
-    let model = &findings.models.extended;
-    let bench = Bench::new(findings.dataset, findings.validation);
-    let transmitted = bench.transmitted(&model.fitted);
-    let path = Path {
-        position: &findings.dataset.validate.position,
-        transmitted: &transmitted,
-    };
-    let (declared, extended) = difference.on(findings.validation, path)?;
-    Some(Compared { declared, extended })
+/// Errors on a long record, all of its rows.
+pub(crate) fn over_all_rows(errors: &Compared<all_rows::Errors>) -> Errors {
+    let Compared { declared, extended } = errors;
+    Errors {
+        force_error_before_percent: declared.force_percent,
+        force_error_after_percent: extended.force_percent,
+        reversal_error_before: declared.reversal_rms,
+        reversal_error_after: extended.reversal_rms,
+        position_difference_error_um_before: declared.difference_um,
+        position_difference_error_um_after: extended.difference_um,
+    }
 }
 
 /// Both structures fitted to the whole file, where validation is its last part: the protocol of the

@@ -8,6 +8,7 @@ use axis_model::EffectName;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::inverse_dynamics::Compared;
+use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::report::forms::{FreeRun, FreeRunErrors, ReversalShapes};
 use crate::report::parameters;
@@ -21,8 +22,12 @@ const MICRO: f64 = 1.0e6;
 /// Points of the picture, at most about twice as many.
 const POINTS: usize = 6000;
 
-/// The free run's chapter with its picture: time, position error declared and extended, µm (µrad).
-pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)> {
+/// The free run's chapter, with errors on the records of `judged_on`, and its picture: time,
+/// position error declared and extended, µm (µrad).
+pub(crate) fn report(
+    findings: &Findings<'_>,
+    judged_on: &Dataset,
+) -> Option<(FreeRun, Vec<[f64; 3]>)> {
     let reversals = findings.stages.reversals.free_run.as_ref()?;
     let models = Compared {
         declared: declared(findings, reversals)?,
@@ -38,12 +43,12 @@ pub(crate) fn report(findings: &Findings<'_>) -> Option<(FreeRun, Vec<[f64; 3]>)
             Drive::Known(law) => Some(100.0 * law.misfit),
             Drive::Followed => None,
         },
-        train: errors(&models, drive, &dataset.train),
-        validate: errors(&models, drive, &dataset.validate),
+        train: errors(&models, drive, &judged_on.train),
+        validate: errors(&models, drive, &judged_on.validate),
         reversals: shapes(reversals),
         parameters: parameters::table(reversals.named(dataset)),
     };
-    Some((form, curve(&models, drive, &dataset.validate)))
+    Some((form, curve(&models, drive, &judged_on.validate)))
 }
 
 /// The declared model, simulated.
