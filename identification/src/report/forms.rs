@@ -1,5 +1,6 @@
 //! What is said about an identification: the form of `identify --json`, and curves for pictures.
 
+use axis_model::Estimate;
 use serde::Serialize;
 
 use crate::report::protocols::Protocol;
@@ -132,7 +133,7 @@ pub struct FreeRun {
     /// The shapes that were compared.
     pub reversals: ReversalShapes,
     /// Parameters of the extended model, fitted to the positions.
-    pub parameters: std::collections::BTreeMap<String, Parameter>,
+    pub parameters: std::collections::BTreeMap<String, Estimate>,
 }
 
 /// Whether structure is left.
@@ -148,19 +149,6 @@ pub struct ResidualReport {
     pub share_after: f64,
     /// What the structure that is left looks like, where there is any.
     pub looks_like: String,
-}
-
-/// A parameter with its interval.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
-    /// Value.
-    pub value: f64,
-    /// Unit.
-    pub unit: String,
-    /// Lower end of the 95 % interval; the value itself where there is none.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
 }
 
 /// What was found, in the form of `identify --json`.
@@ -199,7 +187,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub as_defined: Option<[Errors; 2]>,
     /// Parameters of the extended model.
-    pub parameters: std::collections::BTreeMap<String, Parameter>,
+    pub parameters: std::collections::BTreeMap<String, Estimate>,
     /// `explained` or `unexplained`.
     pub verdict: String,
     /// What the record cannot say, and what cannot be told apart.

@@ -6,43 +6,43 @@
 
 use std::collections::BTreeMap;
 
+use axis_model::EffectName::TorqueRipple;
+use axis_model::vocabulary::{Backlash, Compliance, PitchError, Presliding};
+use axis_model::{Effect, Estimate};
+
 use crate::evidence::difference::Difference;
 use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::bench::Bench;
 use crate::model::effects::{Named, Naming};
-use crate::report::forms::Parameter;
+
+/// A parameter with its name.
+type Entry = (String, Estimate);
 
 /// The table of an identification.
-pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Parameter> {
+pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Estimate> {
     let stages = &findings.stages;
-    let mut named = of_the_inverse_model(findings);
-    named.extend(of_the_shape(findings));
+    let mut entries = entries(of_the_inverse_model(findings));
+    entries.extend(of_the_shape(findings));
     let difference = stages.difference.iter();
-    named.extend(difference.flat_map(|difference| of_the_difference(findings, difference)));
+    let effects = difference.flat_map(|difference| of_the_difference(findings, difference));
+    entries.extend(effects.flat_map(|effect| of_an_effect(&effect)));
     let orders = stages.ripple.iter().flat_map(|ripple| &ripple.orders);
-    named.extend(orders.map(|order| of_an_order(findings, order)));
-    table(named)
+    entries.extend(orders.map(|order| of_an_order(findings, order)));
+    table(entries)
 }
 
-/// Named parameters as a table; a name that comes again gets a number.
-pub(crate) fn table(named: Vec<Named>) -> BTreeMap<String, Parameter> {
+/// Entries as a table; a name that comes again gets a number.
+pub(crate) fn table(entries: Vec<Entry>) -> BTreeMap<String, Estimate> {
     let mut table = BTreeMap::new();
-    for one in named {
-        let key = free_key(&table, &one.name);
-        let half = one.half_width.unwrap_or(0.0);
-        let parameter = Parameter {
-            value: one.value,
-            unit: one.unit,
-            low: one.value - half,
-            high: one.value + half,
-        };
-        table.insert(key, parameter);
+    for (name, estimate) in entries {
+        let key = free_key(&table, &name);
+        table.insert(key, estimate);
     }
     table
 }
 
-fn free_key(table: &BTreeMap<String, Parameter>, name: &str) -> String {
+fn free_key(table: &BTreeMap<String, Estimate>, name: &str) -> String {
     let keys = (1..).map(|times| match times {
         1 => name.to_owned(),
         times => format!("{name}_{times}"),
@@ -51,14 +51,35 @@ fn free_key(table: &BTreeMap<String, Parameter>, name: &str) -> String {
     free.next().unwrap_or_default()
 }
 
-/// A quantity without an interval.
-fn plain(name: &str, value: f64, unit: &str) -> Named {
-    Named {
-        name: name.into(),
+/// Named quantities as entries.
+pub(crate) fn entries(named: Vec<Named>) -> Vec<Entry> {
+    let entry = |named: Named| {
+        let half_width = named.half_width.unwrap_or(0.0);
+        (named.name, about(named.value, half_width, named.unit))
+    };
+    named.into_iter().map(entry).collect()
+}
+
+/// The parameters of an effect, named as its vocabulary names them.
+fn of_an_effect(effect: &Effect<Estimate>) -> Vec<Entry> {
+    let parts = effect.parts().into_iter();
+    parts
+        .map(|(row, estimate)| (row.report_name(), estimate.clone()))
+        .collect()
+}
+
+fn about(value: f64, half_width: f64, unit: String) -> Estimate {
+    Estimate {
         value,
-        half_width: None,
-        unit: unit.into(),
+        unit,
+        low: value - half_width,
+        high: value + half_width,
     }
+}
+
+/// A quantity without an interval.
+fn plain(value: f64, unit: &str) -> Estimate {
+    about(value, 0.0, unit.into())
 }
 
 fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
@@ -79,75 +100,107 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
 
 /// Deflection and gap: from the free run with their intervals where that decided, else the
 /// deflection that the effort about reversals gave.
-fn of_the_shape(findings: &Findings<'_>) -> Vec<Named> {
-    let length = findings.dataset.kind.position_unit();
+fn of_the_shape(findings: &Findings<'_>) -> Vec<Entry> {
     let Some(reversals) = findings.stages.reversals.accepted_shape() else {
-        let deflection = findings.models.extended.deflection;
-        let named = deflection.map(|value| plain("presliding_deflection", value, length));
-        return named.into_iter().collect();
+        let length = findings.dataset.kind.position_unit();
+        let bristle = findings.models.extended.deflection.map(|deflection| {
+            Effect::from(Presliding {
+                deflection: plain(deflection, length),
+                damping: None,
+            })
+        });
+        return bristle.iter().flat_map(of_an_effect).collect();
     };
     let is_shape =
         |named: &Named| named.name.starts_with("presliding") || named.name.starts_with("backlash");
     let all = reversals.named(findings.dataset).into_iter();
-    all.filter(is_shape).collect()
+    entries(all.filter(is_shape).collect())
 }
 
-fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Named> {
+fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {
     let length = findings.dataset.kind.position_unit();
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
-    let gap = difference.gap.map(|gap| plain("backlash_gap", gap, length));
-    let stiffness = difference
-        .stiffness
-        .map(|k| plain("compliance_stiffness", k, &stiffness_unit));
-    let pitch = difference.pitch().map(|(amplitude, per_length)| {
-        [
-            plain("pitch_error_amplitude", amplitude, length),
-            plain("pitch_error_period", 1.0 / per_length, length),
-        ]
+    let gap = difference.gap.map(|gap| {
+        Effect::from(Backlash {
+            gap: plain(gap, length),
+            load_share: None,
+            motor_friction: None,
+            restitution: None,
+        })
     });
-    let pitch = pitch.into_iter().flatten();
-    gap.into_iter().chain(stiffness).chain(pitch).collect()
+    let compliance = difference.stiffness.map(|stiffness| {
+        Effect::from(Compliance {
+            stiffness: plain(stiffness, &stiffness_unit),
+            damping: None,
+        })
+    });
+    let pitch_error = difference.pitch().map(|(amplitude, per_length)| {
+        Effect::from(PitchError {
+            amplitude: plain(amplitude, length),
+            period: plain(1.0 / per_length, length),
+        })
+    });
+    let all = gap.into_iter().chain(compliance).chain(pitch_error);
+    all.collect()
 }
 
-fn of_an_order(findings: &Findings<'_>, order: &OrderAtReversals) -> Named {
-    Named {
-        name: format!("torque_ripple_amplitude_order_{}", order.per_rev),
-        value: order.amplitude,
-        half_width: Some(order.half_width),
-        unit: findings.dataset.effort.unit().to_owned(),
-    }
+/// A ripple of which the amplitude alone is known.
+fn of_an_order(findings: &Findings<'_>, order: &OrderAtReversals) -> Entry {
+    let unit = findings.dataset.effort.unit().to_owned();
+    (
+        format!("{TorqueRipple}_amplitude_order_{}", order.per_rev),
+        about(order.amplitude, order.half_width, unit),
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn named(name: &str, value: f64, half_width: Option<f64>) -> Named {
+        Named {
+            name: name.into(),
+            value,
+            half_width,
+            unit: "N".into(),
+        }
+    }
+
     #[test]
     fn an_interval_stands_about_its_value() {
-        let table = table(vec![Named {
-            half_width: Some(0.5),
-            ..plain("coulomb", 10.0, "N")
-        }]);
-        let wanted = Parameter {
+        let list = entries(vec![named("coulomb", 10.0, Some(0.5))]);
+        let wanted = Estimate {
             value: 10.0,
             unit: "N".into(),
             low: 9.5,
             high: 10.5,
         };
-        assert_eq!(table["coulomb"], wanted);
+        assert_eq!(list, [("coulomb".to_owned(), wanted)]);
     }
 
     #[test]
     fn without_an_interval_both_ends_are_the_value() {
-        let table = table(vec![plain("backlash_gap", 2.0e-5, "m")]);
-        let gap = &table["backlash_gap"];
+        let (_, gap) = entries(vec![named("gap", 2.0e-5, None)]).remove(0);
         assert_eq!((gap.low, gap.high), (2.0e-5, 2.0e-5));
     }
 
     #[test]
+    fn an_effect_gives_the_parameters_that_are_known_by_the_names_of_the_vocabulary() {
+        let effect = Effect::from(Backlash {
+            gap: plain(2.0e-5, "m"),
+            load_share: None,
+            motor_friction: None,
+            restitution: Some(plain(0.4, "of the velocity")),
+        });
+        let names: Vec<String> = of_an_effect(&effect).into_iter().map(|e| e.0).collect();
+        assert_eq!(names, ["backlash_gap", "backlash_restitution"]);
+    }
+
+    #[test]
     fn a_second_and_a_third_ripple_get_numbers() {
-        let ripple = |value| plain("torque_ripple_amplitude", value, "N");
-        let table = table(vec![ripple(3.0), ripple(2.0), ripple(1.0)]);
+        let name = "torque_ripple_amplitude";
+        let ripple = [3.0, 2.0, 1.0].map(|value| named(name, value, None));
+        let table = table(entries(ripple.to_vec()));
         let values: Vec<(&str, f64)> = table.iter().map(|(k, p)| (k.as_str(), p.value)).collect();
         let wanted = [
             ("torque_ripple_amplitude", 3.0),
