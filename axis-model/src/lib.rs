@@ -24,5 +24,6 @@ pub mod vocabulary;
 
 pub use dimension::Dimension;
 pub use estimate::Estimate;
-pub use parameter::{Parameter, ParameterError, Value};
-pub use vocabulary::{Effect, EffectName, Place};
+pub use parameter::{Parameter, ParameterError};
+pub use serde_form::EffectTable;
+pub use vocabulary::*;

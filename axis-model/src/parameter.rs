@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::dimension::Dimension;
-use crate::estimate::Estimate;
 use crate::vocabulary::EffectName;
 
 /// A row of the vocabulary.
@@ -75,37 +74,3 @@ impl fmt::Display for ParameterError {
 }
 
 impl std::error::Error for ParameterError {}
-
-/// What a parameter may be: a number, whose unit stands in its key, or an estimate, which carries
-/// its unit.
-pub trait Value: Sized {
-    /// The key under which it is written.
-    fn key(parameter: &Parameter) -> String;
-
-    /// Refuses what cannot be.
-    ///
-    /// # Errors
-    /// [`ParameterError`] with key, range and value.
-    fn check(&self, parameter: &Parameter) -> Result<(), ParameterError>;
-}
-
-impl Value for f64 {
-    fn key(parameter: &Parameter) -> String {
-        parameter.key()
-    }
-
-    fn check(&self, parameter: &Parameter) -> Result<(), ParameterError> {
-        parameter.check(*self)
-    }
-}
-
-/// An estimate is what a record says: no range can forbid it, and its unit may be any.
-impl Value for Estimate {
-    fn key(parameter: &Parameter) -> String {
-        parameter.name.into()
-    }
-
-    fn check(&self, _: &Parameter) -> Result<(), ParameterError> {
-        Ok(())
-    }
-}

@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use protocol::states::BrakeState;
 
 use crate::brake::{Brake, BrakeParameters};
-use crate::effects::Effects;
+use crate::effects::{Effects, Instant};
 use crate::friction::{Friction, Law, Sliding};
 use crate::mechanics::{Drive, Mechanics, Motion};
 use crate::stops::Stops;
@@ -205,14 +205,14 @@ impl Axis {
     pub fn advance(&mut self, commanded_n: f64, cycle_s: f64) {
         let noise: f64 = StandardNormal.sample(&mut self.noise);
         let limit = self.parameters.force_limit_n;
-        let effects = self.parameters.effects;
+        let effects = &self.parameters.effects;
         let wanted = effects.delivered_n(commanded_n.clamp(-limit, limit));
         let disturbance = self.parameters.force_noise_n * noise;
         let steps = (cycle_s / self.sub_step_s).round().max(1.0);
         let dt_s = cycle_s / steps;
         let lag = lag_share(dt_s, self.parameters.current_loop_time_constant_s);
         let before = std::mem::replace(&mut self.delayed_n, wanted);
-        let delay_s = effects.delay_s.min(cycle_s);
+        let delay_s = effects.delay_s().min(cycle_s);
         let mut elapsed = 0.0;
         while elapsed < cycle_s - 0.5 * dt_s {
             // The share of this sub-step in which the old force still acts.
@@ -228,19 +228,30 @@ impl Axis {
         let before = self.force_n;
         self.force_n += lag * (target_n - self.force_n);
         let mean_n = target_n + (before - target_n) * mean_share(lag);
+        let at = self.instant(dt_s);
         let effects = &self.parameters.effects;
-        let middle = self.motion.motor_m + 0.5 * dt_s * self.motion.motor_m_per_s;
         let drive = Drive {
-            motor_n: mean_n
-                + disturbance_n
-                + effects.motor_force_n(middle, self.parameters.lead_m_per_rev),
-            table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) - effects.offset_n,
-            friction_factor: effects.friction_factor(self.motion.table_m, self.time_s),
+            motor_n: mean_n + disturbance_n + effects.motor_n(&at),
+            table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) + effects.table_n(&at),
+            friction_factor: effects.friction_factor(&at),
+            friction_level_n: effects.friction_level_n(&at),
             brake_n: self.brake.as_mut().map_or(0.0, |brake| brake.pass(dt_s)),
         };
         self.parameters
             .mechanics
             .advance(&mut self.motion, &mut self.friction, drive, dt_s);
+    }
+
+    /// What the effects of a sub-step see: the motor in its middle, the table at its begin.
+    fn instant(&self, dt_s: f64) -> Instant {
+        let (parameters, motion) = (&self.parameters, &self.motion);
+        Instant {
+            motor_m: motion.motor_m + 0.5 * dt_s * motion.motor_m_per_s,
+            table_m: motion.table_m,
+            time_s: self.time_s,
+            lead_m: parameters.lead_m_per_rev,
+            transmitted_n: parameters.mechanics.transmitted_n(motion),
+        }
     }
 
     /// Force of an end stop on the table in the middle of a sub-step.

@@ -16,29 +16,30 @@
 //! `rise_s` is zero unless a data sheet says it: the brake then bites late and at once, which is
 //! the longest way that its times allow.
 
+use crate::ranges::ranged;
 use protocol::states::BrakeState;
-use serde::{Deserialize, Serialize};
 
 /// Time to open where the machine file names none: the brake of the vertical reference axis.
 const OPEN_S: f64 = 0.030;
 /// Time to close where the machine file names none.
 const CLOSE_S: f64 = 0.040;
 
-/// Data sheet of a brake.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BrakeParameters {
-    /// Force at the table above which it slips.
-    pub rated_force_n: f64,
-    /// From the command to open until it lets go.
-    #[serde(default = "open_s")]
-    pub open_s: f64,
-    /// From the command to close until it holds with its rated force.
-    #[serde(default = "close_s")]
-    pub close_s: f64,
-    /// The last part of `close_s`, in which the force rises linearly.
-    #[serde(default)]
-    pub rise_s: f64,
+ranged! {
+    /// Data sheet of a brake. No brake takes a second.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BrakeParameters {
+        /// Force at the table above which it slips.
+        pub rated_force_n: f64 [1.0e-3 => 1.0e6],
+        /// From the command to open until it lets go.
+        #[serde(default = "open_s")]
+        pub open_s: f64 [0.0 => 1.0],
+        /// From the command to close until it holds with its rated force.
+        #[serde(default = "close_s")]
+        pub close_s: f64 [0.0 => 1.0],
+        /// The last part of `close_s`, in which the force rises linearly.
+        #[serde(default)]
+        pub rise_s: f64 [0.0 => 1.0],
+    }
 }
 
 fn open_s() -> f64 {

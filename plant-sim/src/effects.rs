@@ -1,98 +1,256 @@
-//! What real axes have besides mass, screw and friction: each effect one small struct, all off by
-//! default.
+//! What real axes have besides mass, screw and friction law: one file for each effect.
+//!
+//! The parameters are those of the vocabulary ([`axis_model`]). A file of this folder says what an
+//! effect *does*: it implements [`Simulated`] for the parameters. Adding one is adding its file and
+//! its line in [`simulated`].
+//!
+//! ```text
+//! commanded ─ delivered_n ─ delay_s ─▶ motor ─ motor_n ─▶ screw ─▶ table ─ table_n
+//!                                                          friction: factor · level + level_n
+//!                                                          load scale: scale_error_m
+//! ```
 
-use serde::{Deserialize, Serialize};
+use axis_model::{Effect, EffectName};
+
+mod delay;
+mod friction_drift;
+mod offset;
+mod pitch_error;
+mod position_dependent_friction;
+mod torque_ripple;
+mod torque_saturation;
 
 /// Friction never vanishes altogether: a bristle without friction has no equation.
 const SMALLEST_FACTOR: f64 = 1.0e-3;
 
-/// Force periodic in the motor position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TorqueRipple {
-    /// Amplitude at the table.
-    pub amplitude_n: f64,
-    /// Periods per revolution.
-    pub order_per_rev: f64,
-    /// Phase at position zero.
-    #[serde(default)]
-    pub phase_rad: f64,
+/// Where an axis stands in the middle of a sub-step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Instant {
+    /// Motor position at the table, m.
+    pub motor_m: f64,
+    /// Table position, m.
+    pub table_m: f64,
+    /// Time since the axis was switched on, s.
+    pub time_s: f64,
+    /// Travel per motor revolution, m.
+    pub lead_m: f64,
+    /// Force that the screw transmits to the table, N.
+    pub transmitted_n: f64,
 }
 
-/// Load scale off by a function periodic in position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PitchError {
-    /// Amplitude.
-    pub amplitude_m: f64,
-    /// Period.
-    pub period_m: f64,
+/// What an effect does to an axis. Everything is off unless an effect says otherwise.
+pub trait Simulated {
+    /// What the simulator cannot do with these parameters, and what to do about it.
+    fn refusal(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Force on the motor, N.
+    fn motor_n(&self, _at: &Instant) -> f64 {
+        0.0
+    }
+
+    /// Force on the table, N.
+    fn table_n(&self, _at: &Instant) -> f64 {
+        0.0
+    }
+
+    /// Factor on the friction level at the table.
+    fn friction_factor(&self, _at: &Instant) -> f64 {
+        1.0
+    }
+
+    /// Friction level at the table beside the one of the law, N.
+    fn friction_level_n(&self, _at: &Instant) -> f64 {
+        0.0
+    }
+
+    /// Error of the load scale at a table position, m.
+    fn scale_error_m(&self, _table_m: f64) -> f64 {
+        0.0
+    }
+
+    /// Force that a commanded force delivers, N.
+    fn delivered_n(&self, commanded_n: f64) -> f64 {
+        commanded_n
+    }
+
+    /// Time by which the force acts later, besides the transport delay of the bus, s.
+    fn delay_s(&self) -> f64 {
+        0.0
+    }
 }
 
-/// Friction that changes with time from the start (warm-up): level (1 + g exp(−t / τ)).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FrictionDrift {
-    /// Relative surplus at the start.
-    pub gain: f64,
-    /// Time constant.
-    pub time_constant_s: f64,
+/// What an effect does, where it is one of this folder.
+fn simulated(effect: &Effect) -> Option<&dyn Simulated> {
+    match effect {
+        Effect::Offset(own) => Some(own),
+        Effect::TorqueRipple(own) => Some(own),
+        Effect::PitchError(own) => Some(own),
+        Effect::PositionDependentFriction(own) => Some(own),
+        Effect::FrictionDrift(own) => Some(own),
+        Effect::TorqueSaturation(own) => Some(own),
+        Effect::Delay(own) => Some(own),
+        _ => None,
+    }
+}
+
+/// An effect that the simulator does not have, or not with these parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// Which.
+    pub effect: EffectName,
+    /// Why, and what to do.
+    pub text: &'static str,
 }
 
 /// All further effects of an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Effects {
-    /// Constant force on the table, against positive motion.
-    pub offset_n: f64,
-    /// Torque ripple.
-    pub torque_ripple: Option<TorqueRipple>,
-    /// Pitch error of the load scale.
-    pub pitch_error: Option<PitchError>,
-    /// Relative change of friction per metre.
-    pub position_dependent_friction_per_m: f64,
-    /// Friction drift.
-    pub friction_drift: Option<FrictionDrift>,
-    /// Delivered force falls behind: u / (1 + k |u|).
-    pub torque_saturation_per_n: f64,
-    /// The force acts later by this time, besides the transport delay of the bus.
-    pub delay_s: f64,
-}
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Effects(Vec<Effect>);
 
 impl Effects {
-    /// Force on the motor side at a motor position.
-    #[must_use]
-    pub fn motor_force_n(&self, motor_m: f64, lead_m: f64) -> f64 {
-        let Some(ripple) = self.torque_ripple else {
-            return 0.0;
+    /// Takes one more.
+    ///
+    /// # Errors
+    /// [`Refused`] where the simulator does not have it.
+    pub fn add(&mut self, effect: impl Into<Effect>) -> Result<(), Refused> {
+        let effect = effect.into();
+        let refused = |text| Refused {
+            effect: effect.name(),
+            text,
         };
-        let angle =
-            std::f64::consts::TAU * ripple.order_per_rev * motor_m / lead_m + ripple.phase_rad;
-        -ripple.amplitude_n * angle.sin()
+        let own = simulated(&effect).ok_or_else(|| refused(elsewhere(effect.name())))?;
+        own.refusal().map_or(Ok(()), |text| Err(refused(text)))?;
+        self.0.push(effect);
+        Ok(())
+    }
+
+    /// The effects, in the order in which they came.
+    #[must_use]
+    pub fn list(&self) -> &[Effect] {
+        &self.0
+    }
+
+    fn all(&self) -> impl Iterator<Item = &dyn Simulated> {
+        self.0.iter().filter_map(simulated)
+    }
+
+    /// Force on the motor, N.
+    #[must_use]
+    pub fn motor_n(&self, at: &Instant) -> f64 {
+        self.all().map(|effect| effect.motor_n(at)).sum()
+    }
+
+    /// Force on the table, N.
+    #[must_use]
+    pub fn table_n(&self, at: &Instant) -> f64 {
+        self.all().map(|effect| effect.table_n(at)).sum()
     }
 
     /// Factor on the friction level.
     #[must_use]
-    pub fn friction_factor(&self, table_m: f64, time_s: f64) -> f64 {
-        let drift = self.friction_drift.map_or(0.0, |drift| {
-            drift.gain * (-time_s / drift.time_constant_s).exp()
-        });
-        ((1.0 + self.position_dependent_friction_per_m * table_m) * (1.0 + drift))
-            .max(SMALLEST_FACTOR)
+    pub fn friction_factor(&self, at: &Instant) -> f64 {
+        let factors = self.all().map(|effect| effect.friction_factor(at));
+        factors.product::<f64>().max(SMALLEST_FACTOR)
     }
 
-    /// Error of the load scale at a table position.
+    /// Friction level beside the one of the law, N.
+    #[must_use]
+    pub fn friction_level_n(&self, at: &Instant) -> f64 {
+        self.all().map(|effect| effect.friction_level_n(at)).sum()
+    }
+
+    /// Error of the load scale at a table position, m.
     #[must_use]
     pub fn scale_error_m(&self, table_m: f64) -> f64 {
-        let periodic = |pitch: PitchError| {
-            pitch.amplitude_m * (std::f64::consts::TAU * table_m / pitch.period_m).sin()
-        };
-        self.pitch_error.map_or(0.0, periodic)
+        self.all().map(|effect| effect.scale_error_m(table_m)).sum()
     }
 
-    /// Force that a commanded force delivers.
+    /// Force that a commanded force delivers, N.
     #[must_use]
     pub fn delivered_n(&self, commanded_n: f64) -> f64 {
-        commanded_n / (1.0 + self.torque_saturation_per_n * commanded_n.abs())
+        self.all()
+            .fold(commanded_n, |force_n, effect| effect.delivered_n(force_n))
+    }
+
+    /// Time by which the force acts later, s.
+    #[must_use]
+    pub fn delay_s(&self) -> f64 {
+        self.all().map(Simulated::delay_s).sum()
+    }
+}
+
+/// Where the simulator has an effect that is not one of this folder.
+const fn elsewhere(effect: EffectName) -> &'static str {
+    match effect {
+        EffectName::Inertia => "give motor_inertia_kg and table_mass_kg in [axis.mechanics]",
+        EffectName::Backlash => "give backlash_m in [axis.mechanics]",
+        EffectName::Compliance => "give screw_stiffness_n_per_m in [axis.mechanics]",
+        _ => "the simulator has no such effect; leave it out",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axis_model::{Backlash, Delay, FrictionDrift, Offset, PositionDependentFriction};
+
+    const AT: Instant = Instant {
+        motor_m: 0.1,
+        table_m: 0.1,
+        time_s: 0.0,
+        lead_m: 0.01,
+        transmitted_n: 0.0,
+    };
+
+    #[test]
+    fn an_axis_without_effects_is_left_alone() {
+        let none = Effects::default();
+        assert_eq!((none.motor_n(&AT), none.table_n(&AT)), (0.0, 0.0));
+        assert_eq!(
+            (none.friction_factor(&AT), none.friction_level_n(&AT)),
+            (1.0, 0.0)
+        );
+        assert_eq!((none.scale_error_m(0.1), none.delay_s()), (0.0, 0.0));
+        assert_eq!(none.delivered_n(123.4), 123.4);
+    }
+
+    #[test]
+    fn forces_add_up_and_factors_multiply() {
+        let mut effects = Effects::default();
+        effects.add(Offset { offset: 20.0 }).unwrap();
+        effects.add(Offset { offset: 5.0 }).unwrap();
+        let warm_up = FrictionDrift {
+            gain: 0.5,
+            time_constant: 10.0,
+            viscous_gain: None,
+        };
+        effects.add(warm_up).unwrap();
+        let slope = PositionDependentFriction {
+            linear: 2.0,
+            quadratic: None,
+        };
+        effects.add(slope).unwrap();
+        assert_eq!(effects.table_n(&AT), -25.0);
+        assert!((effects.friction_factor(&AT) - 1.2 * 1.5).abs() < 1.0e-12);
+        let far = Instant {
+            table_m: -0.6,
+            ..AT
+        };
+        assert_eq!(effects.friction_factor(&far), SMALLEST_FACTOR);
+    }
+
+    #[test]
+    fn an_effect_that_is_not_simulated_is_refused_by_name() {
+        let mut effects = Effects::default();
+        let gap = Backlash {
+            gap: 1.0e-5,
+            ..Backlash::default()
+        };
+        let refused = effects.add(gap).unwrap_err();
+        assert_eq!(refused.effect, EffectName::Backlash);
+        assert!(refused.text.contains("backlash_m in [axis.mechanics]"));
+        assert_eq!(effects.add(Delay { delay: 1.0e-4 }), Ok(()));
+        assert_eq!(effects.list().len(), 1);
     }
 }

@@ -14,29 +14,32 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v / vs)²)`,
-/// in newtons.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sliding {
-    /// Coulomb friction Fc.
-    pub coulomb_n: f64,
-    /// Breakaway friction Fs; equal to `coulomb_n` where there is no Stribeck fall.
-    pub static_n: f64,
-    /// Stribeck velocity vs.
-    pub stribeck_velocity_m_per_s: f64,
-    /// Viscous friction Fv.
-    pub viscous_n_s_per_m: f64,
-    /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and negative
-    /// motion.
-    #[serde(default)]
-    pub coulomb_asymmetry: f64,
-    /// Relative difference of viscous friction by direction.
-    #[serde(default)]
-    pub viscous_asymmetry: f64,
-    /// Quadratic drag q v |v|.
-    #[serde(default)]
-    pub quadratic_drag_n_s2_per_m2: f64,
+use crate::ranges::{Quantity, Ranged, ranged};
+
+ranged! {
+    /// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v /
+    /// vs)²)`, in newtons.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Sliding {
+        /// Coulomb friction Fc.
+        pub coulomb_n: f64 [0.0 => 1.0e6],
+        /// Breakaway friction Fs, not below Fc; equal to it where there is no Stribeck fall.
+        pub static_n: f64 [0.0 => 1.0e6],
+        /// Stribeck velocity vs.
+        pub stribeck_velocity_m_per_s: f64 [1.0e-6 => 1.0],
+        /// Viscous friction Fv.
+        pub viscous_n_s_per_m: f64 [0.0 => 1.0e7],
+        /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and
+        /// negative motion. Friction has to stay friction: a tenth is left.
+        #[serde(default)]
+        pub coulomb_asymmetry: f64 [-0.9 => 0.9],
+        /// Relative difference of viscous friction by direction.
+        #[serde(default)]
+        pub viscous_asymmetry: f64 [-0.9 => 0.9],
+        /// Quadratic drag q v |v|.
+        #[serde(default)]
+        pub quadratic_drag_n_s2_per_m2: f64 [0.0 => 1.0e7],
+    }
 }
 
 impl Sliding {
@@ -86,6 +89,49 @@ pub enum Law {
     },
 }
 
+/// Range of a bristle's stiffness, N/m.
+const STIFFNESS: (f64, f64) = (1.0e3, 1.0e12);
+/// Range of a bristle's damping, N·s/m.
+const DAMPING: (f64, f64) = (0.0, 1.0e7);
+
+impl Ranged for Law {
+    fn quantities(&self) -> Vec<Quantity> {
+        match self {
+            Self::Coulomb => Vec::new(),
+            Self::LuGre {
+                bristle_stiffness_n_per_m: stiffness,
+                bristle_damping_n_s_per_m: damping,
+            } => vec![
+                Quantity::new("bristle_stiffness_n_per_m", *stiffness, STIFFNESS),
+                Quantity::new("bristle_damping_n_s_per_m", *damping, DAMPING),
+            ],
+            Self::MaxwellSlip {
+                stiffness_n_per_m, ..
+            } => {
+                let element = |k: &f64| Quantity::new("stiffness_n_per_m", *k, STIFFNESS);
+                stiffness_n_per_m.iter().map(element).collect()
+            }
+        }
+    }
+}
+
+impl Law {
+    /// Stiffness at standstill, N/m; zero where the contact is rigid.
+    #[must_use]
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        match self {
+            Self::Coulomb => 0.0,
+            Self::LuGre {
+                bristle_stiffness_n_per_m,
+                ..
+            } => *bristle_stiffness_n_per_m,
+            Self::MaxwellSlip {
+                stiffness_n_per_m, ..
+            } => stiffness_n_per_m.iter().sum(),
+        }
+    }
+}
+
 /// A friction law with its state.
 #[derive(Clone, Debug)]
 pub struct Friction {
@@ -107,6 +153,15 @@ pub struct Table {
     pub dt_s: f64,
     /// Factor on the sliding level: warm-up and position dependence.
     pub factor: f64,
+    /// Level beside the sliding one, N: friction of the load.
+    pub level_n: f64,
+}
+
+impl Table {
+    /// Friction level of a velocity, N.
+    fn friction_n(&self, sliding: &Sliding, v: f64) -> f64 {
+        sliding.level_n(v) * self.factor + self.level_n
+    }
 }
 
 impl Friction {
@@ -177,18 +232,19 @@ fn coulomb(sliding: &Sliding, table: Table) -> f64 {
         free_velocity,
         mass_kg,
         dt_s,
-        factor,
+        ..
     } = table;
     let direction = if velocity == 0.0 {
         free_velocity
     } else {
         velocity
     };
-    let level = sliding.level_n(if velocity == 0.0 {
+    let about = if velocity == 0.0 {
         sign(direction) * f64::MIN_POSITIVE
     } else {
         velocity
-    }) * factor;
+    };
+    let level = table.friction_n(sliding, about);
     // Viscous part trapezoidal, so that the scheme stays second order while it slides.
     let half = 0.5 * sliding.viscous_n_s_per_m(direction) * dt_s / mass_kg;
     let free_velocity = free_velocity - half * velocity;
@@ -214,13 +270,13 @@ fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 
         free_velocity,
         mass_kg,
         dt_s,
-        factor,
+        ..
     } = table;
-    let rate = |v: f64| bristle.stiffness * v.abs() / (sliding.level_n(v) * factor);
+    let rate = |v: f64| bristle.stiffness * v.abs() / table.friction_n(sliding, v);
     *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
     // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
     // trapezoidal.
-    let level = sliding.level_n(velocity) * factor;
+    let level = table.friction_n(sliding, velocity);
     let constant = bristle.stiffness * *z;
     let linear = bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level)
         + sliding.viscous_n_s_per_m(velocity);
@@ -253,14 +309,14 @@ fn maxwell(
         free_velocity,
         mass_kg,
         dt_s,
-        factor,
+        ..
     } = table;
     // An element slips at the level of the direction it is deflected in, whatever the table does at
     // the moment.
     let slide = |deflection: &mut [f64], velocity: f64| {
         let (forth, back) = (
-            sliding.level_n(velocity.abs()) * factor,
-            sliding.level_n(-velocity.abs()) * factor,
+            table.friction_n(sliding, velocity.abs()),
+            table.friction_n(sliding, -velocity.abs()),
         );
         let mut force = 0.0;
         for ((k, share), z) in stiffness.iter().zip(share).zip(deflection) {

@@ -16,6 +16,7 @@ pub mod friction;
 pub mod machine;
 pub mod mechanics;
 pub mod node;
+mod ranges;
 pub mod stops;
 
 pub use axis::{Axis, AxisParameters};

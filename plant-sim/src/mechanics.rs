@@ -51,6 +51,8 @@ pub struct Drive {
     pub table_n: f64,
     /// Factor on the friction level at the table.
     pub friction_factor: f64,
+    /// Friction level at the table beside the one of the law, N.
+    pub friction_level_n: f64,
     /// Force up to which a brake holds the motor, N; zero without one.
     pub brake_n: f64,
 }
@@ -62,6 +64,18 @@ impl Mechanics {
         let wind_up = motion.motor_m - motion.table_m;
         let half_gap = 0.5 * self.backlash_m;
         wind_up - wind_up.clamp(-half_gap, half_gap)
+    }
+
+    /// Force that the screw transmits to the table, N; a gap that is open transmits none.
+    #[must_use]
+    pub fn transmitted_n(&self, motion: &Motion) -> f64 {
+        let deflection_m = self.deflection_m(motion);
+        let spring_n = self.screw_stiffness_n_per_m * deflection_m;
+        if self.backlash_m == 0.0 || deflection_m != 0.0 {
+            spring_n + self.screw_damping_n_s_per_m * (motion.motor_m_per_s - motion.table_m_per_s)
+        } else {
+            0.0
+        }
     }
 
     /// One sub-step.
@@ -123,6 +137,7 @@ impl Mechanics {
             p2,
             half,
             factor: drive.friction_factor,
+            level_n: drive.friction_level_n,
             dt_s,
         };
         if drive.brake_n == 0.0 {
@@ -143,6 +158,7 @@ struct Kick {
     p2: f64,
     half: f64,
     factor: f64,
+    level_n: f64,
     dt_s: f64,
 }
 
@@ -193,6 +209,7 @@ impl Kick {
             mass_kg,
             dt_s: self.dt_s,
             factor: self.factor,
+            level_n: self.level_n,
         }
     }
 }

@@ -8,7 +8,7 @@
 //! middle of the drift of [`crate::mechanics`], so it takes energy out as long as the sub-step
 //! resolves it; the machine file's ranges see to that.
 
-use serde::{Deserialize, Serialize};
+use crate::ranges::ranged;
 
 /// A pair of end stops, symmetrical about position zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,18 +21,20 @@ pub struct Stops {
     pub damping_n_s_per_m: f64,
 }
 
-/// `[axis.stops]` of a machine file. An empty table gives all defaults, no table no stops.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StopsForm {
-    /// Where they stand; [`MARGIN_M`] behind the travel where it is not given.
-    pub stop_m: Option<f64>,
-    /// Stiffness.
-    #[serde(default = "stiffness")]
-    pub stop_stiffness_n_per_m: f64,
-    /// Damping.
-    #[serde(default = "damping")]
-    pub stop_damping_n_s_per_m: f64,
+ranged! {
+    /// `[axis.stops]` of a machine file. An empty table gives all defaults, no table no stops. What
+    /// the sub-step resolves is less than these ranges on a light table.
+    #[derive(Clone, Copy, Debug)]
+    pub struct StopsForm {
+        /// Where they stand; [`MARGIN_M`] behind the travel where it is not given.
+        pub stop_m: Option<f64> [0.0 => 10.1],
+        /// Stiffness.
+        #[serde(default = "stiffness")]
+        pub stop_stiffness_n_per_m: f64 [1.0e3 => 1.0e12],
+        /// Damping.
+        #[serde(default = "damping")]
+        pub stop_damping_n_s_per_m: f64 [0.0 => 1.0e12],
+    }
 }
 
 /// Way from the end of the travel to the stop.

@@ -41,6 +41,7 @@ fn push(
             motor_n: force((step as f64 + 0.5) * dt_s),
             table_n: 0.0,
             friction_factor: 1.0,
+            friction_level_n: 0.0,
             brake_n: 0.0,
         };
         m.advance(motion, friction, drive, dt_s);
@@ -188,6 +189,7 @@ fn maxwell_slip_remembers_its_reversal_points() {
                 mass_kg: 1.0e12,
                 dt_s,
                 factor: 1.0,
+                level_n: 0.0,
             });
         }
         friction
@@ -221,6 +223,7 @@ fn steady_sliding_with_bristles_costs_exactly_the_sliding_level() {
                 mass_kg: 1.0e9,
                 dt_s,
                 factor: 1.0,
+                level_n: 0.0,
             });
         }
         let force = (0.1 - next) / dt_s * 1.0e9;
