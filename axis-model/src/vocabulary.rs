@@ -145,13 +145,13 @@ vocabulary! {
         viscous_gain: RATIO, -0.9 => 10.0,
     }
 
-    /// friction that grows with velocity squared, q v |v|
+    /// friction that grows with velocity squared, q v² against motion
     quadratic_drag: QuadraticDrag, MovingEffort, {
         /// friction per velocity squared
         quadratic_drag: DRAG, 0.0 => 1.0e7,
     } optional {}
 
-    /// delivered effort that falls behind the commanded one as it grows, u / (1 + k |u|)
+    /// delivered effort that falls behind the commanded one as it grows, u / (1 + k abs(u))
     torque_saturation: TorqueSaturation, MovingEffort, {
         /// k
         torque_saturation: PER_EFFORT, 0.0 => 1.0,

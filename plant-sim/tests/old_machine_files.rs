@@ -45,12 +45,28 @@ fn run(machine: &Machine) -> Vec<(u64, u64, i64)> {
 /// vocabulary.
 #[test]
 fn the_axes_of_old_files_move_as_they_did_to_the_last_bit() {
-    let reference = (4_599_124_410_511_616_046, 4_590_058_509_185_744_703, 30_269_068);
+    let reference = (
+        4_599_124_410_511_616_046,
+        4_590_058_509_185_744_703,
+        30_269_068,
+    );
     assert_eq!(run(&machine(REFERENCE)), [reference, reference]);
-    let gap = (4_599_825_728_738_017_700, 4_582_359_046_478_412_065, 34_162_434);
+    let gap = (
+        4_599_825_728_738_017_700,
+        4_582_359_046_478_412_065,
+        34_162_434,
+    );
     assert_eq!(run(&machine(GAP)), [gap]);
-    let z = (13_820_973_675_594_063_783, 13_827_563_144_956_596_761, -23_408_000);
-    let z2 = (13_822_463_833_638_504_990, 4_584_722_791_526_245_810, -30_088_030);
+    let z = (
+        13_820_973_675_594_063_783,
+        13_827_563_144_956_596_761,
+        -23_408_000,
+    );
+    let z2 = (
+        13_822_463_833_638_504_990,
+        4_584_722_791_526_245_810,
+        -30_088_030,
+    );
     assert_eq!(run(&machine(VERTICAL)), [z, z2]);
 }
 
@@ -64,20 +80,53 @@ fn a_gap_with_every_further_effect_is_read_as_then() {
     let machine = machine(GAP);
     let axis = &machine.axes[0];
     let (actual, gains) = (&axis.actual, &axis.gains);
-    assert_eq!(machine.bus, Bus::Classic { bit_rate: 1_000_000 });
+    assert_eq!(
+        machine.bus,
+        Bus::Classic {
+            bit_rate: 1_000_000
+        }
+    );
     assert_eq!(axis.interface.as_deref(), Some("vcan0"));
     assert_eq!(gains.position_sensor, PositionSensor::Load);
-    assert_eq!((gains.torque_low_pass_hz, gains.torque_notch_hz), (Some(400.0), None));
+    assert_eq!(
+        (gains.torque_low_pass_hz, gains.torque_notch_hz),
+        (Some(400.0), None)
+    );
     assert_eq!(actual.mechanics.backlash_m, 8.0e-6);
-    assert_eq!((actual.sliding.coulomb_n, actual.sliding.static_n), (300.0, 390.0));
+    assert_eq!(
+        (actual.sliding.coulomb_n, actual.sliding.static_n),
+        (300.0, 390.0)
+    );
     assert_eq!(actual.law.stiffness_n_per_m(), 3.0e7);
     let effects: [Effect; 7] = [
         Offset { offset: 25.0 }.into(),
-        TorqueRipple { amplitude: 40.0, order: Some(6.0), period: None, phase: Some(0.3) }.into(),
-        PitchError { amplitude: 3.0e-6, period: 0.005 }.into(),
-        PositionDependentFriction { linear: 0.8, quadratic: None }.into(),
-        FrictionDrift { gain: 0.4, time_constant: 20.0, viscous_gain: None }.into(),
-        TorqueSaturation { torque_saturation: 1.5e-5 }.into(),
+        TorqueRipple {
+            amplitude: 40.0,
+            order: Some(6.0),
+            period: None,
+            phase: Some(0.3),
+        }
+        .into(),
+        PitchError {
+            amplitude: 3.0e-6,
+            period: 0.005,
+        }
+        .into(),
+        PositionDependentFriction {
+            linear: 0.8,
+            quadratic: None,
+        }
+        .into(),
+        FrictionDrift {
+            gain: 0.4,
+            time_constant: 20.0,
+            viscous_gain: None,
+        }
+        .into(),
+        TorqueSaturation {
+            torque_saturation: 1.5e-5,
+        }
+        .into(),
         Delay { delay: 3.0e-4 }.into(),
     ];
     assert_eq!(actual.effects.list(), effects);
@@ -109,7 +158,10 @@ fn a_vertical_axis_and_one_like_it_are_read_as_then() {
         motor_zero_m: 0.1,
         load_zero_m: 0.0,
     };
-    assert_eq!((z.actual.mounting, z2.actual.mounting), (mounting, mounting));
+    assert_eq!(
+        (z.actual.mounting, z2.actual.mounting),
+        (mounting, mounting)
+    );
     let sliding = Sliding {
         coulomb_n: 350.0,
         static_n: 420.0,
@@ -125,7 +177,10 @@ fn a_vertical_axis_and_one_like_it_are_read_as_then() {
         share: vec![0.5, 0.3, 0.2],
     };
     assert_eq!((&z.actual.law, &z2.actual.law), (&elements, &Law::Coulomb));
-    assert_eq!((z2.actual.sliding.coulomb_n, z2.actual.sliding.static_n), (200.0, 200.0));
+    assert_eq!(
+        (z2.actual.sliding.coulomb_n, z2.actual.sliding.static_n),
+        (200.0, 200.0)
+    );
     assert_eq!((z2.limits, z2.gains), (z.limits, z.gains));
     assert!(z.actual.effects.list().is_empty() && z2.actual.effects.list().is_empty());
 }

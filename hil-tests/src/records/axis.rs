@@ -3,6 +3,7 @@
 //! Ranges are those of a table with a screw of 10 mm, about 700 kg as the motor sees it: other
 //! machines of the make of the reference axis.
 
+use axis_model::Offset;
 use plant_sim::axis::{Axis, AxisParameters, Mounting, Reading};
 use plant_sim::effects::Effects;
 use plant_sim::friction::{Law, Sliding};
@@ -22,15 +23,13 @@ const M_PER_LOAD_COUNT: f64 = 1.0e-8;
 /// The axis of a plan.
 pub(super) fn parameters(plan: &Plan, draws: &mut Draws) -> AxisParameters {
     let sliding = sliding(plan, draws);
+    let mechanics = mechanics(draws);
     let mut parameters = AxisParameters {
-        mechanics: mechanics(draws),
+        mechanics,
         lead_m_per_rev: LEAD_M,
         sliding,
         law: Law::Coulomb,
-        effects: Effects {
-            offset_n: draws.between(-30.0, 30.0),
-            ..Effects::default()
-        },
+        effects: offset(draws.between(-30.0, 30.0)),
         motor_encoder_counts_per_rev: COUNTS_PER_REV,
         load_encoder_resolution_m: LOAD_RESOLUTION_M,
         current_loop_time_constant_s: 2.0e-5,
@@ -42,6 +41,13 @@ pub(super) fn parameters(plan: &Plan, draws: &mut Draws) -> AxisParameters {
         hidden.hide_in(&mut parameters);
     }
     parameters
+}
+
+fn offset(offset: f64) -> Effects {
+    let mut effects = Effects::default();
+    let added = effects.add(Offset { offset });
+    added.expect("the simulator has an offset");
+    effects
 }
 
 /// Coulomb and viscous friction without a Stribeck fall.

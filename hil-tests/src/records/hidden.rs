@@ -5,9 +5,11 @@
 
 use std::f64::consts::TAU;
 
-use axis_model::EffectName;
+use axis_model::{
+    Delay, Effect, EffectName, FrictionDrift, PitchError, PositionDependentFriction, TorqueRipple,
+    TorqueSaturation,
+};
 use plant_sim::axis::AxisParameters;
-use plant_sim::effects::{Effects, FrictionDrift, PitchError, TorqueRipple};
 use plant_sim::friction::{Law, Sliding};
 use plant_sim::mechanics::Motion;
 
@@ -121,51 +123,53 @@ impl Hidden {
             | Self::PositionDependentFriction { .. }
             | Self::FrictionDrift { .. }
             | Self::TorqueSaturation { .. }
-            | Self::Delay { .. } => self.hide_among(&mut axis.effects),
+            | Self::Delay { .. } => {
+                let added = self.further().map(|effect| axis.effects.add(effect));
+                added.transpose().expect("the simulator has it");
+            }
             Self::Foreign(_) => {}
         }
     }
 
-    /// The effects that the simulator has in a list of their own.
-    fn hide_among(self, effects: &mut Effects) {
-        match self {
+    /// What the simulator has in its list of further effects.
+    fn further(self) -> Option<Effect> {
+        Some(match self {
             Self::TorqueRipple {
                 amplitude_n,
                 order_per_rev,
-            } => {
-                effects.torque_ripple = Some(TorqueRipple {
-                    amplitude_n,
-                    order_per_rev,
-                    phase_rad: RIPPLE_PHASE_RAD,
-                });
-            }
+            } => Effect::TorqueRipple(TorqueRipple {
+                amplitude: amplitude_n,
+                order: Some(order_per_rev),
+                period: None,
+                phase: Some(RIPPLE_PHASE_RAD),
+            }),
             Self::PitchError {
                 amplitude_m,
                 period_m,
-            } => {
-                effects.pitch_error = Some(PitchError {
-                    amplitude_m,
-                    period_m,
-                });
-            }
+            } => Effect::PitchError(PitchError {
+                amplitude: amplitude_m,
+                period: period_m,
+            }),
             Self::PositionDependentFriction { per_m } => {
-                effects.position_dependent_friction_per_m = per_m;
+                Effect::PositionDependentFriction(PositionDependentFriction {
+                    linear: per_m,
+                    quadratic: None,
+                })
             }
             Self::FrictionDrift {
                 gain,
                 time_constant_s,
-            } => {
-                effects.friction_drift = Some(FrictionDrift {
-                    gain,
-                    time_constant_s,
-                });
-            }
-            Self::TorqueSaturation { share } => {
-                effects.torque_saturation_per_n = SATURATION_PER_N * share / (1.0 - share);
-            }
-            Self::Delay { delay_s } => effects.delay_s = delay_s,
-            _ => {}
-        }
+            } => Effect::FrictionDrift(FrictionDrift {
+                gain,
+                time_constant: time_constant_s,
+                viscous_gain: None,
+            }),
+            Self::TorqueSaturation { share } => Effect::TorqueSaturation(TorqueSaturation {
+                torque_saturation: SATURATION_PER_N * share / (1.0 - share),
+            }),
+            Self::Delay { delay_s } => Effect::Delay(Delay { delay: delay_s }),
+            _ => return None,
+        })
     }
 }
 
