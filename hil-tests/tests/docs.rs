@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hil_tests::confusion::{self, Counts};
 use protocol::cob::AxisIds;
 use protocol::table::{FRAMES, Rate};
 
@@ -123,4 +124,48 @@ fn the_list_of_frames_is_the_table_of_the_protocol() {
     text += "\n";
     text += CYCLE;
     check("frames.md", &text);
+}
+
+/// A document without its line breaks, so that a sentence can be looked for.
+fn prose(path: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path);
+    let text = std::fs::read_to_string(path).unwrap();
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_counts_on_seeded_records_are_those_of_the_golden_table() {
+    let Counts {
+        records,
+        exact,
+        empty,
+        false_alarms,
+        ..
+    } = Counts::of(&confusion::rows(&confusion::golden()));
+    assert_eq!(false_alarms, 0, "the documents say that there is none");
+    for (document, sentences) in [
+        (
+            "docs/identification.md",
+            vec![
+                format!("{records} records from our simulator"),
+                format!("{exact} are named exactly. On the {empty} that hide nothing, nothing is"),
+                "golden table `hil-tests/golden/identification.md`".to_owned(),
+            ],
+        ),
+        (
+            "README.md",
+            vec![
+                format!("On {records} seeded records with hidden effects it names {exact} exactly"),
+                format!("nothing named on the {empty} that lack nothing"),
+            ],
+        ),
+    ] {
+        let text = prose(document);
+        for sentence in sentences {
+            assert!(
+                text.contains(&sentence),
+                "{document} does not say: {sentence}"
+            );
+        }
+    }
 }

@@ -105,3 +105,36 @@ fn smooth(u: f64) -> f64 {
     let u = u.clamp(0.0, 1.0);
     u.powi(3) * (10.0 - 15.0 * u + 6.0 * u * u)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_stays_on_the_table_and_below_half_a_metre_per_second() {
+        for seed in 1..=20 {
+            let path = path(30_000, &mut Draws::of(seed));
+            assert_eq!(path.len(), 30_000);
+            let furthest = path.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
+            let steps = path.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let fastest = steps.fold(0.0, f64::max) / PERIOD_S;
+            assert!(
+                (0.05..0.25).contains(&furthest),
+                "seed {seed}: {furthest} m"
+            );
+            assert!((0.05..0.5).contains(&fastest), "seed {seed}: {fastest} m/s");
+        }
+    }
+
+    #[test]
+    fn a_ramp_ends_where_it_should_within_its_limits() {
+        let ramp = ramp(0.01, -0.05, 0.2, 2.0);
+        assert!((last(&ramp) + 0.05).abs() < 1.0e-4, "{}", last(&ramp));
+        let velocity: Vec<f64> = ramp.windows(2).map(|x| (x[1] - x[0]) / PERIOD_S).collect();
+        let fastest = velocity.iter().fold(0.0_f64, |v, x| v.max(-x));
+        assert!((0.19..=0.2001).contains(&fastest), "{fastest} m/s");
+        let steps = velocity.windows(2).map(|v| (v[1] - v[0]).abs() / PERIOD_S);
+        let hardest = steps.fold(0.0, f64::max);
+        assert!((1.8..2.1).contains(&hardest), "{hardest} m/s²");
+    }
+}

@@ -128,3 +128,32 @@ fn plan(index: usize, case: Case) -> Plan {
         ..Plan::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_65_plans_and_every_seed_is_its_own() {
+        let plans = plans();
+        let hides = |count: usize| {
+            plans
+                .iter()
+                .filter(|plan| plan.hidden.len() == count)
+                .count()
+        };
+        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 32, 13));
+        let seeds: Vec<u64> = plans.iter().map(|plan| plan.seed).collect();
+        assert_eq!(seeds, (1000..1065).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn what_acts_between_motor_and_load_is_recorded_with_a_scale() {
+        for plan in plans() {
+            let needs_scale = |one: &Hidden| matches!(one, Compliance { .. } | PitchError { .. });
+            if plan.hidden.iter().any(needs_scale) {
+                assert_eq!(plan.positions, Positions::MotorAndLoad, "{plan:?}");
+            }
+        }
+    }
+}

@@ -105,3 +105,68 @@ fn controller_table(plan: &Plan, mass_kg: f64) -> String {
          position_sensor = \"{sensor}\"\n"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a short record of a plan says.
+    fn training(plan: &Plan) -> String {
+        let plan = Plan {
+            rows: 1000,
+            ..plan.clone()
+        };
+        let mut draws = Draws::of(plan.seed);
+        let parameters = axis::parameters(&plan, &mut draws);
+        let path = motion::path(plan.rows, &mut draws);
+        record(&plan, &parameters, &path, &mut draws)
+    }
+
+    #[test]
+    fn a_seed_is_a_record_and_another_seed_is_another() {
+        let plan = Plan::default();
+        let other = Plan {
+            seed: 2,
+            ..plan.clone()
+        };
+        assert_eq!(training(&plan), training(&plan));
+        assert_ne!(training(&plan), training(&other));
+    }
+
+    #[test]
+    fn the_load_stands_in_the_record_only_where_it_is_recorded() {
+        let plan = Plan::default();
+        let both = Plan {
+            positions: Positions::MotorAndLoad,
+            ..plan.clone()
+        };
+        for (plan, columns) in [(&plan, 4), (&both, 5)] {
+            let text = training(plan);
+            assert_eq!(text.lines().count(), 1001);
+            assert!(text.lines().all(|line| line.split(',').count() == columns));
+            let is_told = dataset(plan, 700.0).contains("load_encoder_resolution_m");
+            assert_eq!(is_told, columns == 5);
+        }
+    }
+
+    #[test]
+    fn what_has_no_name_acts_on_the_axis_all_the_same() {
+        use crate::records::{Foreign, Hidden};
+        let plan = Plan::default();
+        for foreign in [
+            Foreign::Spring { n_per_m: 400.0 },
+            Foreign::Hum {
+                amplitude_n: 12.0,
+                hz: 0.7,
+            },
+            Foreign::CubicDrag { n_s3_per_m3: 1.2e4 },
+        ] {
+            let hidden = vec![Hidden::Foreign(foreign)];
+            let disturbed = Plan {
+                hidden,
+                ..plan.clone()
+            };
+            assert_ne!(training(&disturbed), training(&plan), "{foreign:?}");
+        }
+    }
+}
