@@ -3,5 +3,6 @@
 pub(crate) mod bench;
 pub(crate) mod blocks;
 pub(crate) mod fitted;
+pub(crate) mod plain;
 pub(crate) mod search;
 pub(crate) mod tuning;

@@ -7,11 +7,12 @@ use axis_model::EffectName;
 use crate::error::IdentificationError;
 use crate::evidence::all_rows::AllRows;
 use crate::evidence::difference::{self, Difference};
+use crate::evidence::effort;
 use crate::evidence::findings::{Findings, Stages};
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::plausibility;
 use crate::evidence::reversal_stage::ReversalStage;
-use crate::evidence::selection::{self, Selection};
+use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
@@ -101,9 +102,9 @@ fn on_effort(
     validate: &Kinematics,
     progress: &mut dyn FnMut(&str),
 ) -> Selection {
-    let mut selected = selection::select(pair, declared.clone(), progress);
+    let mut selected = effort::select(pair, declared.clone(), progress);
     let other = Bench::new(pair.bench.dataset, validate);
-    selection::veto(pair.bench, &other, &mut selected.model);
+    effort::veto(pair.bench, &other, &mut selected.model);
     selected
 }
 
@@ -124,7 +125,7 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
         .as_ref()
         .is_some_and(Difference::moves_apart);
     let extended = if moves_apart {
-        selection::with_load_inertia(pair.bench, &stages.effort.model)
+        effort::with_load_inertia(pair.bench, &stages.effort.model)
     } else {
         stages.effort.model.clone()
     };

@@ -12,13 +12,8 @@
 //! decides where neither can, and breaks a tie of the free run.
 
 use crate::evidence::free_run::Summary;
-use crate::evidence::reversal::{Presliding, SUSPICION};
-
-/// Below this ratio of the inverse model (Dahl over rigid) a bristle wins a tie of the free run.
-/// Noise that really acts raises what every shape leaves there; the inverse model averages it out.
-const BRISTLE_TIE: f64 = 0.5;
-/// Above this ratio a gap wins it. Of 128 simulated records those with a gap had 0.88 and more.
-const GAP_TIE: f64 = 0.8;
+use crate::evidence::reversal::Presliding;
+use crate::evidence::thresholds::{BRISTLE_TIE_RATIO, GAP_TIE_RATIO, SUSPICION_RATIO};
 
 /// What the witnesses say about reversals; `None` where one is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,8 +67,9 @@ impl Witnesses {
 
     /// A bristle leaves less than rigid friction, but not so much less that it is one.
     fn is_suspicious(&self) -> bool {
-        self.inverse
-            .is_some_and(|inverse| !inverse.accepted && inverse.dahl < SUSPICION * inverse.rigid)
+        self.inverse.is_some_and(|inverse| {
+            !inverse.accepted && inverse.dahl < SUSPICION_RATIO * inverse.rigid
+        })
     }
 
     fn by_inverse(&self, unexplained: bool) -> AtReversals {
@@ -104,8 +100,8 @@ impl Witnesses {
         let ratio = self
             .inverse
             .map_or(f64::NAN, |inverse| inverse.dahl / inverse.rigid);
-        let presliding = ratio < BRISTLE_TIE && !seen.gap_leaves_less;
-        let backlash = ratio > GAP_TIE && seen.gap_leaves_less;
+        let presliding = ratio < BRISTLE_TIE_RATIO && !seen.gap_leaves_less;
+        let backlash = ratio > GAP_TIE_RATIO && seen.gap_leaves_less;
         AtReversals {
             presliding,
             backlash,

@@ -2,33 +2,34 @@
 //! a load scale.
 //!
 //! Candidates: a gap (the load coasts, or waits, while the motor crosses it:
-//! [`crate::simulate::load`]), wind-up by the transmitted force (`F − M1·a` over K), and a function
-//! periodic in position.
-//! Judged on held-out blocks like the force, but accepted only where the amplitude is beyond the
-//! encoders' counts.
+//! [`crate::simulate::load`]), wind-up by the transmitted force, and a function periodic in
+//! position. Judged on held-out blocks like the force, but accepted only where the amplitude is
+//! beyond the encoders' counts.
 
-use std::f64::consts::TAU;
+mod columns;
+mod search;
 
 use axis_model::EffectName;
 
-use crate::evidence::selection::Scored;
-use crate::fit::blocks::{Blocks, Fit, Gain};
-use crate::fit::search::{descend, smallest};
-use crate::model::name::Called;
+pub(crate) use self::columns::Path;
+use self::columns::{Apart, FittedWays, Way};
+use self::search::{best_gap, best_pitch};
+use crate::evidence::selection::{self, Candidate, Output, Scored};
+use crate::evidence::thresholds::{
+    DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, FEWEST_COUNTS,
+    GAP_FACTOR,
+};
+use crate::fit::blocks::{Fit, Gain};
+use crate::fit::plain::Plain;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
-use crate::simulate::load::Behind;
 
-/// Smallest share of the held-out variance.
-const SHARE: f64 = 0.10;
-/// Smallest share of what was there before any of these effects.
-const SHARE_OF_ALL: f64 = 0.01;
-/// Smallest amplitude, in counts of the coarser encoder.
-const FEWEST_COUNTS: f64 = 2.0;
-const T: f64 = 2.0;
-/// Smallest rms that an effect removes, in counts of the coarser encoder: every screw has some
-/// stiffness.
-const SMALLEST_RMS_COUNTS: f64 = 1.0;
+/// The effects that stand between motor and load, in the order in which they are tried.
+const EFFECTS: [EffectName; 3] = [
+    EffectName::Compliance,
+    EffectName::Backlash,
+    EffectName::PitchError,
+];
 
 /// What the difference says.
 #[derive(Clone, Debug, Default)]
@@ -45,109 +46,8 @@ pub(crate) struct Difference {
     pub gap: Option<f64>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<f64>,
-    terms: Vec<Column>,
-    coefficients: Vec<f64>,
-    declared: Vec<f64>,
-}
-
-/// What a record gives to the difference, besides its kinematics.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Path<'a> {
-    /// Motor position at the rows.
-    pub position: &'a [f64],
-    /// What the motor gives to the load side, but for its own mass; low-passed.
-    pub transmitted: &'a [f64],
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Column {
-    Constant,
-    WindUp,
-    Play(Behind),
-    Pitch { k: f64 },
-}
-
-impl Column {
-    const fn called(self) -> Called {
-        match self {
-            Self::Constant => Called::Structure("constant"),
-            Self::WindUp => Called::Effect(EffectName::Compliance),
-            Self::Play(_) => Called::Effect(EffectName::Backlash),
-            Self::Pitch { .. } => Called::Effect(EffectName::PitchError),
-        }
-    }
-
-    fn columns(self, motion: &Kinematics, path: Path<'_>) -> Vec<Vec<f64>> {
-        let position = path.position;
-        match self {
-            Self::Constant => vec![vec![1.0; motion.len()]],
-            Self::WindUp => vec![
-                path.transmitted.to_vec(),
-                motion.low_passed(&motion.acceleration),
-            ],
-            Self::Play(behind) => vec![behind.follow(position, motion.period_s)],
-            Self::Pitch { k } => {
-                let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(TAU * k * x)).collect();
-                vec![wave(f64::cos), wave(f64::sin)]
-            }
-        }
-    }
-}
-
-struct Bench<'a> {
-    motion: &'a Kinematics,
-    path: Path<'a>,
-    target: &'a [f64],
-    mask: Vec<bool>,
-}
-
-impl<'a> Bench<'a> {
-    fn new(motion: &'a Kinematics, path: Path<'a>, target: &'a [f64]) -> Self {
-        let mask = motion
-            .moving
-            .iter()
-            .zip(&motion.slow)
-            .map(|(moving, slow)| *moving || *slow)
-            .collect();
-        Self {
-            motion,
-            path,
-            target,
-            mask,
-        }
-    }
-
-    fn design(&self, terms: &[Column]) -> Vec<Vec<f64>> {
-        terms
-            .iter()
-            .flat_map(|term| term.columns(self.motion, self.path))
-            .collect()
-    }
-
-    fn blocks(&self, terms: &[Column]) -> Blocks {
-        let design = self.design(terms);
-        let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, self.target, &self.mask, self.motion.period_s)
-    }
-
-    fn fit(&self, terms: &[Column]) -> Fit {
-        self.blocks(terms).cross_validate()
-    }
-
-    fn rms_um(&self, terms: &[Column], coefficients: &[f64]) -> f64 {
-        let design = self.design(terms);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for at in (0..self.target.len()).filter(|at| self.mask[*at]) {
-            let predicted: f64 = design
-                .iter()
-                .zip(coefficients)
-                .map(|(column, c)| c * column[at])
-                .sum();
-            sum += (self.target[at] - predicted).powi(2);
-            count += 1.0;
-        }
-        1.0e6 * (sum / f64::max(count, 1.0)).sqrt()
-    }
+    declared: FittedWays,
+    extended: FittedWays,
 }
 
 /// Judges the difference of a training record; `None` where there is no load scale.
@@ -157,59 +57,150 @@ pub(crate) fn difference(
     motion: &Kinematics,
     path: Path<'_>,
 ) -> Option<Difference> {
-    let target = motion.difference.as_deref()?;
-    let bench = Bench::new(motion, path, target);
-    let mut terms = vec![Column::Constant];
-    if dataset.declares(EffectName::Compliance) {
-        terms.push(Column::WindUp);
-    }
-    if dataset.declares(EffectName::Backlash) {
-        terms.push(best_gap(&bench, &terms, dataset));
-    }
-    if dataset.declares(EffectName::PitchError) {
-        let base = bench.fit(&terms);
-        terms.extend(best_pitch(&bench, &terms, &base));
-    }
-    let declared_fit = bench.fit(&terms);
-    let all: f64 = declared_fit.held_out.iter().sum();
-    let mut outcome = Difference {
-        before_um: bench.rms_um(&terms, &declared_fit.coefficients),
-        declared: declared_fit.coefficients.clone(),
-        ..Difference::default()
+    let apart = Apart::on(motion, path)?;
+    let count = dataset.resolution.max(dataset.load_resolution);
+    let declared = declared(dataset, &apart, count);
+    let before = apart.cross_validate(&declared).held_out.iter().sum();
+    let output = MotorLoad {
+        inertia: Plain::fit(motion).inertia,
+        apart,
+        count,
+        before,
     };
-    for round in 0..3 {
-        let base = bench.fit(&terms);
-        let mut candidates: Vec<(Scored, Column)> = candidates(&bench, &terms, dataset, &base)
-            .into_iter()
-            .map(|column| judge(&bench, &terms, &base, all, column, dataset, round))
-            .collect();
-        candidates.sort_by(|a, b| b.0.gain.share.total_cmp(&a.0.gain.share));
-        let best = candidates.iter().position(|(scored, ..)| scored.accepted);
-        if let Some(best) = best {
-            terms.push(candidates[best].1);
-            outcome.found.extend(candidates[best].1.called().name());
-        }
-        for (place, (mut scored, ..)) in candidates.into_iter().enumerate() {
-            scored.accepted = Some(place) == best;
-            outcome.scored.push(scored);
-        }
-        if best.is_none() {
-            break;
+    let selection = selection::select(&output, declared.clone(), &mut |_| ());
+    let apart = &output.apart;
+    let fits = [&declared, &selection.model].map(|ways| apart.fit(ways));
+    let rms_um = fits.each_ref().map(|fitted| apart.rms_um(fitted));
+    Some(Difference::of(fits, rms_um, selection.scored))
+}
+
+/// The ways that a dataset declares, in the order compliance, backlash, pitch error.
+fn declared(dataset: &Dataset, apart: &Apart<'_>, count: f64) -> Vec<Way> {
+    let mut ways = vec![Way::Constant];
+    for name in EFFECTS.into_iter().filter(|name| dataset.declares(*name)) {
+        let way = best(name, apart, &ways, count);
+        ways.extend(way);
+    }
+    ways
+}
+
+/// The way of an effect that leaves least beside others.
+fn best(name: EffectName, apart: &Apart<'_>, ways: &[Way], count: f64) -> Option<Way> {
+    match name {
+        EffectName::Compliance => Some(Way::WindUp),
+        EffectName::Backlash => Some(best_gap(apart, ways, count)),
+        EffectName::PitchError => best_pitch(apart, &apart.fit(ways)),
+        _ => None,
+    }
+}
+
+/// Motor − load as an output that judges.
+struct MotorLoad<'a> {
+    apart: Apart<'a>,
+    /// Count of the coarser encoder.
+    count: f64,
+    /// Held-out sum of squares that the declared ways leave.
+    before: f64,
+    /// Moved mass as the plain model sees it: a motor's own mass is less.
+    inertia: f64,
+}
+
+impl Output for MotorLoad<'_> {
+    type Model = Vec<Way>;
+
+    fn candidates(&self, ways: &Vec<Way>, round: usize) -> Vec<Candidate<Vec<Way>>> {
+        let base = self.apart.cross_validate(ways);
+        let is_open = |name: &EffectName| !ways.iter().any(|way| way.called() == *name);
+        let open = EFFECTS.into_iter().filter(is_open);
+        let best = open.filter_map(|name| best(name, &self.apart, ways, self.count));
+        best.map(|way| self.judged(ways, &base, way, round))
+            .collect()
+    }
+
+    fn accepts(&self, candidate: &Candidate<Vec<Way>>) -> bool {
+        let Scored { gain, physical, .. } = &candidate.scored;
+        let rows = self.apart.mask.iter().filter(|inside| **inside).count() as f64;
+        let removed_rms = (gain.removed.max(0.0) / rows.max(1.0)).sqrt();
+        *physical
+            && gain.share >= DIFFERENCE_SHARE
+            && gain.t >= DIFFERENCE_T
+            && gain.removed >= DIFFERENCE_SHARE_OF_ALL * self.before
+            && removed_rms >= DIFFERENCE_RMS_COUNTS * self.count
+    }
+
+    fn most(&self) -> usize {
+        EFFECTS.len()
+    }
+}
+
+impl MotorLoad<'_> {
+    fn judged(&self, ways: &[Way], base: &Fit, way: Way, round: usize) -> Candidate<Vec<Way>> {
+        let model = [ways, &[way]].concat();
+        let gain = Gain::of(base, &self.apart.cross_validate(&model));
+        let fitted = self.apart.fit(&model);
+        let own = fitted.last().map_or(&[][..], |(_, own)| own);
+        let scored = Scored {
+            effect: way.called(),
+            parameter: parameter(way, own),
+            gain,
+            physical: self.is_physical(way, own),
+            accepted: false,
+            round,
+        };
+        Candidate { scored, model }
+    }
+
+    /// Whether coefficients can be those of a way, and the encoders can show it.
+    fn is_physical(&self, way: Way, own: &[f64]) -> bool {
+        let least = FEWEST_COUNTS * self.count;
+        match way {
+            Way::Constant => false,
+            Way::Play(behind) => GAP_FACTOR.contains(&own[0]) && behind.gap >= least,
+            Way::Pitch { .. } => own[0].hypot(own[1]) >= least,
+            Way::WindUp => {
+                let efforts = self.apart.path.transmitted.iter();
+                let largest = efforts.fold(0.0_f64, |most, effort| most.max(effort.abs()));
+                let motor_mass = -own[1] / own[0];
+                let is_visible = own[0] > 0.0 && own[0] * largest >= least;
+                is_visible && motor_mass > 0.0 && motor_mass < self.inertia
+            }
         }
     }
-    let fit = bench.fit(&terms);
-    outcome.after_um = bench.rms_um(&terms, &fit.coefficients);
-    outcome.gap = terms.iter().find_map(|term| match term {
-        Column::Play(behind) => Some(behind.gap),
-        Column::Constant | Column::WindUp | Column::Pitch { .. } => None,
-    });
-    outcome.stiffness = stiffness(&terms, &fit.coefficients);
-    outcome.coefficients = fit.coefficients;
-    outcome.terms = terms;
-    Some(outcome)
+}
+
+/// The quantity for people: width, stiffness, wave number.
+fn parameter(way: Way, own: &[f64]) -> f64 {
+    match way {
+        Way::Constant => 0.0,
+        Way::WindUp => 1.0 / own[0],
+        Way::Play(behind) => behind.gap,
+        Way::Pitch { per_length } => per_length,
+    }
 }
 
 impl Difference {
+    fn of(
+        [declared, extended]: [FittedWays; 2],
+        [before_um, after_um]: [f64; 2],
+        scored: Vec<Scored>,
+    ) -> Self {
+        let is_declared = |name: &EffectName| declared.of(*name).is_some();
+        let gap = extended.of(EffectName::Backlash);
+        let wind_up = extended.of(EffectName::Compliance);
+        Self {
+            found: extended.names().filter(|name| !is_declared(name)).collect(),
+            scored,
+            before_um,
+            after_um,
+            gap: gap.map(|(way, own)| parameter(way, own)),
+            stiffness: wind_up
+                .filter(|(_, own)| own[0] > 0.0)
+                .map(|(way, own)| parameter(way, own)),
+            declared,
+            extended,
+        }
+    }
+
     /// Whether the load moves otherwise than the motor.
     #[must_use]
     pub(crate) const fn moves_apart(&self) -> bool {
@@ -219,217 +210,14 @@ impl Difference {
     /// Amplitude and wave number of the pitch error, if one was found.
     #[must_use]
     pub(crate) fn pitch(&self) -> Option<(f64, f64)> {
-        let mut place = 0;
-        for term in &self.terms {
-            match term {
-                Column::Pitch { k } => {
-                    let [a, b] =
-                        [0, 1].map(|i| self.coefficients.get(place + i).copied().unwrap_or(0.0));
-                    return Some((a.hypot(b), *k));
-                }
-                Column::WindUp => place += 2,
-                Column::Constant | Column::Play(_) => place += 1,
-            }
-        }
-        None
+        let (way, own) = self.extended.of(EffectName::PitchError)?;
+        Some((own[0].hypot(own[1]), parameter(way, own)))
     }
 
     /// Rms on another record: declared, extended; µm.
     #[must_use]
     pub(crate) fn on(&self, motion: &Kinematics, path: Path<'_>) -> Option<(f64, f64)> {
-        let target = motion.difference.as_deref()?;
-        let bench = Bench::new(motion, path, target);
-        let declared: Vec<Column> = self
-            .terms
-            .iter()
-            .copied()
-            .filter(|term| !self.found.iter().any(|name| term.called() == *name))
-            .collect();
-        Some((
-            bench.rms_um(&declared, &self.declared),
-            bench.rms_um(&self.terms, &self.coefficients),
-        ))
+        let apart = Apart::on(motion, path)?;
+        Some((apart.rms_um(&self.declared), apart.rms_um(&self.extended)))
     }
-}
-
-fn stiffness(terms: &[Column], coefficients: &[f64]) -> Option<f64> {
-    let mut place = 0;
-    for term in terms {
-        match term {
-            Column::WindUp => {
-                return coefficients
-                    .get(place)
-                    .filter(|c| **c > 0.0)
-                    .map(|c| 1.0 / c);
-            }
-            Column::Constant | Column::Play(_) => place += 1,
-            Column::Pitch { .. } => place += 2,
-        }
-    }
-    None
-}
-
-fn candidates(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset, base: &Fit) -> Vec<Column> {
-    let has =
-        |name: EffectName| terms.iter().any(|term| term.called() == name) || dataset.declares(name);
-    let mut list = Vec::new();
-    if !has(EffectName::Compliance) {
-        list.push(Column::WindUp);
-    }
-    if !has(EffectName::Backlash) {
-        list.push(best_gap(bench, terms, dataset));
-    }
-    if !has(EffectName::PitchError) {
-        list.extend(best_pitch(bench, terms, base));
-    }
-    list
-}
-
-/// Shares of the moved mass that stand behind the gap, as tried.
-const SHARES: [f64; 5] = [0.02, 0.3, 0.4, 0.5, 0.65];
-/// Coefficients of restitution that are tried.
-const RESTITUTIONS: [f64; 5] = [0.0, 0.3, 0.5, 0.7, 0.9];
-/// Rounds of the search, one parameter after the other.
-const ROUNDS: usize = 2;
-
-fn best_gap(bench: &Bench<'_>, terms: &[Column], dataset: &Dataset) -> Column {
-    let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
-    let plain = crate::evidence::selection::plain_fit(bench.motion);
-    let behind = |gap: f64, share: f64, restitution: f64| Behind {
-        gap,
-        coulomb: plain.coulomb / (share * plain.inertia),
-        viscous: plain.viscous.max(0.0) / (share * plain.inertia),
-        restitution,
-    };
-    // A gap is as wide as it is: its lag is subtracted, not scaled.
-    let sse = |behind: Behind| {
-        let lag = behind.follow(bench.path.position, bench.motion.period_s);
-        let target: Vec<f64> = bench
-            .target
-            .iter()
-            .zip(lag)
-            .map(|(target, lag)| target - lag)
-            .collect();
-        Bench {
-            target: &target,
-            mask: bench.mask.clone(),
-            ..*bench
-        }
-        .blocks(terms)
-        .fit()
-        .sse
-    };
-    let grid = crate::model::effects::geometric(counts, 1.0e-3_f64.max(100.0 * counts), 24);
-    let mut gap = smallest(grid, &|gap| sse(behind(gap, 0.4, 0.0))).unwrap_or(counts);
-    let (mut share, mut restitution) = (SHARES[2], RESTITUTIONS[0]);
-    let mut step = 0.15;
-    for _ in 0..ROUNDS {
-        gap = descend(gap, step * gap, (counts, f64::MAX), &|gap| {
-            sse(behind(gap, share, restitution))
-        });
-        restitution =
-            smallest(RESTITUTIONS.to_vec(), &|r| sse(behind(gap, share, r))).unwrap_or(restitution);
-        share = smallest(SHARES.to_vec(), &|share| {
-            sse(behind(gap, share, restitution))
-        })
-        .unwrap_or(share);
-        restitution = descend(restitution, 0.1, (0.0, 0.99), &|r| {
-            sse(behind(gap, share, r))
-        });
-        share = descend(share, 0.05, (0.01, 0.95), &|share| {
-            sse(behind(gap, share, restitution))
-        });
-        step = 0.02;
-    }
-    Column::Play(behind(gap, share, restitution))
-}
-
-fn best_pitch(bench: &Bench<'_>, terms: &[Column], base: &Fit) -> Option<Column> {
-    let (low, high) = bench.motion.span();
-    let step = 0.5 / (high - low);
-    let design = bench.design(terms);
-    let residual: Vec<(f64, f64)> = (0..bench.target.len())
-        .step_by(8)
-        .filter(|at| bench.mask[*at])
-        .map(|at| {
-            let predicted: f64 = design
-                .iter()
-                .zip(&base.coefficients)
-                .map(|(column, c)| c * column[at])
-                .sum();
-            (bench.path.position[at], bench.target[at] - predicted)
-        })
-        .collect();
-    let power = |k: f64| {
-        let (re, im) = residual.iter().fold((0.0, 0.0), |(re, im), (x, e)| {
-            let (sin, cos) = (TAU * k * x).sin_cos();
-            (re + cos * e, im + sin * e)
-        });
-        re.hypot(im)
-    };
-    let count = ((4000.0 * (high - low)) as usize).min(4000);
-    let waves = (8..count.max(9)).map(|i| step * i as f64);
-    let best = waves
-        .map(|k| (power(k), k))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?
-        .1;
-    let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
-    fine.map(|k| (power(k), k))
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, k)| Column::Pitch { k })
-}
-
-fn judge(
-    bench: &Bench<'_>,
-    terms: &[Column],
-    base: &Fit,
-    all: f64,
-    column: Column,
-    dataset: &Dataset,
-    round: usize,
-) -> (Scored, Column) {
-    let fit = bench.fit(&[terms, &[column]].concat());
-    let gain = Gain::of(base, &fit);
-    let own = &fit.coefficients[base.coefficients.len()..];
-    let counts = FEWEST_COUNTS * dataset.resolution.max(dataset.load_resolution);
-    let total: f64 = base.held_out.iter().sum();
-    let (physical, parameter) = match column {
-        Column::Play(behind) => (
-            (0.8..=1.2).contains(&own[0]) && behind.gap >= counts,
-            behind.gap,
-        ),
-        Column::WindUp => {
-            let motor_mass = -own[1] / own[0];
-            let inertia = crate::evidence::selection::plain_fit(bench.motion).inertia;
-            let effort = bench
-                .path
-                .transmitted
-                .iter()
-                .fold(0.0_f64, |most, effort| most.max(effort.abs()));
-            let visible = own[0] * effort >= counts;
-            (
-                visible && own[0] > 0.0 && motor_mass > 0.0 && motor_mass < inertia,
-                1.0 / own[0],
-            )
-        }
-        Column::Pitch { k } => (own[0].hypot(own[1]) >= counts, k),
-        Column::Constant => (false, 0.0),
-    };
-    let removed_of_all = gain.share * total / all.max(f64::MIN_POSITIVE);
-    let rows = bench.mask.iter().filter(|inside| **inside).count() as f64;
-    let removed_rms = (gain.share.max(0.0) * total / rows.max(1.0)).sqrt();
-    let matters =
-        removed_rms >= SMALLEST_RMS_COUNTS * dataset.resolution.max(dataset.load_resolution);
-    let accepted =
-        physical && matters && gain.share >= SHARE && removed_of_all >= SHARE_OF_ALL && gain.t >= T;
-    let scored = Scored {
-        effect: column.called(),
-        parameter,
-        gain,
-        physical,
-        accepted,
-        nameless: false,
-        round,
-    };
-    (scored, column)
 }

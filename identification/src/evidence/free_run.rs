@@ -6,6 +6,9 @@
 //! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
 //! rival.
 
+use crate::evidence::thresholds::{
+    FEWEST_COUNTS, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
+};
 use crate::fit::fitted::Fitted;
 use crate::model::effects::{Named, geometric};
 use crate::record::dataset::Dataset;
@@ -21,19 +24,8 @@ use crate::simulate::run::{position_rms, simulate};
 const BLOCK_S: f64 = 2.0;
 /// A short record is cut into so many.
 const FEWEST_BLOCKS: usize = 6;
-/// A shape must leave at most this share of the rms without it.
-const RATIO: f64 = 0.6;
-/// And at most this share of what its rival leaves.
-const RIVAL: f64 = 0.75;
-/// A gap is looked for where rigid friction leaves more than so many times the rounding of the
-/// encoder, or a bristle helps.
-const VISIBLE: f64 = 3.0;
-/// How much a bristle must help for that.
-const HELPS: f64 = 0.9;
 /// What rounding to whole counts leaves: one count over √12.
 const ROUNDING: f64 = 0.288_675;
-/// Smallest deflection or gap, in counts.
-const FEWEST_COUNTS: f64 = 2.0;
 /// Bristle deflections and gaps that are tried, in moving-velocity units times a second.
 const DEFLECTIONS: (f64, f64, u32) = (1.0e-3, 6.0e-2, 7);
 const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
@@ -178,8 +170,8 @@ pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals>
     });
     let bristle = judge.best(bristles.collect(), 1)?;
     let rounding = ROUNDING * dataset.resolution;
-    let worth = rigid.all > VISIBLE * rounding
-        || bristle.held_out.min(bristle.all) < HELPS * rigid.held_out.max(rigid.all);
+    let worth = rigid.all > VISIBLE_ROUNDINGS * rounding
+        || bristle.held_out.min(bristle.all) < HELPS_RATIO * rigid.held_out.max(rigid.all);
     let gap = worth
         .then(|| judge.best(gaps(unit, start), STARTS))
         .flatten();
@@ -221,11 +213,12 @@ fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated>
 
 impl Judge<'_> {
     fn decide(&self, rigid: &Judged, bristle: &Judged, gap: Option<&Judged>) -> Accepted {
-        let is_bristle = bristle.deflection() >= self.smallest && bristle.is_below(rigid, RATIO);
+        let is_bristle =
+            bristle.deflection() >= self.smallest && bristle.is_below(rigid, SHAPE_RATIO);
         let is_gap =
-            gap.is_some_and(|gap| gap.width() >= self.smallest && gap.is_below(rigid, RATIO));
+            gap.is_some_and(|gap| gap.width() >= self.smallest && gap.is_below(rigid, SHAPE_RATIO));
         let wins = |one: &Judged, other: Option<&Judged>| {
-            other.is_none_or(|other| one.is_below(other, RIVAL))
+            other.is_none_or(|other| one.is_below(other, RIVAL_RATIO))
         };
         let presliding = is_bristle && wins(bristle, gap);
         let backlash = is_gap && gap.is_some_and(|gap| wins(gap, Some(bristle)));
@@ -282,7 +275,7 @@ impl Judge<'_> {
         gap: Option<&Judged>,
         both: &Judged,
     ) -> Accepted {
-        let beats = |other: &Judged| both.is_below(other, RATIO);
+        let beats = |other: &Judged| both.is_below(other, SHAPE_RATIO);
         let visible = both.width() >= self.smallest && both.deflection() >= self.smallest;
         if visible && beats(bristle) && gap.is_none_or(beats) {
             return Accepted {

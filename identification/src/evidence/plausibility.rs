@@ -2,7 +2,11 @@
 //! stand still or do not belong together.
 
 use crate::error::IdentificationError;
-use crate::evidence::selection::plain_fit;
+use crate::evidence::thresholds::{
+    FASTEST_M_PER_S, LOAD_SLOPE, LONGEST_M, SMALLEST_INERTIA_SHARE, STANDSTILL_SLOPE,
+    SWAPPED_EFFORT, SWAPPED_REFERENCE, THOUSAND,
+};
+use crate::fit::plain::Plain;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
@@ -10,16 +14,6 @@ use crate::record::units::AxisKind;
 use crate::simulate::controller::law::Law;
 
 type Outcome = Result<(), IdentificationError>;
-
-/// A thousand, roughly: factors between these are taken for a wrong unit.
-const THOUSAND: (f64, f64) = (300.0, 3000.0);
-/// Smallest share of the effort that inertia must take part in before its sign means anything.
-const SMALLEST_INERTIA_SHARE: f64 = 0.05;
-/// Load over motor motion.
-const LOAD_SLOPE: (f64, f64) = (0.8, 1.25);
-/// Longest travel of a linear axis, m, and fastest motion, m/s.
-const LONGEST_M: f64 = 100.0;
-const FASTEST_M_PER_S: f64 = 50.0;
 
 /// Checks a dataset.
 ///
@@ -37,7 +31,7 @@ pub(crate) fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
     }
     if let Some(gain) = Law::effort_over_computed(dataset) {
         let column = dataset.effort.column();
-        if gain < -0.2 {
+        if gain < SWAPPED_EFFORT {
             return refuse(format!(
                 "{column} has the other sign than the controller of dataset.toml gives ({gain:.3} times); swap the sign of {column} or of the positions"
             ));
@@ -48,7 +42,7 @@ pub(crate) fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
             ));
         }
     }
-    let plain = plain_fit(motion);
+    let plain = Plain::fit(motion);
     if plain.inertia < 0.0 && inertia_share(motion, plain.inertia) > SMALLEST_INERTIA_SHARE {
         return refuse(format!(
             "{} falls where the axis speeds up (inertia {:.4} {} s2/{}); swap its sign or that of the positions",
@@ -63,7 +57,7 @@ pub(crate) fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
 
 fn is_thousand(factor: f64) -> bool {
     let factor = factor.abs();
-    let inside = |factor: f64| (THOUSAND.0..THOUSAND.1).contains(&factor);
+    let inside = |factor: f64| THOUSAND.contains(&factor);
     inside(factor) || inside(1.0 / factor.max(f64::MIN_POSITIVE))
 }
 
@@ -136,13 +130,13 @@ fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
         let slope = slope(&record.position, values);
         // A setpoint is not needed: only one in a wrong unit or direction is worth a refusal.
         let wrong = if column == "reference" {
-            is_thousand(slope) && slope.abs() > 1.0e-6 || slope < -0.5
+            is_thousand(slope) && slope.abs() > STANDSTILL_SLOPE || slope < SWAPPED_REFERENCE
         } else {
-            !(LOAD_SLOPE.0..LOAD_SLOPE.1).contains(&slope)
+            !LOAD_SLOPE.contains(&slope)
         };
         if wrong {
             let looks = match slope {
-                slope if slope.abs() < 1.0e-6 => "it stands still".to_owned(),
+                slope if slope.abs() < STANDSTILL_SLOPE => "it stands still".to_owned(),
                 slope if slope < 0.0 && slope > -2.0 => "its sign is swapped".to_owned(),
                 slope if is_thousand(slope) => "its unit is off by a thousand".to_owned(),
                 _ => "it belongs to another axis or needs a scale".to_owned(),

@@ -8,13 +8,6 @@
 use crate::fit::blocks::Blocks;
 use crate::motion::kinematics::Kinematics;
 
-/// A residual with a smaller share counts as white.
-pub(crate) const WHITE_SHARE: f64 = 0.05;
-/// Structure below this much of the effort does not matter to the axis, percent.
-pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.3;
-/// A larger share that also matters to the axis leads to `unexplained`.
-pub(crate) const UNEXPLAINED_SHARE: f64 = 0.15;
-
 /// Features of one kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Structure {

@@ -11,20 +11,11 @@ pub(crate) mod stick;
 
 use axis_model::EffectName;
 
+use crate::evidence::thresholds::{BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
-
-/// Rms ratio of Dahl to rigid Coulomb friction, at most. On 128 simulated records: 0.05 to 0.34
-/// with presliding, 0.88 and more with a gap, 2 and more with neither.
-pub(crate) const RATIO: f64 = 0.7;
-/// Above this ratio nothing is suspected at reversals.
-pub(crate) const SUSPICION: f64 = 0.85;
-/// Smallest t: there are few reversals in a record, so it is small even where the ratio is 0.07.
-const T: f64 = 1.2;
-/// Smallest deflection, in counts of the encoder.
-const FEWEST_COUNTS: f64 = 2.0;
 
 /// Friction about reversals, as observed, with the level of the model.
 pub(crate) struct Observed<'a> {
@@ -66,7 +57,8 @@ pub(crate) fn presliding(bench: &Bench<'_>, fitted: &Fitted) -> Option<Preslidin
     let (deflection, bristle) = bristle::best(&observed, bench.dataset.kind.moving_velocity());
     let t = block_t(&motion.slow, &rigid, &bristle);
     let (rigid, dahl) = (rms(&rigid, &motion.slow), rms(&bristle, &motion.slow));
-    let accepted = dahl <= RATIO * rigid && t >= T && deflection >= resolution(bench.dataset);
+    let accepted =
+        dahl <= BRISTLE_RATIO * rigid && t >= BRISTLE_T && deflection >= resolution(bench.dataset);
     Some(Presliding {
         rigid,
         dahl,

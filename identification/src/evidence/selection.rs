@@ -1,39 +1,19 @@
-//! Forward selection with joint refinement and removal, on held-out blocks.
+//! Forward selection over any measured output.
 //!
-//! Thresholds. A candidate must remove a share of the held-out error (relevance), be large enough
-//! to matter to the axis (percent of effort), and do so in more blocks than chance (t). Share is
-//! what separates: on 14 simulated records with nothing missing the largest false share was 0.016;
-//! t alone does not (false candidates reached 14, because gains sit in few blocks). Figures:
-//! docs/identification.md.
+//! One effect at a time, the one that removes most of the held-out error first. In each round the
+//! output judges everything that its model could have besides; the best one that it accepts comes
+//! in, the model is refined, and the next round begins. Outputs: the effort of moving samples
+//! ([`crate::evidence::effort`]), motor − load ([`crate::evidence::difference`]), the effort about
+//! fast reversals ([`crate::evidence::slow_ripple`]).
 
 use axis_model::EffectName;
 
-use crate::fit::bench::Bench;
-use crate::fit::blocks::{Blocks, Fit, Gain};
-use crate::fit::fitted::{Estimate, Fitted};
-use crate::fit::tuning::{self, Pair};
-use crate::model::effects::{self, Effect, LIBRARY, Setting};
-use crate::model::inverse::{Model, Origin, Part};
+use crate::evidence::thresholds::{EFFORT_PERCENT, EFFORT_SHARE, EFFORT_T, MOST_EFFECTS};
+use crate::fit::blocks::Gain;
+use crate::model::inverse::Model;
 use crate::model::name::Called;
-use crate::motion::kinematics::Kinematics;
 
-/// Smallest share of the held-out error.
-pub(crate) const SHARE: f64 = 0.05;
-/// Smallest size, percent of the effort.
-pub(crate) const PERCENT: f64 = 0.15;
-/// Shares of the held-out error, and the smallest t from each of them on. The t of an effect that
-/// shows in few blocks (slow motion) is small however large it is there.
-pub(crate) const T: [(f64, f64); 4] = [(0.30, 1.0), (0.12, 1.5), (0.08, 2.5), (SHARE, 3.0)];
-/// From this t on a coefficient's interval is not asked.
-const CERTAIN_T: f64 = 2.5;
-/// Largest error on another record with an effect over that without it.
-const VETO: f64 = 1.05;
-/// Smallest share of a structure without a name.
-pub(crate) const NAMELESS_SHARE: f64 = 0.15;
-/// Most effects that are added.
-const MOST: usize = 8;
-
-/// A candidate and what it is worth.
+/// What an effect is worth.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scored {
     /// Effect.
@@ -46,30 +26,55 @@ pub(crate) struct Scored {
     pub physical: bool,
     /// Whether it was accepted.
     pub accepted: bool,
-    /// Whether it has no name.
-    pub nameless: bool,
     /// Round of the selection, from 0.
     pub round: usize,
 }
 
+/// An effect with what it is worth, and the model that has it.
+pub(crate) struct Candidate<M> {
+    /// What it is worth.
+    pub scored: Scored,
+    /// The model with it.
+    pub model: M,
+}
+
+/// A measured output that judges effects.
+pub(crate) trait Output {
+    /// What is fitted to it.
+    type Model;
+
+    /// Everything that a model could have besides, judged.
+    fn candidates(&self, model: &Self::Model, round: usize) -> Vec<Candidate<Self::Model>>;
+
+    /// Whether a candidate is worth a name.
+    fn accepts(&self, candidate: &Candidate<Self::Model>) -> bool;
+
+    /// The model after an effect came in.
+    fn refined(&self, model: Self::Model) -> Self::Model {
+        model
+    }
+
+    /// Most effects that are added.
+    fn most(&self) -> usize {
+        MOST_EFFECTS
+    }
+}
+
 /// What the selection did.
-#[derive(Clone, Default)]
-pub(crate) struct Selection {
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Selection<M = Model> {
     /// The model with everything that was accepted.
-    pub model: Model,
+    pub model: M,
     /// All candidates of all rounds.
     pub scored: Vec<Scored>,
 }
 
 impl Selection {
-    /// Accepted effects, in the order in which they were found.
+    /// Effects that are in the model and were not declared, in the order in which they were found.
     #[must_use]
     pub(crate) fn found(&self) -> Vec<EffectName> {
-        self.model
-            .found()
-            .into_iter()
-            .filter_map(Called::name)
-            .collect()
+        let found = self.model.found().into_iter();
+        found.filter_map(Called::name).collect()
     }
 
     /// Structures without a name that were found.
@@ -80,218 +85,139 @@ impl Selection {
     }
 }
 
-/// Forward selection on a record, from the declared model. `progress` hears of every round.
-pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
-    let mut selection = Selection {
-        model: start,
-        ..Selection::default()
-    };
-    for round in 0..MOST {
-        let mut candidates = candidates(pair, &selection.model, round);
-        candidates.sort_by(|a, b| b.0.gain.share.total_cmp(&a.0.gain.share));
-        let best = candidates.iter().position(|(scored, model)| {
-            is_accepted(scored) && is_certain(pair.bench, scored, model)
-        });
+/// Forward selection on an output, from a model. `heard` hears of every effect that comes in.
+pub(crate) fn select<O: Output>(
+    output: &O,
+    start: O::Model,
+    heard: &mut dyn FnMut(&Scored),
+) -> Selection<O::Model> {
+    let (mut model, mut scored) = (start, Vec::new());
+    for round in 0..output.most() {
+        let mut candidates = output.candidates(&model, round);
+        let share = |candidate: &Candidate<O::Model>| candidate.scored.gain.share;
+        candidates.sort_by(|a, b| share(b).total_cmp(&share(a)));
+        let best = candidates.iter().position(|one| output.accepts(one));
         if let Some(best) = best {
-            candidates[best].0.accepted = true;
-            let (scored, model) = &candidates[best];
-            progress(&format!(
-                "{} removes {:.0} % of the held-out residual",
-                scored.effect,
-                100.0 * scored.gain.share
-            ));
-            selection.model = model.clone();
+            candidates[best].scored.accepted = true;
+            heard(&candidates[best].scored);
         }
-        selection
-            .scored
-            .extend(candidates.into_iter().map(|(scored, _)| scored));
+        for (place, candidate) in candidates.into_iter().enumerate() {
+            scored.push(candidate.scored);
+            if Some(place) == best {
+                model = candidate.model;
+            }
+        }
         if best.is_none() {
             break;
         }
-        tuning::refine(pair, &mut selection.model);
+        model = output.refined(model);
     }
-    remove(pair.bench, &mut selection.model);
-    selection
+    Selection { model, scored }
 }
 
-/// Everything that a model could have besides, judged.
-fn candidates(pair: Pair<'_>, model: &Model, round: usize) -> Vec<(Scored, Model)> {
-    let bench = pair.bench;
-    let base = bench.cross_validate(model);
-    let residual = bench.residual(&bench.fit(model));
-    let setting = Setting {
-        dataset: bench.dataset,
-        residual: &residual,
-    };
-    LIBRARY
-        .into_iter()
-        .filter(|effect| effect.repeats() || !model.has(effect.called()))
-        .filter_map(|effect| candidate(pair, model, &base, effect, &setting, round))
-        .collect()
-}
-
-fn is_accepted(scored: &Scored) -> bool {
-    let smallest = if scored.nameless {
-        NAMELESS_SHARE
-    } else {
-        SHARE
-    };
-    scored.physical && scored.gain.share >= smallest && is_enough(&scored.gain)
-}
-
-/// Whether what was fitted differs from zero: asked where the gain sits in few blocks.
-fn is_certain(bench: &Bench<'_>, scored: &Scored, model: &Model) -> bool {
-    let certain = || {
-        let estimates = bench.estimates(&bench.fit(model));
-        estimates.last().is_some_and(Estimate::is_certain)
-    };
-    scored.gain.t >= CERTAIN_T || certain()
-}
-
-/// Drops effects that make the error on another record larger by more than a little: what holds on
-/// one record only is no effect of the axis.
-pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, model: &mut Model) {
-    let error = |model: &Model| other.force_error_percent(&bench.fit(model));
-    prune(model, &|full, without| error(full) <= VETO * error(without));
-}
-
-/// Drops what the later ones have made superfluous.
-fn remove(bench: &Bench<'_>, model: &mut Model) {
-    prune(model, &|full, without| {
-        let gain = Gain::of(&bench.cross_validate(without), &bench.cross_validate(full));
-        gain.share >= SHARE && gain.percent >= PERCENT
-    });
-}
-
-/// Drops the parts that were found and, one after the other, are not worth keeping: `keeps` is
-/// asked with the full model and with the model without the part.
-fn prune(model: &mut Model, keeps: &dyn Fn(&Model, &Model) -> bool) {
-    let asked: Vec<Part> = model
-        .outwards()
-        .into_iter()
-        .map(|place| model.parts[place].clone())
-        .filter(|part| part.origin == Origin::Found)
-        .collect();
-    for part in asked {
-        let without = model.without(&part);
-        if !keeps(model, &without) {
-            *model = without;
-        }
-    }
-}
-
-/// Whether a gain is relevant, large enough to matter to the axis, and more than chance.
+/// Whether a gain in the effort is relevant, large enough to matter to the axis, and more than
+/// chance.
 #[must_use]
 pub(crate) fn is_enough(gain: &Gain) -> bool {
-    gain.percent >= PERCENT
-        && T.iter()
-            .any(|(from, smallest)| gain.share >= *from && gain.t >= *smallest)
+    let is_certain = |(from, smallest_t): &(f64, f64)| gain.share >= *from && gain.t >= *smallest_t;
+    gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT && EFFORT_T.iter().any(is_certain)
 }
 
-fn candidate(
-    pair: Pair<'_>,
-    model: &Model,
-    base: &Fit,
-    effect: &'static dyn Effect,
-    setting: &Setting<'_>,
-    round: usize,
-) -> Option<(Scored, Model)> {
-    let extended = tuning::extended(pair, model, effect, setting)?;
-    let parameter = extended.parts.last()?.parameter;
-    let fit = pair.bench.cross_validate(&extended);
-    let mut gain = Gain::of(base, &fit);
-    if effect.is_judged_slow_too() {
-        let low = tuning::settled(pair.low, extended.clone(), effect);
-        let slow = Gain::of(
-            &pair.low.cross_validate(model),
-            &pair.low.cross_validate(&low),
-        );
-        gain.share = gain.share.min(slow.share);
-        gain.t = gain.t.min(slow.t);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gain(share: f64, percent: f64, t: f64) -> Gain {
+        Gain {
+            removed: 1.0,
+            share,
+            percent,
+            t,
+        }
     }
-    let fitted = Fitted::new(extended, &fit.coefficients);
-    let scored = Scored {
-        effect: effect.called(),
-        parameter,
-        gain,
-        physical: is_physical(effect, parameter, &fitted),
-        accepted: false,
-        nameless: effect.is_nameless(),
-        round,
-    };
-    Some((scored, fitted.into_model()))
-}
 
-/// Whether the last part of a fitted model can be its effect.
-fn is_physical(effect: &dyn Effect, parameter: f64, fitted: &Fitted) -> bool {
-    // Without friction of its kind in the model nothing is too large beside it.
-    let first = |name| {
-        let own = fitted.of(name).and_then(<[f64]>::first);
-        own.copied().unwrap_or(f64::INFINITY)
-    };
-    let own = fitted.terms().next_back().map_or(&[][..], |term| term.own);
-    effect.is_physical(&effects::Fitted {
-        parameter,
-        own,
-        coulomb: first(EffectName::Coulomb),
-        viscous: first(EffectName::Viscous),
-    })
-}
-
-/// The model with the load's own inertia, where that lowers the held-out error: for an axis whose
-/// load moves otherwise than its motor.
-#[must_use]
-pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
-    let extended = model.with(Part::found(&effects::load_inertia::LoadInertia, 0.0));
-    if bench.motion.load_acceleration.is_none() {
-        return model.clone();
+    /// An output whose model is a list of numbers; a number is worth what it is, and taken from
+    /// 0.2 on.
+    struct Numbers {
+        worth: Vec<f64>,
+        most: usize,
     }
-    let gain = Gain::of(
-        &bench.cross_validate(model),
-        &bench.cross_validate(&extended),
-    );
-    if gain.share >= SHARE && gain.t >= T[0].1 {
-        extended
-    } else {
-        model.clone()
+
+    impl Output for Numbers {
+        type Model = Vec<f64>;
+
+        fn candidates(&self, model: &Vec<f64>, round: usize) -> Vec<Candidate<Vec<f64>>> {
+            let open = self.worth.iter().filter(|worth| !model.contains(worth));
+            let candidate = |worth: &f64| Candidate {
+                scored: Scored {
+                    effect: Called::Structure("number"),
+                    parameter: *worth,
+                    gain: gain(*worth, 1.0, 1.0),
+                    physical: true,
+                    accepted: false,
+                    round,
+                },
+                model: [model.as_slice(), &[*worth]].concat(),
+            };
+            open.map(candidate).collect()
+        }
+
+        fn accepts(&self, candidate: &Candidate<Vec<f64>>) -> bool {
+            candidate.scored.parameter >= 0.2
+        }
+
+        fn most(&self) -> usize {
+            self.most
+        }
     }
-}
 
-/// The usual model, without selection.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Plain {
-    /// Moved mass.
-    pub inertia: f64,
-    /// Viscous friction.
-    pub viscous: f64,
-    /// Coulomb friction.
-    pub coulomb: f64,
-}
+    #[test]
+    fn the_largest_comes_first_and_the_search_ends_where_none_is_accepted() {
+        let output = Numbers {
+            worth: vec![0.1, 0.3, 0.9, 0.2],
+            most: 8,
+        };
+        let mut heard = Vec::new();
+        let selection = select(&output, Vec::new(), &mut |scored| {
+            heard.push(scored.parameter);
+        });
+        assert_eq!(selection.model, [0.9, 0.3, 0.2]);
+        assert_eq!(heard, selection.model);
+        // Four, three and two candidates, and one that was refused.
+        let rounds: Vec<usize> = selection.scored.iter().map(|scored| scored.round).collect();
+        assert_eq!(rounds, [0, 0, 0, 0, 1, 1, 1, 2, 2, 3]);
+        let accepted = selection.scored.iter().filter(|scored| scored.accepted);
+        let accepted: Vec<f64> = accepted.map(|scored| scored.parameter).collect();
+        assert_eq!(accepted, [0.9, 0.3, 0.2]);
+    }
 
-/// Plain least squares on inertia, velocity, direction and a constant; for physical tests and start
-/// values.
-#[must_use]
-pub(crate) fn plain_fit(motion: &Kinematics) -> Plain {
-    let lp = |column: &[f64]| motion.low_passed(column);
-    let ones = vec![1.0; motion.len()];
-    let columns = [
-        lp(&motion.acceleration),
-        lp(&motion.velocity),
-        lp(&motion.direction),
-        ones,
-    ];
-    let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    let fit = Blocks::new(&views, &motion.effort_lp, &motion.fitted, motion.period_s).fit();
-    match fit.coefficients[..] {
-        [inertia, viscous, coulomb, _] => Plain {
-            inertia,
-            viscous,
-            coulomb,
-        },
-        _ => Plain {
-            inertia: f64::INFINITY,
-            viscous: 0.0,
-            coulomb: 0.0,
-        },
+    #[test]
+    fn no_more_effects_come_in_than_an_output_asks_for() {
+        let output = Numbers {
+            worth: vec![0.3, 0.9, 0.2],
+            most: 2,
+        };
+        let selection = select(&output, vec![7.0], &mut |_| ());
+        assert_eq!(selection.model, [7.0, 0.9, 0.3]);
+    }
+
+    #[test]
+    fn a_gain_is_enough_where_share_size_and_t_reach_their_limits_together() {
+        for (share, percent, t, enough) in [
+            (0.05, 0.15, 3.0, true),
+            (0.049, 0.15, 30.0, false),
+            (0.05, 0.149, 30.0, false),
+            (0.05, 0.15, 2.99, false),
+            (0.08, 0.15, 2.5, true),
+            (0.08, 0.15, 2.49, false),
+            (0.12, 0.15, 1.5, true),
+            (0.12, 0.15, 1.49, false),
+            (0.30, 0.15, 1.0, true),
+            (0.30, 0.15, 0.99, false),
+            (-0.4, 1.0, 9.0, false),
+        ] {
+            let gain = gain(share, percent, t);
+            assert_eq!(is_enough(&gain), enough, "{gain:?}");
+        }
     }
 }

@@ -9,10 +9,14 @@
 use std::f64::consts::TAU;
 
 use crate::evidence::inverse_dynamics::Compared;
-use crate::evidence::selection;
+use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, is_enough};
+use crate::evidence::thresholds::{
+    AMPLITUDE_HALF_WIDTHS, DWELL_ROWS, FEWEST_SLOW_REVERSALS, FEWEST_SLOW_ROWS,
+    LARGEST_DISAGREEMENT, SLOW_SHARE,
+};
 use crate::fit::bench::Bench;
-use crate::fit::blocks::{Fit, Gain};
-use crate::fit::fitted::Fitted;
+use crate::fit::blocks::Gain;
+use crate::fit::fitted::{Estimate, Fitted};
 use crate::model::effects::torque_ripple::TorqueRipple;
 use crate::model::inverse::{Model, Part};
 use crate::motion::excitation::reversals;
@@ -50,23 +54,10 @@ pub(crate) struct OrderAtReversals {
     pub gain: Gain,
 }
 
-/// An axis dwells where it has at least so many rows below the moving velocity per reversal.
-const DWELL_ROWS: f64 = 1.0;
-/// Samples up to this share of the median velocity are slow.
-const SLOW_SHARE: f64 = 0.25;
 /// Low-pass of this judgement, Hz.
 const CUTOFF_HZ: f64 = 30.0;
-/// Fewest slow samples and reversals.
-const FEWEST_ROWS: usize = 1500;
-const FEWEST_REVERSALS: usize = 20;
 /// Highest order per revolution that is tried.
 const HIGHEST_ORDER: u32 = 180;
-/// Most orders that are added.
-const MOST: usize = 8;
-/// Largest distance of the two halves' amplitudes (as vectors), as a share of their mean.
-const LARGEST_DISAGREEMENT: f64 = 0.6;
-/// An amplitude must be so many half widths.
-const WIDTHS: f64 = 1.5;
 
 /// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing
 /// was found.
@@ -76,63 +67,134 @@ pub(crate) fn slow_ripple(
     moving: &Kinematics,
     declared: &Model,
 ) -> Option<RippleAtReversals> {
-    let per_rev = match dataset.kind {
+    let revolution = match dataset.kind {
         AxisKind::Rotary => TAU,
         AxisKind::Linear => dataset.lead_m_per_rev?,
     };
     let limit = dataset.kind.moving_velocity();
-    let dwelling = moving
-        .velocity_lp
-        .iter()
-        .filter(|v| v.abs() <= limit)
-        .count() as f64;
-    let turns = reversals(moving);
-    if turns < FEWEST_REVERSALS || dwelling >= DWELL_ROWS * turns as f64 {
+    if dwells(&moving.velocity_lp, limit, reversals(moving)) {
         return None;
     }
     let fastest = SLOW_SHARE * median_speed(moving);
     let slow = |record: &Record| slow_motion(dataset, record, fastest);
     let (train, validate) = (slow(&dataset.train)?, slow(&dataset.validate)?);
-    if train.fitted.iter().filter(|slow| **slow).count() < FEWEST_ROWS {
+    if train.fitted.iter().filter(|slow| **slow).count() < FEWEST_SLOW_ROWS {
         return None;
     }
     let bench = Bench::new(dataset, &train);
-    let before = bench.cross_validate(declared);
-    let (model, after, found) = add_orders(&bench, declared.clone(), before.clone(), per_rev);
-    if found.is_empty() {
-        return None;
-    }
-    let before = Fitted::new(declared.clone(), &before.coefficients);
-    let after = Fitted::new(model, &after.coefficients);
-    let widths = bench.estimates_of_coefficients(&after);
-    let orders = found.iter().zip(widths.iter().skip(declared.parts.len()));
-    let orders = orders.map(|((per_rev, gain), estimate)| {
-        let (own, half): (Vec<f64>, Vec<f64>) = estimate.own.iter().copied().unzip();
-        OrderAtReversals {
-            per_rev: *per_rev,
-            amplitude: own[0].hypot(own[1]),
-            half_width: half[0].hypot(half[1]),
-            gain: *gain,
-        }
-    });
-    let orders: Vec<OrderAtReversals> = orders
-        .filter(|order| order.amplitude >= WIDTHS * order.half_width)
-        .collect();
-    let error = |motion: &Kinematics, fitted: &Fitted| {
-        Bench::new(dataset, motion).force_error_percent(fitted)
+    let output = SlowEffort {
+        halves: halves(&train),
+        bench: &bench,
+        revolution,
     };
-    let compared = |motion: &Kinematics| Compared {
-        declared: error(motion, &before),
-        extended: error(motion, &after),
+    let selection = selection::select(&output, declared.clone(), &mut |_| ());
+    let models = Compared {
+        declared: bench.fit(declared),
+        extended: bench.fit(&selection.model),
     };
-    Some(RippleAtReversals {
+    let orders = output.orders(&models.extended, &selection);
+    let percent = |motion: &Kinematics| {
+        models.each(|fitted| Bench::new(dataset, motion).force_error_percent(fitted))
+    };
+    (!orders.is_empty()).then(|| RippleAtReversals {
         fastest,
         cutoff_hz: CUTOFF_HZ,
         orders,
-        train_percent: compared(&train),
-        validate_percent: compared(&validate),
+        train_percent: percent(&train),
+        validate_percent: percent(&validate),
     })
-    .filter(|ripple| !ripple.orders.is_empty())
+}
+
+/// Whether an axis is slow for long, or turns too seldom to say.
+fn dwells(velocity: &[f64], limit: f64, reversals: usize) -> bool {
+    let slow = velocity.iter().filter(|v| v.abs() <= limit).count();
+    reversals < FEWEST_SLOW_REVERSALS || slow as f64 >= DWELL_ROWS * reversals as f64
+}
+
+/// The effort of slow samples: one integer order per revolution after the other.
+struct SlowEffort<'a> {
+    bench: &'a Bench<'a>,
+    halves: [Kinematics; 2],
+    /// Way of one revolution.
+    revolution: f64,
+}
+
+impl Output for SlowEffort<'_> {
+    type Model = Model;
+
+    fn candidates(&self, model: &Model, round: usize) -> Vec<Candidate<Model>> {
+        let (base, design) = (self.bench.cross_validate(model), self.bench.design(model));
+        let parts = (1..=HIGHEST_ORDER).map(|order| self.part(order));
+        let is_open = |part: &Part| !model.parts.iter().any(|known| known.is_same(part));
+        let open = parts.filter(is_open);
+        let judged = |part: Part| {
+            let blocks = self.bench.blocks(&self.bench.extended_once(&design, &part));
+            let scored = Scored {
+                effect: part.called(),
+                parameter: part.parameter,
+                gain: Gain::of(&base, &blocks.cross_validate()),
+                physical: true,
+                accepted: false,
+                round,
+            };
+            Candidate {
+                scored,
+                model: model.with(part),
+            }
+        };
+        open.map(judged).collect()
+    }
+
+    /// Only what both halves of the record agree about.
+    fn accepts(&self, candidate: &Candidate<Model>) -> bool {
+        is_enough(&candidate.scored.gain) && self.halves_agree(&candidate.model)
+    }
+}
+
+impl SlowEffort<'_> {
+    fn part(&self, order: u32) -> Part {
+        Part::found(&TorqueRipple, f64::from(order) / self.revolution)
+    }
+
+    /// Whether both halves see the last order of a model with about the same amplitude and phase.
+    fn halves_agree(&self, model: &Model) -> bool {
+        let [one, other] = self.halves.each_ref().map(|motion| {
+            let fitted = Bench::new(self.bench.dataset, motion).fit(model);
+            let last = fitted.terms().next_back();
+            last.map_or([0.0; 2], |term| [term.own[0], term.own[1]])
+        });
+        agree(one, other)
+    }
+
+    /// The orders that were found and are larger than their intervals, in the order in which they
+    /// were found.
+    fn orders(&self, fitted: &Fitted, selection: &Selection) -> Vec<OrderAtReversals> {
+        let estimates = self.bench.estimates_of_coefficients(fitted);
+        let accepted = selection.scored.iter().filter(|scored| scored.accepted);
+        let order = |scored: &Scored| {
+            let is_its = |one: &&Estimate| {
+                one.part.called() == scored.effect && one.part.parameter == scored.parameter
+            };
+            let (own, half): (Vec<f64>, Vec<f64>) =
+                estimates.iter().find(is_its)?.own.iter().copied().unzip();
+            Some(OrderAtReversals {
+                per_rev: (scored.parameter * self.revolution).round() as u32,
+                amplitude: own[0].hypot(own[1]),
+                half_width: half[0].hypot(half[1]),
+                gain: scored.gain,
+            })
+        };
+        let is_large =
+            |order: &OrderAtReversals| order.amplitude >= AMPLITUDE_HALF_WIDTHS * order.half_width;
+        accepted.filter_map(order).filter(is_large).collect()
+    }
+}
+
+/// Whether two amplitudes (cosine and sine) are about the same.
+fn agree(one: [f64; 2], other: [f64; 2]) -> bool {
+    let apart = f64::hypot(one[0] - other[0], one[1] - other[1]);
+    let mean = 0.5 * f64::hypot(one[0] + other[0], one[1] + other[1]);
+    apart <= LARGEST_DISAGREEMENT * mean
 }
 
 fn median_speed(motion: &Kinematics) -> f64 {
@@ -183,54 +245,4 @@ fn halves(motion: &Kinematics) -> [Kinematics; 2] {
         fitted,
         ..motion.clone()
     })
-}
-
-/// One order after the other, each the best of its round that both halves of the record agree
-/// about.
-fn add_orders(
-    bench: &Bench<'_>,
-    start: Model,
-    fit: Fit,
-    per_rev: f64,
-) -> (Model, Fit, Vec<(u32, Gain)>) {
-    let halves = halves(bench.motion);
-    let (mut model, mut fit, mut found) = (start, fit, Vec::<(u32, Gain)>::new());
-    while found.len() < MOST {
-        let design = bench.design(&model);
-        let part = |order: u32| Part::found(&TorqueRipple, f64::from(order) / per_rev);
-        let open =
-            (1..=HIGHEST_ORDER).filter(|order| found.iter().all(|(known, _)| known != order));
-        let judged = open.map(|order| {
-            let fit_with = bench
-                .blocks(&bench.extended_once(&design, &part(order)))
-                .cross_validate();
-            (Gain::of(&fit, &fit_with), order, fit_with)
-        });
-        let mut judged: Vec<(Gain, u32, Fit)> = judged
-            .filter(|(gain, ..)| gain.share >= selection::SHARE && selection::is_enough(gain))
-            .collect();
-        judged.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
-        let agreed = judged
-            .into_iter()
-            .find(|(_, order, _)| agree(bench.dataset, &halves, &model.with(part(*order))));
-        let Some((gain, order, better)) = agreed else {
-            break;
-        };
-        model = model.with(part(order));
-        fit = better;
-        found.push((order, gain));
-    }
-    (model, fit, found)
-}
-
-/// Whether both halves see the last order of a model with about the same amplitude and phase.
-fn agree(dataset: &Dataset, halves: &[Kinematics; 2], model: &Model) -> bool {
-    let [one, other] = halves.each_ref().map(|motion| {
-        let fitted = Bench::new(dataset, motion).fit(model);
-        let last = fitted.terms().next_back();
-        last.map_or([0.0; 2], |term| [term.own[0], term.own[1]])
-    });
-    let apart = f64::hypot(one[0] - other[0], one[1] - other[1]);
-    let mean = 0.5 * f64::hypot(one[0] + other[0], one[1] + other[1]);
-    apart <= LARGEST_DISAGREEMENT * mean
 }

@@ -11,18 +11,14 @@
 
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, Judgement};
-use crate::evidence::residual::{
-    self, Structure, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE,
-};
+use crate::evidence::residual::{self, Structure};
 use crate::evidence::selection::Scored;
+use crate::evidence::thresholds::{
+    APART_COUNTS, APART_UM, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE,
+};
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
-
-/// What motor − load may keep: µm (µrad).
-const LARGEST_DIFFERENCE_UM: f64 = 3.0;
-/// And counts of the coarser encoder.
-const LARGEST_DIFFERENCE_COUNTS: f64 = 10.0;
 
 /// Structure in the residual of moving samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +71,7 @@ pub(crate) fn moves_apart(dataset: &Dataset, difference: &Difference) -> bool {
         .max(dataset.load_resolution)
         .max(f64::MIN_POSITIVE);
     let counts = 1.0e-6 * difference.after_um / count;
-    difference.after_um > LARGEST_DIFFERENCE_UM && counts > LARGEST_DIFFERENCE_COUNTS
+    difference.after_um > APART_UM && counts > APART_COUNTS
 }
 
 /// What is left when every stage has spoken.

@@ -184,6 +184,8 @@ fn left(gram: &DMatrix<f64>, coefficients: &DVector<f64>) -> f64 {
 /// How much better a fit is than another on held-out blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gain {
+    /// Sum of squares that is removed on held-out blocks.
+    pub removed: f64,
     /// Share of the held-out error (sum of squares) that is removed.
     pub share: f64,
     /// Size of what is removed, percent of the target.
@@ -205,11 +207,22 @@ impl Gain {
         let sum = gains.iter().sum::<f64>();
         let base: f64 = before.held_out.iter().sum();
         Self {
+            removed: sum,
             share: sum / base.max(f64::MIN_POSITIVE),
             percent: 100.0
                 * sum.signum()
                 * (sum.abs() / before.total.max(f64::MIN_POSITIVE)).sqrt(),
             t: t_of(&gains),
+        }
+    }
+
+    /// This gain, but relevant and certain only as far as another one is too.
+    #[must_use]
+    pub(crate) fn smaller(self, other: &Self) -> Self {
+        Self {
+            share: self.share.min(other.share),
+            t: self.t.min(other.t),
+            ..self
         }
     }
 }

@@ -182,7 +182,8 @@ pub(crate) enum Stage {
 
 /// An effect of the inverse model.
 pub(crate) trait Effect: Sync {
-    /// What it is called.
+    /// What it is called. A structure without a name keeps named effects from absorbing it, and
+    /// leads to `unexplained`.
     fn called(&self) -> Called;
 
     /// The equation, for people.
@@ -279,12 +280,6 @@ pub(crate) trait Effect: Sync {
 
     /// Whether it may be found more than once (ripple orders).
     fn repeats(&self) -> bool {
-        false
-    }
-
-    /// Whether it is a structure without a name: it keeps named effects from absorbing it, and
-    /// leads to `unexplained`.
-    fn is_nameless(&self) -> bool {
         false
     }
 

@@ -89,10 +89,6 @@ impl Effect for Hum {
         true
     }
 
-    fn is_nameless(&self) -> bool {
-        true
-    }
-
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![naming.nonlinear("force_over_time_frequency", naming.parameter, "Hz".into())]
     }

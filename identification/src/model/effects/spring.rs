@@ -44,10 +44,6 @@ impl Effect for Spring {
         vec![1.0, 2.0]
     }
 
-    fn is_nameless(&self) -> bool {
-        true
-    }
-
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![naming.coefficient(
             "force_over_position",

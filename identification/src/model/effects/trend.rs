@@ -54,10 +54,6 @@ impl Effect for Trend {
         vec![1.0, 2.0]
     }
 
-    fn is_nameless(&self) -> bool {
-        true
-    }
-
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![naming.coefficient(
             "drifting_force",
