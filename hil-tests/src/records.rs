@@ -10,7 +10,7 @@
 //!      ─▶ control position P, velocity PI with feedforward   ┘             dataset.toml
 //! ```
 //!
-//! All randomness of a plan comes from one stream ([`draws`]), so that a seed is a record. The
+//! All randomness of a plan comes from one stream (`draws`), so that a seed is a record. The
 //! order of the draws is part of it: axis, then for each file motion, force noise, recorded noise.
 
 mod axis;

@@ -47,7 +47,7 @@ pub struct AxisCompensation {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileForm {
+struct CompensationFile {
     axis: Vec<NamedAxis>,
 }
 
@@ -66,7 +66,7 @@ struct NamedAxis {
 /// One line with file, line and key.
 pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
-    let form: FileForm = toml::from_str(&text).map_err(|error| {
+    let form: CompensationFile = toml::from_str(&text).map_err(|error| {
         let line = error.span().map_or(0, |span| {
             text[..span.start.min(text.len())].matches('\n').count() + 1
         });
@@ -90,44 +90,59 @@ pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
     axes.iter().map(of_axis).collect()
 }
 
+/// A number that makes no sense: its key, what it must be, what it is.
+struct Wrong(&'static str, &'static str, f64);
+
 fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
-    let wrong = |key: &str, wanted: &str, got: f64| {
+    let checked = check_reversal(axis.reversal).and_then(|()| {
+        let gap_m = axis.backlash_m;
+        expect(
+            (0.0..=0.01).contains(&gap_m),
+            Wrong("backlash_m", "0 to 0.01 m", gap_m),
+        )
+    });
+    checked.map_err(|Wrong(key, wanted, got)| {
         Failure::new(format!(
             "{}: axis {}: {key} must be {wanted}, got {got}",
             path.display(),
             axis.name
         ))
-    };
-    match axis.reversal {
-        Compensation::None => {}
-        Compensation::Coulomb { force_n } if !force_n.is_finite() => {
-            return Err(wrong("force_n", "a finite number of newtons", force_n));
-        }
-        Compensation::Coulomb { .. } => {}
-        Compensation::Pulse(pulse) => {
-            if !(pulse.time_constant_s > 0.0 && pulse.time_constant_s.is_finite()) {
-                return Err(wrong(
-                    "time_constant_s",
-                    "above zero",
-                    pulse.time_constant_s,
-                ));
-            }
-            if !(0.0..=10.0).contains(&pulse.start_delay_s) {
-                return Err(wrong("start_delay_s", "0 to 10 s", pulse.start_delay_s));
-            }
-            if !pulse.height_m_per_s.is_finite() {
-                return Err(wrong(
-                    "height_m_per_s",
-                    "a finite velocity",
-                    pulse.height_m_per_s,
-                ));
-            }
-        }
+    })
+}
+
+fn check_reversal(reversal: Compensation) -> Result<(), Wrong> {
+    match reversal {
+        Compensation::None => Ok(()),
+        Compensation::Coulomb { force_n } => expect(
+            force_n.is_finite(),
+            Wrong("force_n", "a finite number of newtons", force_n),
+        ),
+        Compensation::Pulse(pulse) => check_pulse(pulse),
     }
-    if !(0.0..=0.01).contains(&axis.backlash_m) {
-        return Err(wrong("backlash_m", "0 to 0.01 m", axis.backlash_m));
-    }
-    Ok(())
+}
+
+fn check_pulse(pulse: Pulse) -> Result<(), Wrong> {
+    let Pulse {
+        height_m_per_s: height,
+        time_constant_s: time,
+        start_delay_s: delay,
+    } = pulse;
+    expect(
+        time > 0.0 && time.is_finite(),
+        Wrong("time_constant_s", "above zero", time),
+    )?;
+    expect(
+        (0.0..=10.0).contains(&delay),
+        Wrong("start_delay_s", "0 to 10 s", delay),
+    )?;
+    expect(
+        height.is_finite(),
+        Wrong("height_m_per_s", "a finite velocity", height),
+    )
+}
+
+fn expect(holds: bool, otherwise: Wrong) -> Result<(), Wrong> {
+    if holds { Ok(()) } else { Err(otherwise) }
 }
 
 /// The text of a compensation file.
@@ -141,8 +156,78 @@ pub fn text(axes: &[String], compensation: &[AxisCompensation]) -> Outcome<Strin
         reversal: c.reversal,
         backlash_m: c.backlash_m,
     });
-    toml::to_string(&FileForm {
+    toml::to_string(&CompensationFile {
         axis: axis.collect(),
     })
     .map_err(|error| Failure::new(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PULSE: Pulse = Pulse {
+        height_m_per_s: -2.0e-3,
+        time_constant_s: 5.0e-3,
+        start_delay_s: 0.0,
+    };
+
+    fn names() -> Vec<String> {
+        ["X", "Y"].map(String::from).to_vec()
+    }
+
+    fn of(reversal: Compensation) -> AxisCompensation {
+        AxisCompensation {
+            reversal,
+            backlash_m: 1.0e-5,
+        }
+    }
+
+    fn read_back(compensation: &[AxisCompensation]) -> Outcome<Vec<AxisCompensation>> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("compensation.toml");
+        std::fs::write(&path, text(&names(), compensation).unwrap()).unwrap();
+        read(&path, &names())
+    }
+
+    #[test]
+    fn what_was_written_is_read_again() {
+        let written = [
+            of(Compensation::Pulse(PULSE)),
+            of(Compensation::Coulomb { force_n: -3.5 }),
+        ];
+        assert_eq!(read_back(&written).unwrap(), written);
+        let none = [AxisCompensation::default(); 2];
+        assert_eq!(read_back(&none).unwrap(), none);
+    }
+
+    #[test]
+    fn a_number_that_makes_no_sense_is_refused_by_axis_and_key() {
+        let pulse = |change: fn(&mut Pulse)| {
+            let mut pulse = PULSE;
+            change(&mut pulse);
+            of(Compensation::Pulse(pulse))
+        };
+        let gap = AxisCompensation {
+            backlash_m: 0.011,
+            ..of(Compensation::None)
+        };
+        for (wrong, key) in [
+            (
+                pulse(|pulse| pulse.time_constant_s = 0.0),
+                "time_constant_s",
+            ),
+            (pulse(|pulse| pulse.start_delay_s = 10.1), "start_delay_s"),
+            (
+                pulse(|pulse| pulse.height_m_per_s = f64::INFINITY),
+                "height_m_per_s",
+            ),
+            (of(Compensation::Coulomb { force_n: f64::NAN }), "force_n"),
+            (gap, "backlash_m"),
+        ] {
+            let refusal = read_back(&[AxisCompensation::default(), wrong]).unwrap_err();
+            let text = refusal.to_string();
+            assert!(text.contains(&format!("axis Y: {key} must be")), "{text}");
+        }
+    }
 }

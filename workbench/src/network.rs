@@ -1,11 +1,11 @@
 //! The buses of a machine, seen from the workbench.
 //!
 //! ```text
-//! master     NMT, SYNC, SDO, setpoints; the way up and down
-//! place      in this process, or on CAN interfaces
-//! link       what the master asks of the buses: in_process, interfaces
-//! candump    logs of what went over them
-//! node       one node alone, for a bus with other people's nodes on it
+//! master       NMT, SYNC, SDO, setpoints; the way up and down
+//! place        in this process, or on CAN interfaces
+//! link         what the master asks of the buses: in_process, interfaces
+//! candump      logs of what went over them
+//! single_node  one node alone, for a bus with other people's nodes on it
 //! ```
 
 pub mod candump;
@@ -13,5 +13,5 @@ pub mod in_process;
 pub mod interfaces;
 pub mod link;
 pub mod master;
-pub mod node;
 pub mod place;
+pub mod single_node;

@@ -3,8 +3,8 @@
 pub mod circle_limits;
 mod point_to_point;
 mod reference_circle;
-pub mod sine_bursts;
 mod smoothstep;
+pub mod windowed_sines;
 
 pub use point_to_point::Move;
 pub use reference_circle::{Circle, MEASURE_FROM_RAD};

@@ -4,11 +4,11 @@
 //! circle without compensation ─▶ start_values ─▶ valley (X) ─▶ valley (Y) ─▶ circle with both
 //! ```
 //!
-//! [`coulomb`] is the other way to a compensation: one force per axis, from a record.
+//! [`coulomb_force`] is the other way to a compensation: one force per axis, from a record.
 
-mod circles;
-pub mod coulomb;
+pub mod coulomb_force;
 mod start_values;
+mod tuning_circles;
 mod valley;
 
 use std::cell::RefCell;
@@ -20,8 +20,8 @@ use crate::compensation::{AxisCompensation, Compensation, Pulse};
 use crate::error::{Failure, Outcome};
 use crate::session::Stand;
 use crate::trajectory::Circle;
-use circles::TuningCircles;
 use start_values::start;
+use tuning_circles::TuningCircles;
 use valley::Search;
 
 /// What tuning did.
@@ -60,16 +60,9 @@ fn tune_both(
     start_delay_s: f64,
 ) -> Outcome<Tuned> {
     let mut compensation = stand.uncompensated();
-    let run = |compensation: &[AxisCompensation]| {
-        let mut circles = circles.borrow_mut();
-        let points = circles.points(compensation)?;
-        let bursts_um = circles.figures(&points).axis_bursts_um();
-        Ok::<_, Failure>((points, bursts_um))
-    };
-    let (points, before_um) = run(&compensation)?;
-    let radius_m = circles.borrow().circle.radius_m;
+    let before = circles.borrow_mut().run(&compensation)?;
     for axis in 0..2 {
-        let start = burst_to_compensate(&points, axis, radius_m, stand.machine)?;
+        let start = burst_to_compensate(&before.points, axis, before.radius_m, stand.machine)?;
         let search = Search {
             circles,
             axis,
@@ -79,12 +72,12 @@ fn tune_both(
         };
         compensation[axis].reversal = Compensation::Pulse(search.run(start)?);
     }
-    let (_, after_um) = run(&compensation)?;
+    let after = circles.borrow_mut().run(&compensation)?;
     let circles = circles.borrow().count;
     Ok(Tuned {
         compensation,
-        before_um,
-        after_um,
+        before_um: before.bursts_um,
+        after_um: after.bursts_um,
         circles,
     })
 }

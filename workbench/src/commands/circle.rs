@@ -11,7 +11,7 @@ use crate::presentation::plots::{self, Trace};
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::check_circle;
-use crate::tuning::coulomb;
+use crate::tuning::coulomb_force;
 
 /// Runs the circle, prints its figures and writes what was asked for.
 ///
@@ -50,7 +50,7 @@ fn compensation_of(
         (Method::None, Some(_)) => Err(Failure::new(
             "--compensation-file: needs --compensation pulse or coulomb; without it the file would not be used",
         )),
-        (Method::Coulomb, None) => coulomb::measured(stand),
+        (Method::Coulomb, None) => coulomb_force::measured(stand),
         (Method::Pulse, None) => Err(Failure::new(
             "--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`",
         )),

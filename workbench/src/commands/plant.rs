@@ -6,8 +6,8 @@ use protocol::cob::HEARD_BY_PLANT;
 use crate::cli;
 use crate::error::{Failure, Outcome};
 use crate::network::in_process::plant_seed;
-use crate::network::node::{self, Post};
 use crate::network::place::refuse_overload;
+use crate::network::single_node::{self, Post};
 
 /// The plant of the first axis; those of the others follow.
 const FIRST_PLANT: u8 = 0x11;
@@ -23,7 +23,7 @@ pub fn run(arguments: &cli::Plant) -> Outcome<()> {
     let index = axis_of(&machine, arguments.node)?;
     let pace = arguments.pace.chosen();
     refuse_overload(&machine, pace)?;
-    let ids = node::ids(arguments.node - SERVO_BELOW_PLANT, arguments.node)?;
+    let ids = single_node::ids(arguments.node - SERVO_BELOW_PLANT, arguments.node)?;
     let (actual, seed) = (
         machine.axes[index].actual.clone(),
         plant_seed(machine.seed, 0, index),

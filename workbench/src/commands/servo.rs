@@ -5,14 +5,14 @@ use servo::Servo;
 
 use crate::cli;
 use crate::error::Outcome;
-use crate::network::node::{self, Post};
+use crate::network::single_node::{self, Post};
 
 /// Runs the servo node until it is ended.
 ///
 /// # Errors
 /// Where the interface cannot be opened or goes away.
 pub fn run(arguments: &cli::Servo) -> Outcome<()> {
-    let ids = node::ids(arguments.node, arguments.plant_node)?;
+    let ids = single_node::ids(arguments.node, arguments.plant_node)?;
     let post = Post {
         interface: &arguments.can,
         node: ids.servo,

@@ -15,14 +15,14 @@ use crate::output_files::{json, write};
 use crate::presentation::page::Page;
 use crate::presentation::plots::{self, Trace};
 use crate::presentation::result_chapters::add_identification;
-use crate::presentation::result_tables::{Table, head, sentence};
+use crate::presentation::result_tables::{TextTable, head, sentence};
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::tuning::Tuned;
 
 /// `summary.json`.
 #[derive(Serialize)]
-struct Summary<'a> {
+struct SummaryFile<'a> {
     machine: &'a str,
     axes: Vec<AxisSummary<'a>>,
     circle_before: &'a CircleReport,
@@ -72,10 +72,10 @@ impl Commissioned<'_> {
         write(&out.join("report.html"), &self.page()?)
     }
 
-    fn summary(&self) -> Summary<'_> {
+    fn summary(&self) -> SummaryFile<'_> {
         let machine = self.stand.machine;
         let axes = machine.axes.iter().zip(self.results);
-        Summary {
+        SummaryFile {
             machine: &machine.name,
             axes: axes
                 .map(|(axis, result)| AxisSummary {
@@ -136,7 +136,7 @@ impl Commissioned<'_> {
         Ok(())
     }
 
-    fn overview_table(&self) -> Table {
+    fn overview_table(&self) -> TextTable {
         let mut rows = vec![head(["", "before", "after", "unit"])];
         let axes = self.stand.machine.axes.iter();
         for (axis, result) in axes.zip(self.results) {
@@ -189,7 +189,7 @@ fn force_rows(axis: &str, result: &Identification) -> [Vec<String>; 2] {
 }
 
 /// The figures of the circle; hysteresis where both directions were run.
-fn circle_rows(before: &CircleReport, after: &CircleReport) -> Table {
+fn circle_rows(before: &CircleReport, after: &CircleReport) -> TextTable {
     let both = [&before.figures, &after.figures];
     let mut rows = vec![
         row("largest burst", both.map(|circle| circle.peak_max_um), "µm"),

@@ -7,16 +7,16 @@
 //!   └────────── way up and down, stop as one: which control word, which setpoint ◀───────┘
 //! ```
 //!
-//! One cycle k in lock-step (`cycle`): SYNC k, setpoints k + 1, then wait until the torque k of
-//! every axis was seen. A cycle whose torque does not come while the link waits counts as missed
+//! One cycle k in lock-step (`sync_cycle`): SYNC k, setpoints k + 1, then wait until the torque k
+//! of every axis was seen. A cycle whose torque does not come while the link waits counts as missed
 //! and the run goes on; what that means is the business of the nodes' watchdogs. `way` brings the
 //! drives up and down, each step confirmed by their status. `halt` stops all axes where one has
 //! trouble, or where the operator wants it.
 
 mod axis_link;
-mod cycle;
 mod halt;
 mod sdo_client;
+mod sync_cycle;
 mod way;
 
 use std::time::{Duration, Instant};
@@ -43,12 +43,12 @@ const FRAMES_PER_ANSWER: u32 = 20_000;
 
 /// Waiting for an answer while others talk: heartbeats never go quiet, so that no time without
 /// frames ends it. It ends by the wall clock, or by the number of frames where time is virtual.
-struct Patience {
+struct AnswerPatience {
     begun: Instant,
     frames: u32,
 }
 
-impl Patience {
+impl AnswerPatience {
     fn begin() -> Self {
         Self {
             begun: Instant::now(),
@@ -176,7 +176,7 @@ impl<L: Link> Master<L> {
             missing.push((axis.ids, axis.name.clone(), FrameKind::PlantHeartbeat));
             missing.push((axis.ids, axis.name.clone(), FrameKind::ServoHeartbeat));
         }
-        let mut patience = Patience::begin();
+        let mut patience = AnswerPatience::begin();
         while let Some((ids, name, kind)) = missing.first() {
             let received = if patience.lasts() {
                 self.link.receive(bus, ANSWER)?

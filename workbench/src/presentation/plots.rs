@@ -1,11 +1,11 @@
 //! The pictures people know, as SVG text.
 
 mod canvas;
-mod curves;
-mod polar;
+mod curve_plot;
+mod polar_plot;
 
-pub use curves::{Curve, curves};
-pub use polar::{Trace, polar};
+pub use curve_plot::{Curve, curves};
+pub use polar_plot::{Trace, polar};
 
 /// The text of an SVG file of its own.
 #[must_use]

@@ -4,7 +4,7 @@
 use identification::{Errors, FreeRunErrors, Identification, Report};
 
 /// Rows of cells; the first one is the head.
-pub type Table = Vec<Vec<String>>;
+pub type TextTable = Vec<Vec<String>>;
 
 /// A head, from its columns.
 #[must_use]
@@ -44,7 +44,7 @@ pub fn sentence(report: &Report) -> String {
 
 /// Errors before and after.
 #[must_use]
-pub fn error_table(result: &Identification) -> Table {
+pub fn error_table(result: &Identification) -> TextTable {
     let report = &result.report;
     let has_difference = report.train.position_difference_error_um_before.is_some();
     let unit = result.effort_unit;
@@ -85,7 +85,7 @@ fn error_row(name: &str, errors: &Errors, has_difference: bool) -> Vec<String> {
 
 /// The force error by the protocols that papers use.
 #[must_use]
-pub fn protocol_table(report: &Report) -> Table {
+pub fn protocol_table(report: &Report) -> TextTable {
     let mut rows = vec![head(["samples and fit", "declared, %", "extended, %"])];
     rows.extend(report.protocols.iter().map(|protocol| {
         let percent = |value: f64| format!("{value:.2}");
@@ -100,7 +100,7 @@ pub fn protocol_table(report: &Report) -> Table {
 
 /// The candidates, by the share of the held-out error that they remove.
 #[must_use]
-pub fn candidate_table(report: &Report) -> Table {
+pub fn candidate_table(report: &Report) -> TextTable {
     let mut rows = vec![head([
         "effect",
         "judged on",
@@ -127,7 +127,7 @@ pub fn candidate_table(report: &Report) -> Table {
 
 /// The parameters of the extended model with their intervals.
 #[must_use]
-pub fn parameter_table(report: &Report) -> Table {
+pub fn parameter_table(report: &Report) -> TextTable {
     let mut rows = vec![head(["parameter", "value", "low", "high", "unit"])];
     rows.extend(report.parameters.iter().map(|(name, parameter)| {
         let number = |value: f64| {
@@ -150,9 +150,9 @@ pub fn parameter_table(report: &Report) -> Table {
 
 /// Errors of the free run on both records; empty where there was none.
 #[must_use]
-pub fn free_run_table(result: &Identification) -> Table {
+pub fn free_run_table(result: &Identification) -> TextTable {
     let Some(free_run) = &result.report.free_run else {
-        return Table::new();
+        return TextTable::new();
     };
     let percent =
         |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
@@ -180,9 +180,9 @@ pub fn free_run_table(result: &Identification) -> Table {
 
 /// What each shape of friction leaves at reversals; empty where there was no free run.
 #[must_use]
-pub fn reversal_shape_table(result: &Identification) -> Table {
+pub fn reversal_shape_table(result: &Identification) -> TextTable {
     let Some(free_run) = &result.report.free_run else {
-        return Table::new();
+        return TextTable::new();
     };
     let shapes = &free_run.reversals;
     let row = |name: &str, value: Option<f64>| {
@@ -201,9 +201,9 @@ pub fn reversal_shape_table(result: &Identification) -> Table {
 
 /// Orders of the ripple that was found about reversals; empty where there was none.
 #[must_use]
-pub fn slow_ripple_table(result: &Identification) -> Table {
+pub fn slow_ripple_table(result: &Identification) -> TextTable {
     let Some(ripple) = &result.report.slow_ripple else {
-        return Table::new();
+        return TextTable::new();
     };
     let amplitude = format!("amplitude, {}", result.effort_unit);
     let mut rows = vec![head(["order per revolution", &amplitude, "± (95 %)"])];

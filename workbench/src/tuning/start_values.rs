@@ -20,7 +20,7 @@ pub(super) fn start(
     radius_m: f64,
     machine: &Machine,
 ) -> Option<Pulse> {
-    let burst = Burst::of_axis(points, axis, radius_m)?;
+    let burst = BurstSize::of_axis(points, axis, radius_m)?;
     let time_constant_s = machine.period_s * burst.samples_at_half_height as f64;
     let area_m_s = 1.0e-6 * burst.sum_um * machine.period_s;
     let way_m = WAY_OVER_AREA * machine.axes.get(axis)?.gains.position_gain_per_s * area_m_s;
@@ -32,14 +32,14 @@ pub(super) fn start(
 }
 
 /// A burst by its size: samples are a cycle apart.
-struct Burst {
+struct BurstSize {
     /// Samples above half of the largest deviation.
     samples_at_half_height: usize,
     /// Sum of all deviations.
     sum_um: f64,
 }
 
-impl Burst {
+impl BurstSize {
     /// The radial deviation from its median about the first reversal of an axis.
     fn of_axis(points: &[Point], axis: usize, radius_m: f64) -> Option<Self> {
         let (at, ..) = REVERSALS.into_iter().find(|(_, of, _)| *of == axis)?;

@@ -10,7 +10,7 @@ use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 
 use super::TOLERANCE_UM;
-use super::circles::TuningCircles;
+use super::tuning_circles::TuningCircles;
 use crate::compensation::{AxisCompensation, Compensation, Pulse};
 use crate::error::{Failure, Outcome};
 use crate::progress;
@@ -82,8 +82,7 @@ impl Search<'_, '_, '_> {
         let mut compensation = self.others.clone();
         compensation[self.axis].reversal = Compensation::Pulse(pulse);
         let mut circles = self.circles.borrow_mut();
-        let points = circles.points(&compensation)?;
-        let burst = circles.figures(&points).axis_bursts_um()[self.axis];
+        let burst = circles.run(&compensation)?.bursts_um[self.axis];
         progress::step(&format!(
             "circle {}: {:.3} mm/s, {:.1} ms: burst {burst:.2} µm",
             circles.count,

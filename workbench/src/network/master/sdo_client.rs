@@ -11,7 +11,7 @@ use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use servo::objects::{self, Entry};
 use servo::parameters::SetError;
 
-use super::{ANSWER, Master, Patience};
+use super::{ANSWER, AnswerPatience, Master};
 use crate::compensation::AxisCompensation;
 use crate::drive_parameters;
 use crate::error::{Failure, Outcome};
@@ -83,7 +83,7 @@ impl<L: Link> Master<L> {
     fn ask(&mut self, index: usize, request: Request) -> Outcome<Response> {
         self.send(index, Message::SdoRequest(request))?;
         let (bus, ids) = (self.axes[index].bus, self.axes[index].ids);
-        let mut patience = Patience::begin();
+        let mut patience = AnswerPatience::begin();
         while patience.lasts() {
             let Some(frame) = self.link.receive(bus, ANSWER)? else {
                 break;

@@ -40,8 +40,17 @@ pub(super) enum Hold {
     Last,
 }
 
-/// A step of the way up: control word, setpoints, state that confirms it, patience in cycles.
-struct Step(ControlWord, Hold, DriveState, u32);
+/// A step of the way up.
+struct Step {
+    /// What the drives are told.
+    control: ControlWord,
+    /// Where they are to be meanwhile.
+    hold: Hold,
+    /// The state that confirms the step.
+    wanted: DriveState,
+    /// How long it may take, cycles.
+    patience: u32,
+}
 
 impl<L: Link> Master<L> {
     /// NMT start, and the drives up to `operation enabled` where they stand. Where one does not
@@ -62,44 +71,49 @@ impl<L: Link> Master<L> {
 
     fn climb(&mut self) -> Outcome<()> {
         self.reset_fault()?;
-        for Step(control, hold, wanted, patience) in [
-            Step(
-                ControlWord::SHUTDOWN,
-                Hold::Actual,
-                DriveState::ReadyToSwitchOn,
-                STEP_CYCLES,
-            ),
-            Step(
-                ControlWord::SWITCH_ON,
-                Hold::Actual,
-                DriveState::SwitchedOn,
-                STEP_CYCLES,
-            ),
-            Step(
-                ControlWord::ENABLE_OPERATION,
-                Hold::Last,
-                DriveState::OperationEnabled,
-                self.cycles_in(ENABLE_S),
-            ),
-        ] {
-            let is_up = |axis: &AxisLink| axis.state == Some(wanted);
-            self.confirm(control, hold, patience, |master| {
-                master.axes.iter().all(is_up)
-                    || master.axes.iter().any(has_refused)
-                    || master.is_interrupted()
-            })?;
-            if self.is_interrupted() {
-                return Err(self.interrupt.failure("the drives were not enabled"));
-            }
-            if let Some(axis) = self
-                .axes
-                .iter()
-                .find(|axis| has_refused(axis) || !is_up(axis))
-            {
-                return Err(refusal(axis, wanted));
-            }
+        self.steps_up()
+            .into_iter()
+            .try_for_each(|step| self.step_up(&step))
+    }
+
+    fn steps_up(&self) -> [Step; 3] {
+        [
+            Step {
+                control: ControlWord::SHUTDOWN,
+                hold: Hold::Actual,
+                wanted: DriveState::ReadyToSwitchOn,
+                patience: STEP_CYCLES,
+            },
+            Step {
+                control: ControlWord::SWITCH_ON,
+                hold: Hold::Actual,
+                wanted: DriveState::SwitchedOn,
+                patience: STEP_CYCLES,
+            },
+            Step {
+                control: ControlWord::ENABLE_OPERATION,
+                hold: Hold::Last,
+                wanted: DriveState::OperationEnabled,
+                patience: self.cycles_in(ENABLE_S),
+            },
+        ]
+    }
+
+    fn step_up(&mut self, step: &Step) -> Outcome<()> {
+        let is_up = |axis: &AxisLink| axis.state == Some(step.wanted);
+        self.confirm(step.control, step.hold, step.patience, |master| {
+            master.axes.iter().all(is_up)
+                || master.axes.iter().any(has_refused)
+                || master.is_interrupted()
+        })?;
+        if self.is_interrupted() {
+            return Err(self.interrupt.failure("the drives were not enabled"));
         }
-        Ok(())
+        let mut axes = self.axes.iter();
+        match axes.find(|axis| has_refused(axis) || !is_up(axis)) {
+            Some(axis) => Err(refusal(axis, step.wanted)),
+            None => Ok(()),
+        }
     }
 
     /// Disables the drives: disable operation (they ramp down and hold until their brakes bite),
@@ -142,39 +156,41 @@ impl<L: Link> Master<L> {
         if self.axes.iter().any(is_energised) {
             self.disable()?;
         }
-        let rests = |axis: &AxisLink| axis.state.is_some_and(is_down);
-        self.confirm(
-            ControlWord::DISABLE_VOLTAGE,
-            Hold::Actual,
-            self.cycles_in(DISABLE_S),
-            |master| {
-                master
-                    .axes
-                    .iter()
-                    .all(|axis| rests(axis) || axis.is_silent())
-            },
-        )?;
-        if self
-            .axes
-            .iter()
-            .any(|axis| axis.state == Some(DriveState::Fault))
-        {
-            let is_reset = |axis: &AxisLink| {
-                axis.state == Some(DriveState::SwitchOnDisabled) || axis.is_silent()
-            };
-            self.confirm(
-                ControlWord::FAULT_RESET,
-                Hold::Actual,
-                STEP_CYCLES,
-                |master| master.axes.iter().all(is_reset),
-            )?;
+        self.rest()?;
+        if self.axes.iter().any(is_in_fault) {
+            self.clear_faults()?;
         }
         self.control = ControlWord::DISABLE_VOLTAGE;
         self.axes
             .iter_mut()
-            .filter(|axis| axis.state != Some(DriveState::Fault))
+            .filter(|axis| !is_in_fault(axis))
             .for_each(AxisLink::forget_faults);
         Ok(())
+    }
+
+    /// Waits until nothing is left to switch off: a drive may have been ramping down by itself.
+    fn rest(&mut self) -> Outcome<()> {
+        let rests = |axis: &AxisLink| axis.is_silent() || axis.state.is_some_and(is_down);
+        let patience = self.cycles_in(DISABLE_S);
+        self.confirm(
+            ControlWord::DISABLE_VOLTAGE,
+            Hold::Actual,
+            patience,
+            |master| master.axes.iter().all(rests),
+        )
+        .map(|_| ())
+    }
+
+    fn clear_faults(&mut self) -> Outcome<()> {
+        let is_clear =
+            |axis: &AxisLink| axis.is_silent() || axis.state == Some(DriveState::SwitchOnDisabled);
+        self.confirm(
+            ControlWord::FAULT_RESET,
+            Hold::Actual,
+            STEP_CYCLES,
+            |master| master.axes.iter().all(is_clear),
+        )
+        .map(|_| ())
     }
 
     /// A step of the way down, with the setpoints frozen. Nobody waits for a servo that is silent.
@@ -232,6 +248,10 @@ impl<L: Link> Master<L> {
 /// A fault that is latched, or the state after power-up: nothing is left to switch off.
 const fn is_down(state: DriveState) -> bool {
     matches!(state, DriveState::SwitchOnDisabled | DriveState::Fault)
+}
+
+fn is_in_fault(axis: &AxisLink) -> bool {
+    axis.state == Some(DriveState::Fault)
 }
 
 /// The states in which CiA 402 allows no torque.

@@ -1,7 +1,7 @@
 //! What `commission` moves to record an axis: slow and fast runs, reversals at several
 //! accelerations, within the axis limits.
 //!
-//! A sequence of windowed sine bursts. A sine passes every velocity up to its peak and reverses
+//! A sequence of windowed sines. A sine passes every velocity up to its peak and reverses
 //! with its peak acceleration, so a few of them from 1.5 mm/s to over half the axis' velocity cover
 //! Stribeck fall, viscous friction, presliding and inertia.
 
@@ -11,9 +11,9 @@ use plant_sim::machine::Limits;
 
 use super::smoothstep::smoothstep;
 
-/// A windowed sine burst.
+/// A sine that comes in and goes out smoothly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Burst {
+pub struct WindowedSine {
     amplitude_m: f64,
     frequency_hz: f64,
     duration_s: f64,
@@ -36,56 +36,56 @@ const TRAIN: [(f64, f64, f64); 9] = [
 const VALIDATION: (f64, f64) = (0.8, 0.65);
 /// The most of the limits that any burst uses.
 const MOST: f64 = 0.7;
-/// Rest before and after each burst.
+/// Rest before and after each sine.
 const REST_S: f64 = 0.3;
 /// Window that brings a burst in and out, periods.
 const WINDOW: f64 = 0.75;
 
 /// The bursts of the training record (or of the validation record) within the limits of an axis.
 #[must_use]
-pub fn bursts(limits: &Limits, validation: bool) -> Vec<Burst> {
+pub fn sequence(limits: &Limits, validation: bool) -> Vec<WindowedSine> {
     let (v_share, a_share) = if validation { VALIDATION } else { (1.0, 1.0) };
-    let burst = |(v, a, periods): &(f64, f64, f64)| {
+    let sine = |(v, a, periods): &(f64, f64, f64)| {
         let velocity = (v * v_share).min(MOST) * limits.velocity_m_per_s;
         let acceleration = (a * a_share).min(MOST) * limits.acceleration_m_per_s2;
         // v = ω A, a = ω v.
         let omega = acceleration / velocity;
         let amplitude_m = (velocity / omega).min(MOST * limits.travel_m);
         let frequency_hz = omega / TAU;
-        Burst {
+        WindowedSine {
             amplitude_m,
             frequency_hz,
             duration_s: (periods + 2.0 * WINDOW) / frequency_hz,
         }
     };
-    TRAIN.iter().map(burst).collect()
+    TRAIN.iter().map(sine).collect()
 }
 
 /// Duration of a record, s.
 #[must_use]
-pub fn duration_s(bursts: &[Burst]) -> f64 {
-    bursts
+pub fn duration_s(sines: &[WindowedSine]) -> f64 {
+    sines
         .iter()
-        .map(|burst| burst.duration_s + REST_S)
+        .map(|sine| sine.duration_s + REST_S)
         .sum::<f64>()
         + REST_S
 }
 
 /// Setpoint at a time, m.
 #[must_use]
-pub fn at(bursts: &[Burst], time_s: f64) -> f64 {
+pub fn at(sines: &[WindowedSine], time_s: f64) -> f64 {
     let mut start = REST_S;
-    for burst in bursts {
+    for sine in sines {
         let t = time_s - start;
         if t < 0.0 {
             return 0.0;
         }
-        if t < burst.duration_s {
-            let window = smooth(t * burst.frequency_hz / WINDOW)
-                * smooth((burst.duration_s - t) * burst.frequency_hz / WINDOW);
-            return burst.amplitude_m * window * (TAU * burst.frequency_hz * t).sin();
+        if t < sine.duration_s {
+            let window = smooth(t * sine.frequency_hz / WINDOW)
+                * smooth((sine.duration_s - t) * sine.frequency_hz / WINDOW);
+            return sine.amplitude_m * window * (TAU * sine.frequency_hz * t).sin();
         }
-        start += burst.duration_s + REST_S;
+        start += sine.duration_s + REST_S;
     }
     0.0
 }
@@ -106,11 +106,11 @@ mod tests {
             travel_m: 0.25,
         };
         for validation in [false, true] {
-            let bursts = bursts(&limits, validation);
+            let sines = sequence(&limits, validation);
             let (dt, mut fastest, mut hardest) = (1.0e-3, 0.0_f64, 0.0_f64);
             let mut t = dt;
-            while t < duration_s(&bursts) {
-                let [a, b, c] = [t - dt, t, t + dt].map(|t| at(&bursts, t));
+            while t < duration_s(&sines) {
+                let [a, b, c] = [t - dt, t, t + dt].map(|t| at(&sines, t));
                 fastest = fastest.max(((c - a) / (2.0 * dt)).abs());
                 hardest = hardest.max(((c - 2.0 * b + a) / (dt * dt)).abs());
                 assert!(b.abs() < limits.travel_m);
