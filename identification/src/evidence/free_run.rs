@@ -10,7 +10,7 @@ use crate::evidence::thresholds::{
     FEWEST_COUNTS, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
 };
 use crate::fit::fitted::Fitted;
-use crate::model::effects::{Named, geometric};
+use crate::model::effects::geometric;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::simulate::axis::{Gap, Shape};
@@ -18,6 +18,7 @@ use crate::simulate::drive::Drive;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
+use crate::simulate::model::estimates::Estimates;
 use crate::simulate::run::{position_rms, simulate};
 
 /// Length of the blocks that are fitted and judged in turn, s.
@@ -348,9 +349,9 @@ impl Reversals {
 
     /// Parameters of the simulation that was accepted, fitted to the positions, with intervals.
     #[must_use]
-    pub(crate) fn named(&self, dataset: &Dataset) -> Vec<Named> {
+    pub(crate) fn estimates(&self, dataset: &Dataset) -> Estimates {
         let model = &self.best().model;
-        model.named(dataset, &half_widths(model, &self.drive, &dataset.train))
+        model.estimates(dataset, &half_widths(model, &self.drive, &dataset.train))
     }
 
     /// The simulation that was accepted.

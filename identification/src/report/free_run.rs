@@ -46,7 +46,7 @@ pub(crate) fn report(
         train: errors(&models, drive, &judged_on.train),
         validate: errors(&models, drive, &judged_on.validate),
         reversals: shapes(reversals),
-        parameters: parameters::table(parameters::entries(reversals.named(dataset))),
+        parameters: parameters::of_a_free_run(reversals.estimates(dataset)),
     };
     Some((form, curve(&models, drive, &judged_on.validate)))
 }

@@ -15,6 +15,7 @@ use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::bench::Bench;
 use crate::model::effects::{Named, Naming};
+use crate::simulate::model::estimates::Estimates;
 
 /// A parameter with its name.
 type Entry = (String, Estimate);
@@ -33,7 +34,7 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Estimate> 
 }
 
 /// Entries as a table; a name that comes again gets a number.
-pub(crate) fn table(entries: Vec<Entry>) -> BTreeMap<String, Estimate> {
+fn table(entries: Vec<Entry>) -> BTreeMap<String, Estimate> {
     let mut table = BTreeMap::new();
     for (name, estimate) in entries {
         let key = free_key(&table, &name);
@@ -52,7 +53,7 @@ fn free_key(table: &BTreeMap<String, Estimate>, name: &str) -> String {
 }
 
 /// Named quantities as entries.
-pub(crate) fn entries(named: Vec<Named>) -> Vec<Entry> {
+fn entries(named: Vec<Named>) -> Vec<Entry> {
     let entry = |named: Named| {
         let half_width = named.half_width.unwrap_or(0.0);
         (named.name, about(named.value, half_width, named.unit))
@@ -111,10 +112,14 @@ fn of_the_shape(findings: &Findings<'_>) -> Vec<Entry> {
         });
         return bristle.iter().flat_map(of_an_effect).collect();
     };
-    let is_shape =
-        |named: &Named| named.name.starts_with("presliding") || named.name.starts_with("backlash");
-    let all = reversals.named(findings.dataset).into_iter();
-    entries(all.filter(is_shape).collect())
+    let shape = reversals.estimates(findings.dataset).shape;
+    shape.iter().flat_map(of_an_effect).collect()
+}
+
+/// Everything that a free run was fitted to be.
+pub(crate) fn of_a_free_run(estimates: Estimates) -> BTreeMap<String, Estimate> {
+    let shape = estimates.shape.iter().flat_map(of_an_effect);
+    table(entries(estimates.parts).into_iter().chain(shape).collect())
 }
 
 fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {

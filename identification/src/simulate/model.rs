@@ -5,10 +5,12 @@ use axis_model::EffectName;
 use super::axis::{Acting, Mechanics, Shape};
 use crate::fit::fitted::Fitted;
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Action, Instant, Named, Naming, Stage};
+use crate::model::effects::{Action, Instant, Stage};
 use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
+
+pub(crate) mod estimates;
 
 /// A force with its coefficients.
 #[derive(Clone)]
@@ -200,85 +202,6 @@ impl Simulated {
             gap.restitution = gap.restitution.clamp(0.0, 0.98);
         }
         copy
-    }
-
-    /// The parameters for people; `half_widths` in the order of the entries.
-    #[must_use]
-    pub(crate) fn named(&self, dataset: &Dataset, half_widths: &[f64]) -> Vec<Named> {
-        let mut rest = half_widths.iter().copied();
-        let mut next = || rest.next().unwrap_or(0.0);
-        let unit = |rest: &str| format!("{}{rest}", dataset.effort.unit());
-        let length = dataset.kind.position_unit();
-        let plain = |name: &str, value: f64, half: f64, unit: String| Named {
-            name: name.into(),
-            value,
-            half_width: Some(half),
-            unit,
-        };
-        let mut named = vec![plain(
-            "inertia",
-            self.mechanics.mass,
-            next(),
-            unit(&format!(" s^2/{length}")),
-        )];
-        for Active { part, own } in &self.terms {
-            let coefficients: Vec<(f64, f64)> = own.iter().map(|value| (*value, next())).collect();
-            let parameter_half_width = part.effect.is_tuned().then(&mut next);
-            let naming = Naming {
-                parameter: part.parameter,
-                parameter_half_width,
-                coefficients: &coefficients,
-                dataset,
-            };
-            named.extend(part.effect.parameters(&naming));
-        }
-        if !self.saturation.is_ideal() {
-            named.push(plain(
-                "torque_saturation",
-                self.saturation.per_effort,
-                next(),
-                format!("1/{}", dataset.effort.unit()),
-            ));
-        }
-        if self.delay_s != 0.0 {
-            named.push(plain("delay_beyond_hold", self.delay_s, next(), "s".into()));
-        }
-        if let Some(shape) = self.mechanics.shape.bristle {
-            named.push(plain(
-                "presliding_deflection",
-                shape.deflection,
-                next(),
-                length.into(),
-            ));
-            named.push(plain(
-                "presliding_damping",
-                shape.damping,
-                next(),
-                unit(&format!(" s/{length}")),
-            ));
-        }
-        if let Some(shape) = self.mechanics.shape.gap {
-            named.push(plain("backlash_gap", shape.width, next(), length.into()));
-            named.push(plain(
-                "backlash_load_share",
-                shape.load_share,
-                next(),
-                "of the moved mass".into(),
-            ));
-            named.push(plain(
-                "backlash_motor_friction",
-                shape.motor_friction,
-                next(),
-                "of the friction".into(),
-            ));
-            named.push(plain(
-                "backlash_restitution",
-                shape.restitution,
-                next(),
-                "of the velocity".into(),
-            ));
-        }
-        named
     }
 
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
