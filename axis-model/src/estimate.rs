@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::vocabulary::Effect;
+
 /// A value with its 95 % interval and its unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,9 +32,53 @@ impl Estimate {
     }
 }
 
+impl Effect<Estimate> {
+    /// The values alone, each moved into the range that a machine file may state.
+    ///
+    /// # Panics
+    /// Never: an effect has the parameters that it needs.
+    #[must_use]
+    pub fn stated(&self) -> Effect {
+        let parts = self.parts();
+        let stated = Effect::assemble(self.name(), |row| {
+            let part = parts.iter().find(|(other, _)| *other == row);
+            part.map(|(_, estimate)| estimate.value.clamp(row.min, row.max))
+        });
+        stated.expect("it has all that it needs")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{PitchError, Stribeck};
+
+    #[test]
+    fn what_is_stated_of_an_estimate_is_its_value_within_the_range() {
+        let estimate = |value| Estimate {
+            value,
+            low: 0.0,
+            high: 9.0,
+            unit: "N".into(),
+        };
+        let stribeck = Effect::from(Stribeck {
+            excess: estimate(-3.0),
+            velocity: estimate(2.0e-3),
+        });
+        let stated = Effect::from(Stribeck {
+            excess: 0.0,
+            velocity: 2.0e-3,
+        });
+        assert_eq!(stribeck.stated(), stated);
+        let pitch = Effect::from(PitchError {
+            amplitude: estimate(2.0e-3),
+            period: estimate(0.01),
+        });
+        let Effect::PitchError(pitch) = pitch.stated() else {
+            panic!("a pitch error stays one");
+        };
+        assert_eq!((pitch.amplitude, pitch.period), (1.0e-3, 0.01));
+    }
 
     #[test]
     fn a_negative_factor_turns_the_interval_round() {

@@ -10,12 +10,15 @@ use crate::evidence::findings::Findings;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
 use crate::motion::{excitation, filter};
+use crate::record::dataset::Dataset;
 use crate::record::excerpt::note;
+use crate::report::effects::Travel;
 use crate::report::forms::{
     Curves, Identification, Report, ResidualReport, RippleOrder, SlowRipple,
 };
 
 pub(crate) mod curves;
+pub(crate) mod effects;
 pub(crate) mod errors;
 pub(crate) mod forms;
 pub(crate) mod free_run;
@@ -40,6 +43,7 @@ pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>)
     }
     let residual = &findings.train.extended.residual;
     Identification {
+        effects: effects::effects(&report, travel(dataset)),
         report,
         curves: Curves {
             effects: pictures::effects(findings),
@@ -54,6 +58,13 @@ pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>)
         effort_unit: dataset.effort.unit(),
         effort_column: dataset.effort.column(),
         position_unit: dataset.kind.position_unit(),
+    }
+}
+
+fn travel(dataset: &Dataset) -> Travel {
+    Travel {
+        middle_and_half: dataset.travel(),
+        unit: dataset.kind.position_unit(),
     }
 }
 

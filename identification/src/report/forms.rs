@@ -1,6 +1,6 @@
 //! What is said about an identification: the form of `identify --json`, and curves for pictures.
 
-use axis_model::Estimate;
+use axis_model::{Effect, Estimate};
 use serde::Serialize;
 
 use crate::report::protocols::Protocol;
@@ -233,6 +233,8 @@ pub struct Curves {
 pub struct Identification {
     /// The report.
     pub report: Report,
+    /// The effects of the extended model with their parameters, as the vocabulary has them.
+    pub effects: Vec<Effect<Estimate>>,
     /// Curves.
     pub curves: Curves,
     /// Middle and half of the travel of the training record.

@@ -1,0 +1,334 @@
+//! What was identified, in the words of the vocabulary: for whoever computes with it.
+//!
+//! The table of parameters names each one as the vocabulary does, `stribeck_velocity`, so that an
+//! effect is put together from it by name alone. Where the vocabulary counts in shares of the
+//! friction and the fit in efforts, the shares are made here:
+//!
+//! ```text
+//! Fc + a u + b u²,  u = (x − m) / h     =  F0 (1 + k x + q x²)
+//! Fc + c exp(−t / τ)                    =  Fc (1 + g exp(−t / τ))
+//! ```
+//!
+//! An interval is scaled with its value: what is uncertain about the friction itself is left out.
+
+use std::collections::BTreeMap;
+
+use axis_model::{Effect, EffectName, Estimate, Parameter, TorqueRipple};
+
+use crate::report::forms::Report;
+
+/// Parameters by the name that a report gives them.
+type Table = BTreeMap<String, Estimate>;
+
+/// Where an axis moved in the training record.
+#[derive(Clone, Copy)]
+pub(crate) struct Travel {
+    /// Middle and half of the travel.
+    pub middle_and_half: (f64, f64),
+    /// Unit of the position.
+    pub unit: &'static str,
+}
+
+/// The effects of a report.
+pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> {
+    let table = in_shares(&report.parameters, travel);
+    let mut effects = Vec::new();
+    for name in EffectName::ALL {
+        let each = (1..).map(|times| assemble(*name, times, &table));
+        effects.extend(each.map_while(|effect| effect));
+    }
+    effects.extend(at_reversals(report));
+    effects
+}
+
+/// An effect that was found for the first time, the second, …; `None` where it was not.
+fn assemble(name: EffectName, times: usize, table: &Table) -> Option<Effect<Estimate>> {
+    Effect::assemble(name, |parameter| {
+        let key = key(parameter);
+        let key = if times == 1 {
+            key
+        } else {
+            format!("{key}_{times}")
+        };
+        table.get(&key).cloned()
+    })
+}
+
+/// The mass of the load is a structure of its own in the inverse model.
+const LOAD_INERTIA: &str = "load_inertia";
+
+fn key(parameter: &Parameter) -> String {
+    if parameter.effect == EffectName::Inertia && parameter.optional {
+        LOAD_INERTIA.into()
+    } else {
+        parameter.report_name()
+    }
+}
+
+/// The table with shares of the friction in place of efforts. Without a friction above zero there
+/// is nothing to take a share of.
+fn in_shares(parameters: &Table, travel: Travel) -> Table {
+    let mut table = parameters.clone();
+    let above_zero = |key: &str| parameters.get(key).filter(|own| own.value > 0.0);
+    let viscous = above_zero("viscous").map(|own| own.value);
+    share(
+        &mut table,
+        "viscous_asymmetry",
+        "viscous_asymmetry",
+        viscous,
+    );
+    let coulomb = above_zero("coulomb").map(|own| own.value);
+    share(
+        &mut table,
+        "friction_drift_coulomb",
+        "friction_drift_gain",
+        coulomb,
+    );
+    share(
+        &mut table,
+        "friction_drift_viscous",
+        "friction_drift_viscous_gain",
+        viscous,
+    );
+    over_position(&mut table, coulomb, travel);
+    table
+}
+
+/// Replaces an effort by its share of another.
+fn share(table: &mut Table, effort: &str, share: &str, of: Option<f64>) {
+    let own = table.remove(effort);
+    if let (Some(own), Some(of)) = (own, of) {
+        table.insert(share.into(), own.scaled(1.0 / of, ""));
+    }
+}
+
+const LINEAR: &str = "position_dependent_friction_linear";
+const QUADRATIC: &str = "position_dependent_friction_quadratic";
+
+/// From a polynomial about the middle of the travel to one about position zero, in shares of the
+/// level there.
+fn over_position(table: &mut Table, coulomb: Option<f64>, travel: Travel) {
+    let (middle, half) = travel.middle_and_half;
+    let (Some(a), b) = (table.remove(LINEAR), table.remove(QUADRATIC)) else {
+        return;
+    };
+    let (curve, at_zero) = (b.as_ref().map_or(0.0, |b| b.value), -middle / half);
+    let level = coulomb.map(|coulomb| coulomb + a.value * at_zero + curve * at_zero * at_zero);
+    let Some(level) = level.filter(|level| *level > 0.0) else {
+        return;
+    };
+    let slope = a.value + 2.0 * curve * at_zero;
+    let shift = slope - a.value;
+    let moved = Estimate {
+        value: slope,
+        low: a.low + shift,
+        high: a.high + shift,
+        ..a
+    };
+    let unit = |power: &str| format!("1/{}{power}", travel.unit);
+    table.insert(LINEAR.into(), moved.scaled(1.0 / (half * level), &unit("")));
+    if let Some(b) = b {
+        let b = b.scaled(1.0 / (half * half * level), &unit("2"));
+        table.insert(QUADRATIC.into(), b);
+    }
+}
+
+/// Ripple that was seen about reversals alone: amplitudes by order, without a phase.
+fn at_reversals(report: &Report) -> Vec<Effect<Estimate>> {
+    let exact = |value: f64| Estimate {
+        value,
+        unit: "per rev".into(),
+        low: value,
+        high: value,
+    };
+    let orders = report.slow_ripple.iter().flat_map(|ripple| &ripple.orders);
+    let ripple = orders.filter_map(|order| {
+        let name = format!(
+            "{}_amplitude_order_{}",
+            EffectName::TorqueRipple,
+            order.per_rev
+        );
+        Some(Effect::TorqueRipple(TorqueRipple {
+            amplitude: report.parameters.get(&name)?.clone(),
+            order: Some(exact(f64::from(order.per_rev))),
+            period: None,
+            phase: None,
+        }))
+    });
+    ripple.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::forms::{RippleOrder, SlowRipple};
+
+    const fn travel(middle: f64, half: f64) -> Travel {
+        Travel {
+            middle_and_half: (middle, half),
+            unit: "m",
+        }
+    }
+
+    fn about(value: f64, half_width: f64, unit: &str) -> Estimate {
+        Estimate {
+            value,
+            unit: unit.into(),
+            low: value - half_width,
+            high: value + half_width,
+        }
+    }
+
+    fn report(parameters: &[(&str, f64)]) -> Report {
+        let entry = |(name, value): &(&str, f64)| ((*name).to_owned(), about(*value, 1.0, "N"));
+        Report {
+            parameters: parameters.iter().map(entry).collect(),
+            ..Report::default()
+        }
+    }
+
+    fn parts(effect: &Effect<Estimate>) -> Vec<(String, f64)> {
+        let parts = effect.parts().into_iter();
+        parts
+            .map(|(row, own)| (row.report_name(), own.value))
+            .collect()
+    }
+
+    /// The one effect of a name.
+    fn only(effects: &[Effect<Estimate>], name: EffectName) -> Vec<(String, f64)> {
+        let mut own = effects.iter().filter(|effect| effect.name() == name);
+        let parts = parts(own.next().expect("it is there"));
+        assert!(own.next().is_none(), "{name} twice");
+        parts
+    }
+
+    fn assert_near(parts: &[(String, f64)], wanted: &[(&str, f64)]) {
+        assert_eq!(parts.len(), wanted.len(), "{parts:?}");
+        for ((key, value), (wanted_key, wanted)) in parts.iter().zip(wanted) {
+            assert_eq!(key, wanted_key);
+            assert!(
+                (value - wanted).abs() < 1.0e-9 * wanted.abs(),
+                "{key} = {value}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_effect_is_there_where_all_that_it_needs_is() {
+        let found = effects(
+            &report(&[
+                ("inertia", 700.0),
+                ("load_inertia", 300.0),
+                ("coulomb", 250.0),
+                ("stribeck_excess", 80.0),
+                ("backlash_gap", 2.0e-5),
+                ("backlash_restitution", 0.4),
+            ]),
+            travel(0.0, 0.1),
+        );
+        let names: Vec<&str> = found.iter().map(|effect| effect.name().as_str()).collect();
+        assert_eq!(
+            names,
+            ["inertia", "coulomb", "backlash"],
+            "no fall without a velocity"
+        );
+        assert_near(
+            &only(&found, EffectName::Inertia),
+            &[("inertia", 700.0), ("inertia_load", 300.0)],
+        );
+        assert_near(
+            &only(&found, EffectName::Backlash),
+            &[("backlash_gap", 2.0e-5), ("backlash_restitution", 0.4)],
+        );
+    }
+
+    #[test]
+    fn an_effort_becomes_a_share_of_its_friction_with_its_interval() {
+        let report = report(&[
+            ("coulomb", 200.0),
+            ("viscous", 1000.0),
+            ("viscous_asymmetry", -150.0),
+            ("friction_drift_coulomb", 80.0),
+            ("friction_drift_viscous", 250.0),
+            ("friction_drift_time_constant", 20.0),
+        ]);
+        let found = effects(&report, travel(0.0, 0.1));
+        assert_near(
+            &only(&found, EffectName::ViscousAsymmetry),
+            &[("viscous_asymmetry", -0.15)],
+        );
+        assert_near(
+            &only(&found, EffectName::FrictionDrift),
+            &[
+                ("friction_drift_gain", 0.4),
+                ("friction_drift_time_constant", 20.0),
+                ("friction_drift_viscous_gain", 0.25),
+            ],
+        );
+        let Some(Effect::FrictionDrift(drift)) = found
+            .iter()
+            .find(|effect| effect.name() == EffectName::FrictionDrift)
+        else {
+            panic!("a drift");
+        };
+        assert!((drift.gain.low - 0.395).abs() < 1.0e-12 && drift.gain.unit.is_empty());
+        assert!((drift.gain.high - 0.405).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn friction_over_position_is_the_same_function_about_zero() {
+        let (middle, half) = (0.05, 0.2);
+        let report = report(&[("coulomb", 200.0), (LINEAR, 40.0), (QUADRATIC, -12.0)]);
+        let found = effects(&report, travel(middle, half));
+        let parts = only(&found, EffectName::PositionDependentFriction);
+        let [(_, k), (_, q)] = parts.as_slice() else {
+            panic!("{parts:?}");
+        };
+        let fitted = |x: f64| {
+            let u = (x - middle) / half;
+            200.0 + 40.0 * u - 12.0 * u * u
+        };
+        for x in [-0.15, -0.03, 0.02, 0.25] {
+            let share = 1.0 + k * x + q * x * x;
+            assert!((fitted(x) - fitted(0.0) * share).abs() < 1.0e-9, "{x}");
+        }
+    }
+
+    #[test]
+    fn without_friction_there_is_no_share_of_it() {
+        let report = report(&[
+            (LINEAR, 40.0),
+            ("viscous", -3.0),
+            ("viscous_asymmetry", 1.0),
+        ]);
+        let found = effects(&report, travel(0.0, 0.2));
+        let names: Vec<EffectName> = found.iter().map(Effect::name).collect();
+        assert_eq!(names, [EffectName::Viscous]);
+    }
+
+    #[test]
+    fn every_order_of_ripple_is_an_effect() {
+        let mut report = report(&[
+            ("torque_ripple_amplitude", 30.0),
+            ("torque_ripple_period", 2.0e-3),
+            ("torque_ripple_phase", 0.3),
+            ("torque_ripple_amplitude_2", 8.0),
+            ("torque_ripple_period_2", 1.0e-3),
+            ("torque_ripple_phase_2", -0.3),
+            ("torque_ripple_amplitude_order_7", 4.0),
+        ]);
+        let order = RippleOrder {
+            per_rev: 7,
+            ..RippleOrder::default()
+        };
+        report.slow_ripple = Some(SlowRipple {
+            orders: vec![order],
+            ..SlowRipple::default()
+        });
+        let found = effects(&report, travel(0.0, 0.1));
+        let amplitudes: Vec<f64> = found.iter().map(|effect| parts(effect)[0].1).collect();
+        assert_eq!(amplitudes, [30.0, 8.0, 4.0]);
+        let order = ("torque_ripple_order".to_owned(), 7.0);
+        assert_eq!(parts(&found[2])[1], order);
+    }
+}
