@@ -18,12 +18,10 @@
 mod define;
 mod dimension;
 mod estimate;
-mod parameter;
 mod serde_form;
 pub mod vocabulary;
 
 pub use dimension::Dimension;
 pub use estimate::Estimate;
-pub use parameter::{Parameter, ParameterError};
 pub use serde_form::EffectTable;
 pub use vocabulary::*;

@@ -18,8 +18,7 @@ use serde::de::{self, DeserializeSeed, MapAccess, SeqAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::parameter::{Parameter, ParameterError};
-use crate::vocabulary::{Effect, EffectName};
+use crate::vocabulary::{Effect, EffectName, Parameter, ParameterError};
 
 impl Serialize for EffectName {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -7,12 +7,15 @@
 //! effect that changes friction says so in shares of it, so that it keeps its meaning when the
 //! level changes.
 
+mod parameter;
+
 use std::fmt;
 use std::str::FromStr;
 
 use crate::define::vocabulary;
 use crate::dimension::Dimension;
-use crate::parameter::Parameter;
+
+pub use parameter::{Parameter, ParameterError};
 
 /// Where an effect acts, and so where a record shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

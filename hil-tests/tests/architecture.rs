@@ -4,11 +4,8 @@
 //! of functions.
 
 use hil_tests::architecture::crates::{self, Member};
+use hil_tests::architecture::shape::Shape;
 use hil_tests::architecture::{Graph, Sources, rooms, workspace};
-
-/// Crates whose circles are still open. In `servo` a set of parameters and the conversion of the
-/// set name each other.
-const OPEN: [&str; 3] = ["axis-model", "identification", "servo"];
 
 fn members() -> Vec<Member> {
     crates::members(&workspace()).unwrap()
@@ -37,9 +34,7 @@ fn no_crate_and_no_folder_uses_one_that_uses_it() {
 #[test]
 fn no_file_uses_one_that_uses_it() {
     for member in members() {
-        if !OPEN.contains(&&*member.name) {
-            assert_no_circle(&member.name, &sources(&member).uses());
-        }
+        assert_no_circle(&member.name, &sources(&member).uses());
     }
 }
 
@@ -65,4 +60,31 @@ fn the_search_sees_the_files_and_their_uses() {
     assert!(uses("workbench") > 60, "{}", uses("workbench"));
     assert!(uses("plant-sim") > 10, "{}", uses("plant-sim"));
     assert!(crates::between_crates(&members).edges().count() > 20);
+}
+
+/// Lines of a function that 95 % do not exceed, and that none does.
+const LENGTH: [usize; 2] = [30, 60];
+/// Functions that are to be taken apart still.
+const TOO_LONG: [&str; 3] = ["named", "slow_ripple", "axis"];
+
+#[test]
+fn functions_fit_a_screen() {
+    for name in ["identification", "workbench"] {
+        let mut shape = Shape::of(&workspace().join(name)).unwrap();
+        assert!(
+            shape.functions.len() > 300,
+            "{name}: {}",
+            shape.functions.len()
+        );
+        let p95 = shape.length_at(0.95);
+        assert!(
+            p95 <= LENGTH[0],
+            "{name}: {p95} lines at the 95th percentile"
+        );
+        shape
+            .functions
+            .retain(|function| !TOO_LONG.contains(&&*function.name));
+        let longest = shape.longest().unwrap();
+        assert!(longest.lines <= LENGTH[1], "{name}: {longest:?}");
+    }
 }

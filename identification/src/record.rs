@@ -1,7 +1,7 @@
 //! Records in: dataset and CSV or bus log, checked, on one time base.
 //!
 //! ```text
-//! dataset.toml ─▶ form ─▶ key_slips (notes)
+//! dataset.toml ─▶ form (and its slips of the pen)
 //! train.csv    ─▶ table ──▶┐
 //! train.log    ─▶ bus_log ─▶┴ reading ─▶ checks ─▶ time_base ─▶ samples
 //!                                       samples ─▶ dataset ─▶ excerpt (of a long record)
@@ -13,7 +13,6 @@ pub(crate) mod dataset;
 pub(crate) mod excerpt;
 pub(crate) mod extent;
 pub(crate) mod form;
-pub(crate) mod key_slips;
 pub(crate) mod reading;
 pub(crate) mod samples;
 pub(crate) mod source;

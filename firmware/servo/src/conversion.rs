@@ -59,27 +59,30 @@ pub(crate) const SYNC_TIMEOUT_PERIODS: u64 = 5;
 /// 1 kHz, which stopped an axis; four once in a week.
 const HEARTBEAT_TIMEOUT_PERIODS: u64 = 450;
 
-/// The settings of a parameter set.
-///
-/// # Errors
-/// [`SetError`] where the values do not go together, or do not fit the machine units.
-pub fn settings(set: &ParameterSet) -> Result<Settings, SetError> {
-    let reading = Reading {
-        set,
-        period_us: u64::from(set.get(Parameter::CyclePeriod).unsigned_abs()),
-    };
-    reading.check_limits()?;
-    Ok(Settings {
-        period_us: set.get(Parameter::CyclePeriod).unsigned_abs(),
-        config: reading.config()?,
-        limits: reading.limits()?,
-        options: reading.options(),
-        brake: reading.brake()?,
-        preset: reading.preset(),
-        relation: reading.relation(),
-        way: reading.way()?,
-        rated_torque_mnm: set.get(Parameter::RatedTorque),
-    })
+impl ParameterSet {
+    /// The settings that the set describes, in machine units of its cycle time.
+    ///
+    /// # Errors
+    /// [`SetError`] where values that are fine one by one do not go together, or do not fit the
+    /// machine units.
+    pub fn settings(&self) -> Result<Settings, SetError> {
+        let reading = Reading {
+            set: self,
+            period_us: u64::from(self.get(Parameter::CyclePeriod).unsigned_abs()),
+        };
+        reading.check_limits()?;
+        Ok(Settings {
+            period_us: self.get(Parameter::CyclePeriod).unsigned_abs(),
+            config: reading.config()?,
+            limits: reading.limits()?,
+            options: reading.options(),
+            brake: reading.brake()?,
+            preset: reading.preset(),
+            relation: reading.relation(),
+            way: reading.way()?,
+            rated_torque_mnm: self.get(Parameter::RatedTorque),
+        })
+    }
 }
 
 /// A set that is being read at its cycle time.

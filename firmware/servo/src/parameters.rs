@@ -1,8 +1,6 @@
 //! A parameter set: one raw number for each row of the object table, in physical steps.
 
-use crate::conversion;
 use crate::objects::{DEFAULTS, PARAMETERS, Parameter};
-use crate::settings::Settings;
 
 /// One value per row of the object table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,15 +36,6 @@ impl ParameterSet {
         if let Some(place) = self.0.get_mut(parameter as usize) {
             *place = value;
         }
-    }
-
-    /// The settings that the set describes, in machine units of its cycle time.
-    ///
-    /// # Errors
-    /// [`SetError`] where values that are fine one by one do not go together, or do not fit the
-    /// machine units.
-    pub fn settings(&self) -> Result<Settings, SetError> {
-        conversion::settings(self)
     }
 
     /// Whether two sets read the encoders alike and run at the same cycle time: only such a set may

@@ -1,12 +1,13 @@
 //! `dataset.toml`: its form, and the ranges of its numbers.
 
+mod key_slips;
+
 use std::path::Path;
 
 use serde::Deserialize;
 
 use crate::error::IdentificationError;
 use crate::record::bus_log::BusForm;
-use crate::record::key_slips;
 use crate::record::source::Mapping;
 use crate::record::units::{AxisKind, EffortHold};
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::record::form::{NUMBERS, section};
+use super::{NUMBERS, section};
 
 /// Keys that mean something and are no numbers, by section.
 const OTHER_KEYS: [(&str, &[&str]); 4] = [

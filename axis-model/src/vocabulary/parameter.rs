@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use super::EffectName;
 use crate::dimension::Dimension;
-use crate::vocabulary::EffectName;
 
 /// A row of the vocabulary.
 #[derive(Clone, Copy, Debug, PartialEq)]
