@@ -39,13 +39,16 @@ fn no_file_uses_one_that_uses_it() {
 }
 
 #[test]
-fn no_room_of_the_identification_uses_a_later_one() {
-    let members = members();
-    let member = members
-        .iter()
-        .find(|member| member.name == "identification");
-    let wrong = rooms::against_the_order(&sources(member.unwrap()), &rooms::IDENTIFICATION);
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+fn no_room_uses_a_later_one() {
+    for (name, order) in [
+        ("identification", &rooms::IDENTIFICATION[..]),
+        ("workbench", &rooms::WORKBENCH),
+    ] {
+        let members = members();
+        let member = members.iter().find(|member| member.name == name);
+        let wrong = rooms::against_the_order(&sources(member.unwrap()), order);
+        assert!(wrong.is_empty(), "{name}:\n{}", wrong.join("\n"));
+    }
 }
 
 /// A search that finds no file or no use would find no circle either.

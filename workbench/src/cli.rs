@@ -183,3 +183,28 @@ pub struct Servo {
     #[arg(long, hide = true, value_parser = fault_plan)]
     pub faults: Option<bus::FaultPlan>,
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn no_option_contradicts_another() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_machine_is_in_process_and_in_lock_step_unless_the_line_says_otherwise() {
+        let line = ["quadrant", "commission"];
+        let Command::Commission(commission) = Cli::try_parse_from(line).unwrap().command else {
+            panic!("another command");
+        };
+        let (machine, place) = commission.machine.machine_and_place().unwrap();
+        assert_eq!(machine.name, plant_sim::Machine::reference().name);
+        assert_eq!(place, crate::network::place::Place::InProcess);
+        let pace = commission.machine.pace.chosen();
+        assert_eq!(pace, crate::network::interfaces::DEFAULT_PACE);
+    }
+}

@@ -8,6 +8,30 @@ pub const IDENTIFICATION: [&str; 9] = [
     "error", "record", "motion", "model", "fit", "simulate", "evidence", "report", "identify",
 ];
 
+/// The floors of `workbench`, from the ground up: `commands` use everything.
+pub const WORKBENCH: [&str; 20] = [
+    "error",
+    "interrupt",
+    "progress",
+    "output_files",
+    "model_file",
+    "compensation",
+    "drive_parameters",
+    "network",
+    "trajectory",
+    "ballbar",
+    "session",
+    "axis_records",
+    "circle_test",
+    "tuning",
+    "presentation",
+    "console",
+    "commissioning",
+    "cli",
+    "commands",
+    "main",
+];
+
 /// Room of a file: the first name of its module, or the crate's name for `lib.rs`.
 fn room(file: &Source) -> &str {
     file.module.first().map_or("lib", |name| name)

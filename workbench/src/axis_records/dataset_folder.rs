@@ -90,3 +90,49 @@ fn dataset_toml(machine: &Machine, axis: &MachineAxis) -> String {
         axis.gains.position_gain_per_s,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::master::AxisCycle;
+
+    fn record() -> AxisRecord {
+        let row = |i: u32| (1.0e-3 * f64::from(i), AxisCycle::default());
+        AxisRecord {
+            rows: (0..100).map(row).collect(),
+        }
+    }
+
+    fn written(part: Part, broke_off: Option<&Failure>) -> (String, String) {
+        let machine = Machine::reference();
+        let path = tempfile::tempdir().unwrap();
+        let folder = DatasetFolder {
+            path: path.path(),
+            machine: &machine,
+            axis: &machine.axes[0],
+        };
+        folder.write(part, &record(), broke_off).unwrap();
+        let read = |name: &str| std::fs::read_to_string(path.path().join(name)).unwrap();
+        (read(part.file()), read("dataset.toml"))
+    }
+
+    #[test]
+    fn the_noise_of_a_part_is_its_own_and_comes_again_with_the_same_seed() {
+        let (train, _) = written(Part::Train, None);
+        assert_eq!(train.lines().count(), 101);
+        assert_eq!(train, written(Part::Train, None).0);
+        assert_ne!(train, written(Part::Validate, None).0);
+    }
+
+    #[test]
+    fn a_dataset_says_that_its_record_broke_off_and_is_a_dataset_all_the_same() {
+        let why = Failure::new("axis Y: no torque");
+        let (_, toml) = written(Part::Train, Some(&why));
+        assert!(
+            toml.starts_with("# train.csv broke off: axis Y: no torque\n"),
+            "{toml}"
+        );
+        let form: toml::Table = toml.parse().unwrap();
+        assert_eq!(form["effort_hold"].as_str(), Some("zero-order"));
+    }
+}

@@ -69,3 +69,37 @@ pub fn hysteresis_um(counter_clockwise: &[Point], clockwise: &[Point], radius_m:
     both.map(|(a, b)| (a.0 / f64::from(a.1) - b.0 / f64::from(b.1)).abs())
         .fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn circle_about(center_m: [f64; 2]) -> Vec<Point> {
+        let point = |i: u32| {
+            let angle_rad = TAU * f64::from(i) / 3600.0;
+            let (sin, cos) = angle_rad.sin_cos();
+            let at = [center_m[0] + 0.1 * sin, center_m[1] - 0.1 * cos];
+            Point {
+                angle_rad,
+                table_m: at,
+                motor_m: at,
+                reference_m: at,
+            }
+        };
+        (0..3600).map(point).collect()
+    }
+
+    #[test]
+    fn a_round_path_beside_the_nominal_centre_is_round_all_the_same() {
+        let beside = circle_about([3.0e-6, -2.0e-6]);
+        assert!(circular_deviation_um(&beside) < 1.0e-6);
+        let [x_m, y_m] = least_squares_center(&beside).unwrap();
+        assert!((x_m - 3.0e-6).abs() < 1.0e-12 && (y_m + 2.0e-6).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn a_path_without_points_has_no_centre_and_no_deviation() {
+        assert_eq!(least_squares_center(&[]), None);
+        assert_eq!(circular_deviation_um(&[]), 0.0);
+    }
+}

@@ -32,3 +32,30 @@ pub(super) fn step_um(points: &[Point], axis: usize, radius_m: f64) -> f64 {
     };
     median(&bins.iter().filter_map(width).collect::<Vec<_>>())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    #[test]
+    fn a_table_that_hangs_behind_its_motor_by_half_a_gap_shows_the_gap_as_the_step_of_its_axis() {
+        let (radius_m, gap_m) = (0.1, 10.0e-6);
+        let point = |i: u32| {
+            let angle_rad = TAU * f64::from(i) / 5000.0;
+            let motor_m = [radius_m * angle_rad.sin(), -radius_m * angle_rad.cos()];
+            let behind = 0.5 * gap_m * angle_rad.cos().signum();
+            Point {
+                angle_rad,
+                table_m: [motor_m[0] - behind, motor_m[1]],
+                motor_m,
+                reference_m: motor_m,
+            }
+        };
+        let points: Vec<Point> = (0..10_000).map(point).collect();
+        let [x_um, y_um] = [0, 1].map(|axis| step_um(&points, axis, radius_m));
+        assert!((x_um - 10.0).abs() < 1.0e-3, "{x_um}");
+        assert!(y_um.abs() < 1.0e-6, "{y_um}");
+    }
+}
