@@ -5,4 +5,5 @@ pub(crate) mod blocks;
 pub(crate) mod fitted;
 pub(crate) mod plain;
 pub(crate) mod search;
+pub(crate) mod side_by_side;
 pub(crate) mod tuning;

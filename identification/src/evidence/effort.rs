@@ -14,6 +14,7 @@ use crate::evidence::thresholds::{
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
 use crate::fit::fitted::{Estimate, Fitted};
+use crate::fit::side_by_side::side_by_side;
 use crate::fit::tuning::{self, Pair};
 use crate::model::effects::load_inertia::LoadInertia;
 use crate::model::effects::{self, Effect, LIBRARY, Setting};
@@ -49,12 +50,15 @@ impl Output for Effort<'_> {
             residual: &residual,
         };
         let open = |effect: &&'static dyn Effect| effect.repeats() || !model.has(effect.called());
-        let candidate = |effect| {
-            let extended = tuning::extended(self.0, model, effect, &setting)?;
+        let candidate = |effect: &&'static dyn Effect| {
+            let extended = tuning::extended(self.0, model, *effect, &setting)?;
             Some(self.judged(model, &base, extended, round))
         };
-        let all = LIBRARY.into_iter().filter(open);
-        all.filter_map(candidate).collect()
+        let all: Vec<&'static dyn Effect> = LIBRARY.into_iter().filter(open).collect();
+        side_by_side(&all, candidate)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     fn accepts(&self, candidate: &Candidate<Model>) -> bool {

@@ -10,6 +10,7 @@ use crate::evidence::thresholds::{
     FEWEST_COUNTS, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
 };
 use crate::fit::fitted::Fitted;
+use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
@@ -119,7 +120,7 @@ impl Judge<'_> {
     }
 
     /// The best fit from the best of several starts.
-    fn best(&self, mut starts: Vec<Simulated>, count: usize) -> Option<Judged> {
+    fn best(&self, starts: &[Simulated], count: usize) -> Option<Judged> {
         let error = |model: &Simulated| {
             position_rms(
                 &simulate(model, &self.drive, self.record),
@@ -127,15 +128,14 @@ impl Judge<'_> {
                 &|row| self.is_fitted(row),
             )
         };
-        starts.sort_by_cached_key(|model| ordered(error(model)));
-        let fitted = starts.iter().take(count).map(|start| self.fitted(start));
+        let errors = side_by_side(starts, error);
+        let mut ranked: Vec<(f64, &Simulated)> = errors.into_iter().zip(starts).collect();
+        // What could not be simulated is no number, of either sign: it comes last.
+        ranked.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let best = ranked.into_iter().take(count);
+        let fitted = best.map(|(_, start)| self.fitted(start));
         fitted.min_by(|a, b| a.all.total_cmp(&b.all))
     }
-}
-
-/// A key that sorts like a non-negative number.
-const fn ordered(value: f64) -> u64 {
-    value.abs().to_bits()
 }
 
 /// Judges the reversals of a training record with an inverse model to start from; `None` where that
@@ -169,12 +169,12 @@ pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals>
             gap: None,
         })
     });
-    let bristle = judge.best(bristles.collect(), 1)?;
+    let bristle = judge.best(&bristles.collect::<Vec<_>>(), 1)?;
     let rounding = ROUNDING * dataset.resolution;
     let worth = rigid.all > VISIBLE_ROUNDINGS * rounding
         || bristle.held_out.min(bristle.all) < HELPS_RATIO * rigid.held_out.max(rigid.all);
     let gap = worth
-        .then(|| judge.best(gaps(unit, start), STARTS))
+        .then(|| judge.best(&gaps(unit, start), STARTS))
         .flatten();
     let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
     let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
@@ -260,12 +260,8 @@ impl Judge<'_> {
             .into_iter()
             .chain([gap.width()]);
         let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
-        self.best(
-            starts
-                .filter_map(|(width, share)| of(width, share))
-                .collect(),
-            1,
-        )
+        let starts = starts.filter_map(|(width, share)| of(width, share));
+        self.best(&starts.collect::<Vec<_>>(), 1)
     }
 
     /// What a bristle and a gap together add to one of them.

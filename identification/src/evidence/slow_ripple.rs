@@ -17,6 +17,7 @@ use crate::evidence::thresholds::{
 use crate::fit::bench::Bench;
 use crate::fit::blocks::Gain;
 use crate::fit::fitted::{Estimate, Fitted};
+use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::torque_ripple::TorqueRipple;
 use crate::model::inverse::{Model, Part};
 use crate::motion::excitation::reversals;
@@ -126,9 +127,9 @@ impl Output for SlowEffort<'_> {
         let (base, design) = (self.bench.cross_validate(model), self.bench.design(model));
         let parts = (1..=HIGHEST_ORDER).map(|order| self.part(order));
         let is_open = |part: &Part| !model.parts.iter().any(|known| known.is_same(part));
-        let open = parts.filter(is_open);
-        let judged = |part: Part| {
-            let blocks = self.bench.blocks(&self.bench.extended_once(&design, &part));
+        let open: Vec<Part> = parts.filter(is_open).collect();
+        let judged = |part: &Part| {
+            let blocks = self.bench.blocks(&self.bench.extended_once(&design, part));
             let scored = Scored {
                 effect: part.called(),
                 parameter: part.parameter,
@@ -139,10 +140,10 @@ impl Output for SlowEffort<'_> {
             };
             Candidate {
                 scored,
-                model: model.with(part),
+                model: model.with(part.clone()),
             }
         };
-        open.map(judged).collect()
+        side_by_side(&open, judged)
     }
 
     /// Only what both halves of the record agree about.

@@ -5,9 +5,8 @@
 //! linearised about an earlier fit (Gauss–Newton), so that blocks and cross-validation stay those
 //! of a linear fit.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::fitted::{Estimate, Fitted, Term};
@@ -26,7 +25,8 @@ pub(crate) struct Design {
     shift_rows: f64,
 }
 
-type Columns = Rc<Vec<Vec<f64>>>;
+type Columns = Arc<Vec<Vec<f64>>>;
+type Kept = HashMap<(Called, u64), Columns>;
 
 /// A record on which models are fitted; it keeps the low-passed columns of the terms that it has
 /// seen last.
@@ -35,7 +35,7 @@ pub(crate) struct Bench<'a> {
     pub dataset: &'a Dataset,
     /// The motion.
     pub motion: &'a Kinematics,
-    kept: RefCell<HashMap<(Called, u64), Columns>>,
+    kept: Mutex<Kept>,
 }
 
 /// Values that are kept before all are forgotten: 32 MB.
@@ -48,7 +48,7 @@ impl<'a> Bench<'a> {
         Self {
             dataset,
             motion,
-            kept: RefCell::default(),
+            kept: Mutex::default(),
         }
     }
 
@@ -67,20 +67,26 @@ impl<'a> Bench<'a> {
     /// Low-passed columns of a part.
     fn columns(&self, part: &Part) -> Columns {
         let key = (part.called(), part.parameter.to_bits());
-        if let Some(known) = self.kept.borrow().get(&key) {
-            return Rc::clone(known);
+        if let Some(known) = self.kept().get(&key) {
+            return Arc::clone(known);
         }
-        let columns: Columns = Rc::new(self.low_passed(part));
-        let mut kept = self.kept.borrow_mut();
-        let values: usize = kept
-            .values()
-            .map(|columns| columns.len() * self.motion.len())
-            .sum();
-        if values > KEPT_VALUES {
+        // The lock is free meanwhile: other candidates make theirs.
+        let columns: Columns = Arc::new(self.low_passed(part));
+        self.keep(key, Arc::clone(&columns));
+        columns
+    }
+
+    fn keep(&self, key: (Called, u64), columns: Columns) {
+        let mut kept = self.kept();
+        let count: usize = kept.values().map(|columns| columns.len()).sum();
+        if count * self.motion.len() > KEPT_VALUES {
             kept.clear();
         }
-        kept.insert(key, Rc::clone(&columns));
-        columns
+        kept.insert(key, columns);
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Rows by which the columns of a model are seen later.
@@ -229,7 +235,7 @@ impl<'a> Bench<'a> {
     /// Prediction that is not low-passed.
     #[must_use]
     pub(crate) fn predict(&self, fitted: &Fitted) -> Vec<f64> {
-        self.predicted(fitted, |part| Rc::new(self.raw(part)))
+        self.predicted(fitted, |part| Arc::new(self.raw(part)))
     }
 
     /// What the motor gives to the load side, but for its own mass: the delivered effort without

@@ -1,11 +1,12 @@
 //! One-dimensional searches for nonlinear parameters.
 
+use crate::fit::side_by_side::side_by_side;
+
 /// The value of least error.
 #[must_use]
-pub(crate) fn smallest(values: Vec<f64>, sse: &dyn Fn(f64) -> f64) -> Option<f64> {
-    values
+pub(crate) fn smallest(values: &[f64], sse: &(dyn Fn(f64) -> f64 + Sync)) -> Option<f64> {
+    side_by_side(values, |value| (sse(*value), *value))
         .into_iter()
-        .map(|value| (sse(value), value))
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, value)| value)
 }

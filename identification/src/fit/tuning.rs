@@ -103,7 +103,7 @@ pub(crate) fn extended(
     let inside = |k: &f64| !effect.is_tuned() || (*k >= bounds.0 && *k <= bounds.1);
     let grid = effect.grid(bench.motion, setting).into_iter();
     let grid = grid.filter(|k| inside(k) && is_new(bench, model, effect, *k));
-    let start = smallest(grid.collect(), &sse)?;
+    let start = smallest(&grid.collect::<Vec<f64>>(), &sse)?;
     let step = effect.first_step(bench.motion, start);
     let parameter = descend(start, step, bounds, &sse);
     Some(settled(bench, with(parameter), effect))
@@ -146,7 +146,7 @@ fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
         return;
     }
     let at = |parameter: f64| settled(bench, model.with_parameter(place, parameter), effect);
-    if let Some(best) = smallest(grid, &|parameter| bench.sse(&at(parameter))) {
+    if let Some(best) = smallest(&grid, &|parameter| bench.sse(&at(parameter))) {
         *model = at(best);
     }
 }

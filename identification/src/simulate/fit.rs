@@ -8,6 +8,7 @@ use super::drive::Drive;
 use super::model::{Entry, Simulated};
 use super::run::{SETTLING_ROWS, simulate};
 use crate::fit::blocks::Blocks;
+use crate::fit::side_by_side::side_by_side;
 use crate::record::samples::Record;
 
 /// Every so many rows is compared: positions are smooth.
@@ -51,24 +52,26 @@ impl Problem<'_> {
         DVector::from_iterator(self.rows.len(), self.rows.iter().map(error))
     }
 
-    /// Forward differences, central ones where the cost is jagged.
+    /// Forward differences, central ones where the cost is jagged; parameters side by side.
     fn jacobian_at(&self, at: &DVector<f64>) -> DMatrix<f64> {
         let here = self.residual_at(at);
-        let mut jacobian = DMatrix::zeros(self.rows.len(), at.len());
-        for (place, entry) in self.entries.iter().enumerate() {
-            let moved = |step: f64| {
-                let mut at = at.clone();
-                at[place] += step;
-                self.residual_at(&at)
-            };
-            let slope = if entry.is_jagged() {
-                (moved(entry.step) - moved(-entry.step)) / (2.0 * entry.step)
-            } else {
-                (moved(entry.step) - &here) / entry.step
-            };
-            jacobian.set_column(place, &slope);
+        let places: Vec<usize> = (0..self.entries.len()).collect();
+        let columns = side_by_side(&places, |place| self.slope_at(at, *place, &here));
+        DMatrix::from_columns(&columns)
+    }
+
+    fn slope_at(&self, at: &DVector<f64>, place: usize, here: &DVector<f64>) -> DVector<f64> {
+        let entry = &self.entries[place];
+        let moved = |step: f64| {
+            let mut at = at.clone();
+            at[place] += step;
+            self.residual_at(&at)
+        };
+        if entry.is_jagged() {
+            (moved(entry.step) - moved(-entry.step)) / (2.0 * entry.step)
+        } else {
+            (moved(entry.step) - here) / entry.step
         }
-        jacobian
     }
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn best_gap(apart: &Apart<'_>, ways: &[Way], count: f64) -> Way {
         restitution: RESTITUTIONS[0],
     };
     let widths = geometric(narrowest, 1.0e-3_f64.max(100.0 * narrowest), WIDTHS);
-    best.gap = smallest(widths, &|gap| sse(Trial { gap, ..best })).unwrap_or(narrowest);
+    best.gap = smallest(&widths, &|gap| sse(Trial { gap, ..best })).unwrap_or(narrowest);
     for step in WIDTH_STEPS {
         best = improved(best, step, narrowest, &sse);
     }
@@ -60,20 +60,23 @@ pub(crate) fn best_gap(apart: &Apart<'_>, ways: &[Way], count: f64) -> Way {
 }
 
 /// One parameter after the other.
-fn improved(mut best: Trial, step: f64, narrowest: f64, sse: &dyn Fn(Trial) -> f64) -> Trial {
+fn improved(
+    mut best: Trial,
+    step: f64,
+    narrowest: f64,
+    sse: &(dyn Fn(Trial) -> f64 + Sync),
+) -> Trial {
     best.gap = descend(best.gap, step * best.gap, (narrowest, f64::MAX), &|gap| {
         sse(Trial { gap, ..best })
     });
-    let tried = RESTITUTIONS.to_vec();
-    best.restitution = smallest(tried, &|restitution| {
+    best.restitution = smallest(&RESTITUTIONS, &|restitution| {
         sse(Trial {
             restitution,
             ..best
         })
     })
     .unwrap_or(best.restitution);
-    let tried = SHARES.to_vec();
-    best.share = smallest(tried, &|share| sse(Trial { share, ..best })).unwrap_or(best.share);
+    best.share = smallest(&SHARES, &|share| sse(Trial { share, ..best })).unwrap_or(best.share);
     best.restitution = descend(best.restitution, 0.1, (0.0, 0.99), &|restitution| {
         sse(Trial {
             restitution,

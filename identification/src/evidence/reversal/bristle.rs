@@ -32,7 +32,7 @@ pub(crate) fn state(position: &[f64], deflection: f64) -> Vec<f64> {
 pub(crate) fn best(observed: &Observed<'_>, unit: f64) -> (f64, Vec<f64>) {
     let left = |deflection: f64| rms(&error(observed, deflection), &observed.motion.slow);
     let grid = crate::model::effects::geometric(SMALLEST * unit, LARGEST * unit, 24);
-    let start = crate::fit::search::smallest(grid, &left).unwrap_or(unit);
+    let start = crate::fit::search::smallest(&grid, &left).unwrap_or(unit);
     let deflection = golden(start / 1.4, start * 1.4, &left);
     (deflection, error(observed, deflection))
 }
