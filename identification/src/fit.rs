@@ -3,6 +3,8 @@
 pub(crate) mod bench;
 pub(crate) mod blocks;
 pub(crate) mod fitted;
+#[cfg(test)]
+pub(crate) mod made;
 pub(crate) mod plain;
 pub(crate) mod search;
 pub(crate) mod side_by_side;

@@ -337,3 +337,203 @@ fn shifted(column: &[f64], by: f64) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{USUAL, axis, found, model, usual};
+    use axis_model::EffectName::{
+        self, Coulomb, Delay, Inertia, Offset, Stribeck, TorqueRipple, TorqueSaturation, Viscous,
+    };
+    use std::f64::consts::TAU;
+
+    const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
+
+    fn near(one: f64, other: f64, share: f64) -> bool {
+        (one - other).abs() <= share * other.abs()
+    }
+
+    #[test]
+    fn the_coefficients_that_made_an_effort_come_back_with_intervals_about_them() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let fitted = bench.fit(&model(&DECLARED));
+        let estimates = bench.estimates(&fitted);
+        for ((name, estimate), wanted) in DECLARED.iter().zip(&estimates).zip(USUAL) {
+            let (value, half) = estimate.own[0];
+            assert_eq!(fitted.of(*name), Some(&[value][..]));
+            assert!(near(value, wanted, 1.0e-3), "{name} {value}");
+            assert!(half > 0.0 && half < 0.01 * wanted.abs(), "{name} {half}");
+            assert_eq!(estimate.parameter_half_width, None);
+        }
+        assert!(bench.force_error_percent(&fitted) < 0.05);
+    }
+
+    #[test]
+    fn the_force_error_is_the_rms_of_what_is_left_over_that_of_the_effort() {
+        let axis = axis(|_, _| 50.0);
+        let half = Fitted::new(model(&[Offset]), &[49.0]);
+        assert!(near(axis.bench().force_error_percent(&half), 2.0, 1.0e-3));
+        let residual = axis.bench().residual(&half);
+        assert!(near(residual[3000], 1.0, 0.05), "{}", residual[3000]);
+    }
+
+    #[test]
+    fn a_delayed_effort_is_that_of_later_rows() {
+        let axis = axis(|motion, row| usual(motion, (row + 3).min(motion.len() - 1)));
+        let bench = axis.bench();
+        let late = |delay_s: f64| model(&DECLARED).with(found(Delay, delay_s));
+        let error = |delay_s| bench.force_error_percent(&bench.fit(&late(delay_s)));
+        assert!(error(3.0e-3) < 0.1, "{}", error(3.0e-3));
+        assert!(error(-3.0e-3) > 1.0 && error(2.5e-3) > 2.0 * error(3.0e-3));
+        let fitted = bench.fit(&late(3.0e-3));
+        let delay = &bench.estimates(&fitted)[4];
+        assert!(delay.own.is_empty());
+        let half = delay.parameter_half_width.unwrap();
+        assert!(half > 1.0e-9 && half < 1.0e-4, "{half}");
+    }
+
+    #[test]
+    fn a_signal_seen_later_is_interpolated_exactly_up_to_the_third_power() {
+        let cubic = |x: f64| 2.0 - x + 0.5 * x * x - 0.03 * x.powi(3);
+        let column: Vec<f64> = (0..40).map(|row| cubic(f64::from(row))).collect();
+        for by in [0.25, 1.75, -2.5] {
+            let later = shifted(&column, by);
+            for row in 5..35_u16 {
+                let wanted = cubic(f64::from(row) + by);
+                assert!((later[usize::from(row)] - wanted).abs() < 1.0e-9);
+            }
+        }
+        assert_eq!(shifted(&column, 0.0), column);
+        assert_eq!(shifted(&column[..3], 1.0), column[..3]);
+        // Beyond the ends it stays at the last value that can be interpolated.
+        assert_eq!(shifted(&column, 100.0)[39], column[37]);
+        assert_eq!(shifted(&column, -100.0)[0], column[1]);
+    }
+
+    #[test]
+    fn a_saturating_drive_is_linearised_about_the_fit_and_then_fits() {
+        let k = 2.0e-3;
+        let saturation = Saturation { per_effort: k };
+        let mut axis = axis(usual);
+        let wanted = axis.motion.effort_lp.clone();
+        axis.motion.effort_lp = wanted.iter().map(|q| saturation.commanded(*q)).collect();
+        let bench = axis.bench();
+        let ideal = bench.fit(&model(&DECLARED));
+        let mut saturated = model(&DECLARED).with(found(TorqueSaturation, k));
+        for _ in 0..4 {
+            let fitted = bench.fit(&saturated);
+            let own: Vec<Vec<f64>> = fitted.terms().map(|term| term.own.to_vec()).collect();
+            saturated
+                .parts
+                .iter_mut()
+                .zip(own)
+                .for_each(|(part, own)| part.about = own);
+        }
+        let fitted = bench.fit(&saturated);
+        assert!(near(fitted.of(Inertia).unwrap()[0], USUAL[0], 1.0e-3));
+        assert!(near(fitted.of(Coulomb).unwrap()[0], USUAL[2], 1.0e-2));
+        assert!(bench.force_error_percent(&fitted) < 0.1 * bench.force_error_percent(&ideal));
+        // What the motor gives is what was wanted.
+        let transmitted = bench.transmitted(&fitted);
+        let rows = 300..5700;
+        assert!(
+            rows.into_iter()
+                .all(|row| (transmitted[row] - wanted[row]).abs() < 1.0e-9)
+        );
+        let half = bench.estimates(&fitted)[4].parameter_half_width.unwrap();
+        assert!(half > 0.0 && half < 0.1 * k, "{half}");
+    }
+
+    #[test]
+    fn a_design_with_a_part_more_is_the_design_of_the_longer_model() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let mut short = model(&DECLARED)
+            .with(found(Delay, 1.5e-3))
+            .with(found(TorqueSaturation, 1.0e-3));
+        for (part, about) in short.parts.iter_mut().zip(USUAL) {
+            part.about = vec![about];
+        }
+        let part = found(Stribeck, 0.01);
+        let long = bench.design(&short.with(part.clone()));
+        let short = bench.design(&short);
+        for extended in [
+            bench.extended(&short, &part),
+            bench.extended_once(&short, &part),
+        ] {
+            assert_eq!(extended.columns, long.columns);
+            assert_eq!(extended.target, long.target);
+        }
+    }
+
+    #[test]
+    fn what_acts_on_the_motor_is_not_transmitted() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let ripple = model(&[Coulomb]).with(found(TorqueRipple, 100.0));
+        let fitted = Fitted::new(ripple, &[25.0, 3.0, 0.0]);
+        let transmitted = bench.transmitted(&fitted);
+        for row in [1000, 2500] {
+            let (effort, x) = (axis.motion.effort_lp[row], axis.motion.position_lp[row]);
+            let wanted = effort - 3.0 * (TAU * 100.0 * x).cos();
+            assert!((transmitted[row] - wanted).abs() < 0.05, "{row}");
+        }
+    }
+
+    #[test]
+    fn a_delay_and_the_effort_that_is_transmitted_go_opposite_ways() {
+        let axis = axis(|_, row| row as f64);
+        let late = Fitted::new(model(&[Offset]).with(found(Delay, 5.0e-3)), &[0.0]);
+        let transmitted = axis.bench().transmitted(&late);
+        assert!(
+            (transmitted[3000] - 2995.0).abs() < 0.1,
+            "{}",
+            transmitted[3000]
+        );
+    }
+
+    #[test]
+    fn the_interval_of_a_known_parameter_is_not_asked() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let fitted = bench.fit(&model(&DECLARED).with(found(TorqueRipple, 300.0)));
+        let both = |estimates: Vec<Estimate>| {
+            let ripple = estimates.into_iter().next_back().unwrap();
+            (ripple.own[0].1, ripple.parameter_half_width.is_some())
+        };
+        let (free, has_free) = both(bench.estimates(&fitted));
+        let (fixed, has_fixed) = both(bench.estimates_of_coefficients(&fitted));
+        assert!(has_free && !has_fixed && free > 0.0 && fixed > 0.0);
+    }
+
+    #[test]
+    fn a_prediction_that_is_not_low_passed_keeps_its_corners() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let fitted = Fitted::new(model(&[Coulomb]), &[25.0]);
+        let sharp = bench.predict(&fitted);
+        assert!(
+            sharp
+                .iter()
+                .all(|force| (force.abs() - 25.0).abs() < 1.0e-9)
+        );
+        let smooth = bench.predict_lp(&fitted);
+        assert!(smooth.iter().any(|force| force.abs() < 20.0));
+    }
+
+    #[test]
+    fn columns_are_kept_and_forgotten_without_another_result() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let with = |vs: f64| bench.sse(&model(&DECLARED).with(found(Stribeck, vs)));
+        let first = with(0.01);
+        // More than what is kept: 6000 rows each.
+        let many: Vec<f64> = (0..700).map(|i| 0.01 + 1.0e-5 * f64::from(i)).collect();
+        let part = |vs: &f64| bench.columns(&found(Stribeck, *vs)).len();
+        assert_eq!(many.iter().map(part).sum::<usize>(), 700);
+        let kept = bench.kept.borrow().len();
+        assert!(kept < 100, "{kept}");
+        assert_eq!(with(0.01), first);
+    }
+}

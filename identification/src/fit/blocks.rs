@@ -269,4 +269,130 @@ mod tests {
         let none = Blocks::new(&[&b], &target, &mask, 1.0e-3).cross_validate();
         assert!(Gain::of(&none, &after).share > 0.99);
     }
+
+    /// A gram of one column and a target, as if from one row each.
+    fn blocks(rows: &[(f64, f64)]) -> Blocks {
+        let gram =
+            |(x, y): &(f64, f64)| DMatrix::from_row_slice(2, 2, &[x * x, x * y, x * y, y * y]);
+        let grams: Vec<DMatrix<f64>> = rows.iter().map(gram).collect();
+        Blocks {
+            folds: grams.len(),
+            scale: vec![1.0, 1.0],
+            grams,
+        }
+    }
+
+    #[test]
+    fn each_block_is_predicted_from_the_others() {
+        // Slopes 2, 2 and 5 at x = 1: the third is predicted as 2, the others as 3.5.
+        let fit = blocks(&[(1.0, 2.0), (1.0, 2.0), (1.0, 5.0)]).cross_validate();
+        assert!((fit.coefficients[0] - 3.0).abs() < 1.0e-9);
+        let wanted = [2.25, 2.25, 9.0];
+        let pairs = fit.held_out.iter().zip(wanted);
+        assert!(
+            pairs
+                .into_iter()
+                .all(|(left, wanted)| (left - wanted).abs() < 1.0e-9)
+        );
+        assert!((fit.sse - 6.0).abs() < 1.0e-9 && (fit.total - 33.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn half_widths_are_those_of_the_jackknife() {
+        // Without one block each: 3.5, 3.5, 2; mean 3, squares 1.5, times 2/3 is 1.
+        let widths = blocks(&[(1.0, 2.0), (1.0, 2.0), (1.0, 5.0)]).half_widths();
+        assert_eq!(widths.len(), 1);
+        assert!((widths[0] - 1.96).abs() < 1.0e-9, "{widths:?}");
+    }
+
+    #[test]
+    fn a_gain_is_share_size_and_t_of_what_blocks_lose() {
+        let fit = |held_out: &[f64]| Fit {
+            coefficients: Vec::new(),
+            sse: 0.0,
+            held_out: held_out.to_vec(),
+            total: 10_000.0,
+        };
+        let gain = Gain::of(&fit(&[4.0, 5.0, 6.0]), &fit(&[3.0, 3.0, 3.0]));
+        // Gains 1, 2, 3: mean 2, standard error 1/√3.
+        assert!((gain.removed - 6.0).abs() < 1.0e-12 && (gain.share - 0.4).abs() < 1.0e-12);
+        assert!((gain.percent - 100.0 * (6.0e-4_f64).sqrt()).abs() < 1.0e-12);
+        assert!((gain.t - 2.0 * 3.0_f64.sqrt()).abs() < 1.0e-12);
+        let loss = Gain::of(&fit(&[3.0, 3.0, 3.0]), &fit(&[4.0, 5.0, 6.0]));
+        assert!((loss.percent + gain.percent).abs() < 1.0e-12 && loss.t < 0.0);
+    }
+
+    #[test]
+    fn the_smaller_gain_has_the_smaller_share_and_t_and_keeps_its_size() {
+        let gain = |share, percent, t| Gain {
+            removed: share,
+            share,
+            percent,
+            t,
+        };
+        let smaller = gain(0.3, 1.0, 2.0).smaller(&gain(0.1, 9.0, 5.0));
+        assert_eq!(
+            smaller,
+            Gain {
+                removed: 0.3,
+                ..gain(0.1, 1.0, 2.0)
+            }
+        );
+        let smaller = gain(0.3, 1.0, 5.0).smaller(&gain(0.4, 9.0, 2.0));
+        assert_eq!((smaller.share, smaller.t), (0.3, 2.0));
+    }
+
+    #[test]
+    fn two_blocks_have_no_standard_error_and_three_have() {
+        assert_eq!(t_of(&[1.0, 1.1]), 0.0);
+        assert!((t_of(&[1.0, 2.0, 6.0]) - 3.0 / (7.0_f64 / 3.0).sqrt()).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn samples_within_twenty_milliseconds_of_the_end_of_a_second_are_not_used() {
+        let rows = 10_000;
+        let (ones, mask) = (vec![1.0; rows], vec![true; rows]);
+        let at = |rows: &[usize]| {
+            let mut target = vec![1.0; 10_000];
+            rows.iter().for_each(|row| target[*row] = 1000.0);
+            Blocks::new(&[&ones], &target, &mask, 1.0e-3)
+                .fit()
+                .coefficients[0]
+        };
+        assert!((at(&[0, 19, 980, 999, 1000, 9980]) - 1.0).abs() < 1.0e-9);
+        for row in [20, 979, 1020] {
+            assert!(at(&[row]) > 1.1, "{row}");
+        }
+    }
+
+    #[test]
+    fn a_mask_leaves_samples_out_and_an_empty_block_is_none() {
+        let rows = 3000;
+        let ones = vec![1.0; rows];
+        let target: Vec<f64> = (0..rows)
+            .map(|row| if row < 1500 { 1.0 } else { 3.0 })
+            .collect();
+        let mask: Vec<bool> = (0..rows).map(|row| row < 1500).collect();
+        let fit = Blocks::new(&[&ones], &target, &mask, 1.0e-3).cross_validate();
+        assert!((fit.coefficients[0] - 1.0).abs() < 1.0e-9);
+        // Blocks of a tenth of the record: five of ten have samples.
+        assert_eq!(fit.held_out.len(), 5);
+    }
+
+    #[test]
+    fn a_column_of_zeros_gets_no_coefficient_and_equal_columns_share() {
+        let rows = 3000;
+        let (ones, zeros) = (vec![1.0; rows], vec![0.0; rows]);
+        let mask = vec![true; rows];
+        let fit = Blocks::new(&[&ones, &zeros, &ones], &ones, &mask, 1.0e-3).fit();
+        assert!(fit.coefficients[1].abs() < 1.0e-6);
+        assert!((fit.coefficients[0] + fit.coefficients[2] - 1.0).abs() < 1.0e-6);
+        assert!((fit.coefficients[0] - fit.coefficients[2]).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_column_that_overflows_is_no_perfect_fit() {
+        let gram = DMatrix::from_element(2, 2, f64::INFINITY);
+        assert_eq!(left(&gram, &DVector::from_element(1, 1.0)), f64::MAX);
+    }
 }

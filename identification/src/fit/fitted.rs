@@ -133,3 +133,83 @@ impl Estimate {
         self.own.iter().any(|(value, half)| value.abs() > *half)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{found, model};
+    use EffectName::{Coulomb, Delay, FrictionDrift, Inertia, Viscous};
+
+    /// One column, none, two, one.
+    fn mixed() -> Fitted {
+        let mixed = model(&[Inertia])
+            .with(found(Delay, 0.002))
+            .with(found(FrictionDrift, 7.0))
+            .with(found(Coulomb, 0.0));
+        Fitted::new(mixed, &[90.0, 3.0, 4.0, 25.0])
+    }
+
+    #[test]
+    fn each_part_has_the_coefficients_of_its_own_columns() {
+        let fitted = mixed();
+        let own: Vec<&[f64]> = fitted.terms().map(|term| term.own).collect();
+        assert_eq!(own, [&[90.0][..], &[], &[3.0, 4.0], &[25.0]]);
+        assert_eq!(fitted.of(Coulomb), Some(&[25.0][..]));
+        assert_eq!(fitted.of(FrictionDrift), Some(&[3.0, 4.0][..]));
+        assert_eq!(fitted.of(Viscous), None);
+    }
+
+    #[test]
+    fn a_part_alone_keeps_its_coefficients_and_its_parameter() {
+        let fitted = mixed();
+        let drift = fitted.terms().nth(2).unwrap().alone();
+        assert_eq!(drift.of(FrictionDrift), Some(&[3.0, 4.0][..]));
+        assert_eq!(drift.model().parts[0].parameter, 7.0);
+        assert_eq!(drift.terms().count(), 1);
+    }
+
+    #[test]
+    fn half_widths_go_to_the_columns_in_order_and_to_parameters_by_place() {
+        let estimates = mixed().estimates(&[1.0, 0.3, 0.4, 2.5], |place| {
+            (place == 1).then_some(1.0e-4)
+        });
+        assert_eq!(estimates[0].own, [(90.0, 1.0)]);
+        assert_eq!(estimates[2].own, [(3.0, 0.3), (4.0, 0.4)]);
+        assert_eq!(estimates[3].own, [(25.0, 2.5)]);
+        let widths: Vec<Option<f64>> = estimates
+            .iter()
+            .map(|estimate| estimate.parameter_half_width)
+            .collect();
+        assert_eq!(widths, [None, Some(1.0e-4), None, None]);
+    }
+
+    #[test]
+    fn an_estimate_is_certain_where_one_of_its_intervals_excludes_zero() {
+        let estimate = |own: &[(f64, f64)], parameter_half_width| Estimate {
+            part: found(Delay, 0.002),
+            own: own.to_vec(),
+            parameter_half_width,
+        };
+        for (own, half_width, certain) in [
+            (&[(3.0, 3.0)][..], None, false),
+            (&[(-3.0, 2.9)], None, true),
+            (&[(0.1, 3.0), (4.0, 3.9)], None, true),
+            // Columns count, not the parameter, where there are columns.
+            (&[(0.1, 3.0)], Some(1.0e-9), false),
+            (&[], Some(0.0019), true),
+            (&[], Some(0.002), false),
+            (&[], None, false),
+        ] {
+            let one = estimate(own, half_width);
+            assert_eq!(one.is_certain(), certain, "{own:?} {half_width:?}");
+        }
+    }
+
+    #[test]
+    fn another_parameter_leaves_the_coefficients_as_they_are() {
+        let moved = mixed().with_parameter(1, 0.003);
+        assert_eq!(moved.model().delay_s(), 0.003);
+        assert_eq!(moved.of(Inertia), Some(&[90.0][..]));
+        assert_eq!(moved.into_model().parts.len(), 4);
+    }
+}

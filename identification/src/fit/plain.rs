@@ -36,3 +36,18 @@ impl Plain {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{USUAL, axis, usual};
+
+    #[test]
+    fn the_usual_axis_has_the_usual_parameters() {
+        let plain = Plain::fit(&axis(usual).motion);
+        let found = [plain.inertia, plain.viscous, plain.coulomb];
+        for (found, wanted) in found.into_iter().zip(USUAL) {
+            assert!((found / wanted - 1.0).abs() < 1.0e-3, "{found} {wanted}");
+        }
+    }
+}

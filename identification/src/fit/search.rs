@@ -59,3 +59,58 @@ pub(crate) fn golden(mut low: f64, mut high: f64, error: &dyn Fn(f64) -> f64) ->
     }
     0.5 * (low + high)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+
+    #[test]
+    fn the_value_of_least_error_is_the_smallest() {
+        let error = |value: f64| (value - 2.2).powi(2);
+        assert_eq!(smallest(vec![4.0, 2.0, 3.0], &error), Some(2.0));
+        assert_eq!(smallest(Vec::new(), &error), None);
+    }
+
+    #[test]
+    fn a_descent_reaches_the_bottom_to_a_thirty_second_of_its_step() {
+        for bottom in [1.3, -0.7] {
+            let found = descend(0.0, 0.5, (-10.0, 10.0), &|value| (value - bottom).abs());
+            assert!((found - bottom).abs() <= 0.5 / 32.0, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_descent_takes_twelve_steps_of_a_size_and_no_step_of_zero() {
+        let far = |value: f64| (value - 1.0e6).abs();
+        // 12 steps of 1, 1/2, 1/4, 1/8, 1/16, 1/32.
+        let found = descend(0.0, 1.0, (-1.0e9, 1.0e9), &far);
+        assert!(
+            (found - 12.0 * (2.0 - 1.0 / 32.0)).abs() < 1.0e-12,
+            "{found}"
+        );
+        assert_eq!(descend(3.0, 0.0, (-1.0e9, 1.0e9), &far), 3.0);
+    }
+
+    #[test]
+    fn a_descent_stays_within_its_bounds_and_may_stand_on_them() {
+        let tried = RefCell::new(Vec::new());
+        let error = |value: f64| {
+            tried.borrow_mut().push(value);
+            value
+        };
+        assert_eq!(descend(1.0, 0.5, (0.0, 1.5), &error), 0.0);
+        let down = |value: f64| -value;
+        assert_eq!(descend(1.0, 0.5, (0.0, 1.5), &down), 1.5);
+        let inside = |value: &f64| (0.0..=1.5).contains(value);
+        assert!(tried.borrow().iter().all(inside));
+    }
+
+    #[test]
+    fn the_golden_section_is_within_one_part_in_three_hundred() {
+        for bottom in [0.9, 2.0, 3.95] {
+            let found = golden(0.5, 4.0, &|value| (value - bottom).powi(2));
+            assert!((found - bottom).abs() < 3.5 / 300.0, "{found} {bottom}");
+        }
+    }
+}

@@ -175,3 +175,164 @@ fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
     let best = descend(parameter, step, effect.bounds(bench.motion), &sse);
     *model = at(best);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{USUAL, axis, found, model, usual};
+    use crate::model::effects::find;
+    use crate::motion::kinematics::Kinematics;
+    use axis_model::EffectName::{
+        self, Coulomb, Delay, FrictionDrift, Inertia, Offset, Stribeck, TorqueRipple,
+        TorqueSaturation, Viscous,
+    };
+    use std::f64::consts::TAU;
+
+    const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
+
+    /// The best parameter of an effect beside the declared ones, both cut-offs the same.
+    fn best(name: EffectName, law: impl Fn(&Kinematics, usize) -> f64) -> Option<f64> {
+        let axis = axis(law);
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let declared = model(&DECLARED);
+        let residual = bench.residual(&bench.fit(&declared));
+        let setting = Setting {
+            dataset: &axis.dataset,
+            residual: &residual,
+        };
+        let extended = extended(pair, &declared, find(name).unwrap(), &setting)?;
+        Some(extended.parts.last()?.parameter)
+    }
+
+    #[test]
+    fn a_nonlinear_parameter_is_found_within_a_few_percent() {
+        let stribeck = |motion: &Kinematics, row: usize| {
+            let fall = (-(motion.velocity_lp[row] / 0.02).powi(2)).exp();
+            usual(motion, row) + 8.0 * motion.direction[row] * fall
+        };
+        let vs = best(Stribeck, stribeck).unwrap();
+        assert!((vs / 0.02 - 1.0).abs() < 0.03, "{vs}");
+        let ripple = |motion: &Kinematics, row: usize| {
+            usual(motion, row) + 3.0 * (TAU * 400.0 * motion.position_lp[row]).cos()
+        };
+        let k = best(TorqueRipple, ripple).unwrap();
+        assert!((k / 400.0 - 1.0).abs() < 1.0e-3, "{k}");
+    }
+
+    #[test]
+    fn a_delay_is_found_with_its_sign() {
+        for rows in [2_usize, 4] {
+            let late =
+                |motion: &Kinematics, row: usize| usual(motion, (row + rows).min(motion.len() - 1));
+            let delay_s = best(Delay, late).unwrap();
+            assert!((delay_s - 1.0e-3 * rows as f64).abs() < 2.0e-5, "{delay_s}");
+        }
+        let early = |motion: &Kinematics, row: usize| usual(motion, row.saturating_sub(1));
+        let delay_s = best(Delay, early).unwrap();
+        assert!((delay_s + 1.0e-3).abs() < 2.0e-5, "{delay_s}");
+    }
+
+    #[test]
+    fn a_saturation_is_found_with_its_working_point() {
+        let k = 3.0e-3;
+        let lost = |motion: &Kinematics, row: usize| {
+            let wanted = usual(motion, row);
+            wanted / (1.0 - k * wanted.abs())
+        };
+        let found = best(TorqueSaturation, lost).unwrap();
+        assert!((found / k - 1.0).abs() < 0.1, "{found}");
+    }
+
+    #[test]
+    fn a_linearised_model_stands_at_its_own_fit() {
+        let k = 2.0e-3;
+        let axis = axis(|motion, row| {
+            let wanted = usual(motion, row);
+            wanted / (1.0 - k * wanted.abs())
+        });
+        let bench = axis.bench();
+        let part = found(TorqueSaturation, k);
+        let start = model(&DECLARED).with(part.clone());
+        let settled = settled(&bench, start.clone(), part.effect);
+        for (part, wanted) in settled.parts.iter().zip(USUAL) {
+            assert!(
+                (part.about[0] / wanted - 1.0).abs() < 0.05,
+                "{}",
+                part.called()
+            );
+        }
+        assert!(bench.sse(&settled) < 0.1 * bench.sse(&start));
+        // What is linear needs no working point.
+        let linear = super::settled(&bench, start, find(Stribeck).unwrap());
+        assert!(linear.parts.iter().all(|part| part.about.is_empty()));
+    }
+
+    #[test]
+    fn a_second_ripple_must_have_another_period_but_a_second_kind_need_not() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let with = model(&DECLARED).with(found(TorqueRipple, 400.0));
+        let (low, high) = axis.motion.span();
+        let apart = 2.0 / (high - low);
+        let ripple = find(TorqueRipple).unwrap();
+        for (k, wanted) in [
+            (400.0, false),
+            (400.0 + 0.99 * apart, false),
+            (400.0 - 0.99 * apart, false),
+            (400.0 + 1.01 * apart, true),
+            (400.0 - 1.01 * apart, true),
+        ] {
+            assert_eq!(is_new(&bench, &with, ripple, k), wanted, "{k}");
+        }
+        assert!(is_new(&bench, &with, find(Stribeck).unwrap(), 400.0));
+    }
+
+    #[test]
+    fn declared_parameters_are_found_from_nothing_and_refined_together() {
+        let axis = axis(|motion, row| {
+            let later = (row + 2).min(motion.len() - 1);
+            let warm = 6.0 * (-motion.time_s[later] / 2.5).exp();
+            usual(motion, later) + warm * motion.direction[later]
+        });
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let mut declared = model(&DECLARED);
+        for (name, start) in [(FrictionDrift, 0.7), (Delay, 2.5e-4)] {
+            let part = Part::declared(find(name).unwrap(), start);
+            declared.parts.push(part);
+        }
+        prepare(pair, &mut declared);
+        let tau = declared.of(FrictionDrift).unwrap().parameter;
+        assert!((tau / 2.5 - 1.0).abs() < 0.1, "{tau}");
+        assert!(
+            (declared.delay_s() - 2.0e-3).abs() < 2.0e-5,
+            "{}",
+            declared.delay_s()
+        );
+    }
+
+    #[test]
+    fn the_cut_off_of_the_delay_search_is_thirty_hertz_or_that_of_the_fit() {
+        assert_eq!(delay_cutoff_hz(1.0e-3), 30.0);
+        assert!((delay_cutoff_hz(5.0e-3) - 20.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn only_a_delay_is_searched_at_the_lower_cut_off() {
+        let (axis, other) = (axis(usual), axis(usual));
+        let (bench, low) = (axis.bench(), other.bench());
+        let pair = Pair {
+            bench: &bench,
+            low: &low,
+        };
+        let is_low = |name| std::ptr::eq(pair.of(find(name).unwrap()), &raw const low);
+        assert!(is_low(Delay) && !is_low(TorqueSaturation) && !is_low(Stribeck));
+    }
+}
