@@ -188,3 +188,182 @@ pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
         model.clone()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, found, model, usual};
+    use EffectName::{
+        Coulomb, Delay, Inertia, Offset, QuadraticDrag, Stribeck, TorqueRipple, Viscous,
+        ViscousAsymmetry,
+    };
+
+    const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
+
+    /// An axis with 60 N s/m more in one direction than in the other.
+    fn asymmetric() -> Axis {
+        axis(|motion, row| usual(motion, row) + 60.0 * motion.velocity[row].abs())
+    }
+
+    fn kept(start: &Model, keeps: &dyn Fn(&Model, &Model) -> bool) -> Vec<&'static str> {
+        let mut model = start.clone();
+        prune(&mut model, keeps);
+        let parts = model.parts.iter();
+        parts.map(|part| part.called().as_str()).collect()
+    }
+
+    #[test]
+    fn only_what_was_found_is_asked_and_each_part_against_what_is_left() {
+        let full = model(&[Inertia, Coulomb])
+            .with(found(Delay, 1.0e-3))
+            .with(found(Stribeck, 0.01))
+            .with(found(TorqueRipple, 100.0));
+        assert_eq!(kept(&full, &|_, _| false), ["inertia", "coulomb"]);
+        assert_eq!(kept(&full, &|_, _| true).len(), 5);
+        // Forces are asked first, the delay last.
+        let three = |_: &Model, without: &Model| without.parts.len() < 3;
+        assert_eq!(kept(&full, &three), ["inertia", "coulomb", "delay"]);
+    }
+
+    #[test]
+    fn a_part_that_removes_nothing_goes_and_one_that_does_stays() {
+        let axis = asymmetric();
+        let mut full = model(&DECLARED)
+            .with(found(ViscousAsymmetry, 0.0))
+            .with(found(QuadraticDrag, 0.0));
+        remove(&axis.bench(), &mut full);
+        assert_eq!(full.found(), [ViscousAsymmetry]);
+    }
+
+    #[test]
+    fn what_another_record_contradicts_is_vetoed() {
+        let (axis, same, other) = (asymmetric(), asymmetric(), self::axis(usual));
+        let full = model(&DECLARED).with(found(ViscousAsymmetry, 0.0));
+        let left_after = |other: &Axis| {
+            let mut model = full.clone();
+            veto(&axis.bench(), &other.bench(), &mut model);
+            model.found().len()
+        };
+        assert_eq!((left_after(&same), left_after(&other)), (1, 0));
+    }
+
+    #[test]
+    fn what_is_put_in_is_found_and_nothing_else() {
+        let axis = asymmetric();
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let mut said = Vec::new();
+        let selection = select(pair, model(&DECLARED), &mut |text| {
+            said.push(text.to_owned());
+        });
+        assert_eq!(selection.found(), [ViscousAsymmetry]);
+        assert!(selection.nameless().is_empty());
+        assert!(
+            said[0].starts_with("viscous_asymmetry removes "),
+            "{said:?}"
+        );
+    }
+
+    fn candidate(effect: EffectName, share: f64, t: f64, physical: bool) -> Candidate<Model> {
+        Candidate {
+            scored: Scored {
+                effect: effect.into(),
+                parameter: 0.0,
+                gain: Gain {
+                    removed: 1.0,
+                    share,
+                    percent: 1.0,
+                    t,
+                },
+                physical,
+                accepted: false,
+                round: 0,
+            },
+            model: model(&DECLARED).with(found(effect, 0.0)),
+        }
+    }
+
+    #[test]
+    fn a_candidate_is_accepted_where_it_is_physical_enough_and_certain() {
+        let axis = asymmetric();
+        let bench = axis.bench();
+        let output = Effort(Pair {
+            bench: &bench,
+            low: &bench,
+        });
+        let accepts =
+            |effect, share, t, physical| output.accepts(&candidate(effect, share, t, physical));
+        assert!(accepts(ViscousAsymmetry, 0.06, 3.0, true));
+        assert!(!accepts(ViscousAsymmetry, 0.06, 3.0, false));
+        assert!(!accepts(ViscousAsymmetry, 0.04, 3.0, true));
+        // Below the certain t the interval is asked: one is there, the other is not.
+        assert!(accepts(ViscousAsymmetry, 0.5, 2.4, true));
+        let nothing = self::axis(usual);
+        let bench = nothing.bench();
+        let output = Effort(Pair {
+            bench: &bench,
+            low: &bench,
+        });
+        let doubtful = |t| candidate(QuadraticDrag, 0.5, t, true);
+        let interval = bench.estimates(&bench.fit(&doubtful(2.4).model));
+        assert_eq!(output.accepts(&doubtful(2.4)), interval[4].is_certain());
+        assert!(output.accepts(&doubtful(2.5)));
+    }
+
+    #[test]
+    fn a_structure_without_a_name_needs_a_larger_share() {
+        let axis = asymmetric();
+        let bench = axis.bench();
+        let output = Effort(Pair {
+            bench: &bench,
+            low: &bench,
+        });
+        let structure = |share| {
+            let mut candidate = candidate(ViscousAsymmetry, share, 5.0, true);
+            candidate.scored.effect = crate::model::name::Called::Structure("drifting force");
+            output.accepts(&candidate)
+        };
+        assert!(structure(0.15) && !structure(0.149));
+    }
+
+    #[test]
+    fn friction_that_is_not_in_the_model_limits_nothing() {
+        let own = |names: &[EffectName], coefficients: &[f64]| {
+            let with = model(names).with(found(Stribeck, 0.01));
+            let stribeck = found(Stribeck, 0.01).effect;
+            is_physical(stribeck, 0.01, &Fitted::new(with, coefficients))
+        };
+        assert!(own(&[Coulomb], &[10.0, 39.0]) && !own(&[Coulomb], &[10.0, 41.0]));
+        assert!(own(&[Viscous], &[10.0, 41.0]));
+    }
+
+    #[test]
+    fn the_loads_own_inertia_comes_in_where_it_lowers_the_error() {
+        let mut axis = axis(usual);
+        let wave = |row: usize| (0.31 * row as f64).sin();
+        let relative: Vec<f64> = (0..6000).map(|row| 0.4 * wave(row)).collect();
+        assert_eq!(
+            with_load_inertia(&axis.bench(), &model(&DECLARED))
+                .parts
+                .len(),
+            4
+        );
+        axis.motion.load_acceleration = Some(relative);
+        assert_eq!(
+            with_load_inertia(&axis.bench(), &model(&DECLARED))
+                .parts
+                .len(),
+            4
+        );
+        axis.put(|motion, row| {
+            usual(motion, row) + 30.0 * 0.4 * wave(row) * f64::from(motion.moving[row])
+        });
+        let with = with_load_inertia(&axis.bench(), &model(&DECLARED));
+        assert_eq!(with.parts.len(), 5);
+        let mass = axis.bench().fit(&with).terms().next_back().unwrap().own[0];
+        assert!((mass - 30.0).abs() < 3.0, "{mass}");
+    }
+}

@@ -354,7 +354,9 @@ mod tests {
         let (ones, mask) = (vec![1.0; rows], vec![true; rows]);
         let at = |rows: &[usize]| {
             let mut target = vec![1.0; 10_000];
-            rows.iter().for_each(|row| target[*row] = 1000.0);
+            for row in rows {
+                target[*row] = 1000.0;
+            }
             Blocks::new(&[&ones], &target, &mask, 1.0e-3)
                 .fit()
                 .coefficients[0]

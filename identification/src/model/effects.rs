@@ -326,3 +326,231 @@ pub(crate) fn geometric(low: f64, high: f64, count: u32) -> Vec<f64> {
         .map(|i| low * ratio.powi(i32::try_from(i).unwrap_or(0)))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{axis, usual};
+    use EffectName::{
+        Coulomb, Delay, FrictionDrift, Inertia, Offset, PositionDependentFriction, QuadraticDrag,
+        Stribeck, TorqueRipple, TorqueSaturation, Viscous, ViscousAsymmetry,
+    };
+    use std::f64::consts::PI;
+
+    /// A parameter at which each effect is tried.
+    fn parameter(effect: &dyn Effect) -> f64 {
+        match effect.called() {
+            Called::Effect(Stribeck) => 0.02,
+            Called::Effect(TorqueRipple) => 120.0,
+            Called::Effect(FrictionDrift) => 2.0,
+            Called::Structure("force over time") => 3.0,
+            Called::Effect(PositionDependentFriction) | Called::Structure(_) => 2.0,
+            Called::Effect(_) => 0.0,
+        }
+    }
+
+    #[test]
+    fn an_effect_is_the_same_force_in_the_fit_and_in_the_simulation() {
+        let axis = axis(usual);
+        let (motion, dataset) = (&axis.motion, &axis.dataset);
+        let (middle, half) = dataset.travel();
+        let force = |effect: &&&dyn Effect| effect.stage() == Stage::Force && !effect.is_mass();
+        for effect in LIBRARY.iter().filter(force) {
+            let parameter = parameter(*effect);
+            let columns = effect.columns(motion, dataset, parameter);
+            let own: Vec<f64> = (0..columns.len()).map(|i| 2.0 - 5.0 * i as f64).collect();
+            for row in [700, 1500, 3300] {
+                let at = Instant {
+                    position: motion.position_lp[row],
+                    scaled: (motion.position_lp[row] - middle) / half,
+                    velocity: motion.velocity_lp[row],
+                    time_s: motion.time_s[row],
+                    time_share: motion.time_s[row] / 6.0,
+                };
+                let Action { level, force } = effect.action(&at, parameter, &own);
+                let simulated = level * motion.direction[row] + force;
+                let pairs = columns.iter().zip(&own);
+                let fitted: f64 = pairs.map(|(column, own)| own * column[row]).sum();
+                let error = (fitted - simulated).abs();
+                assert!(error < 2.0e-3, "{} {fitted} {simulated}", effect.called());
+            }
+        }
+    }
+
+    #[test]
+    fn the_width_of_an_effect_is_the_number_of_its_columns() {
+        let axis = axis(usual);
+        for effect in LIBRARY {
+            for parameter in [0.5, 1.0, 2.0] {
+                let columns = effect.columns(&axis.motion, &axis.dataset, parameter);
+                assert_eq!(
+                    columns.len(),
+                    effect.width(parameter),
+                    "{}",
+                    effect.called()
+                );
+                assert!(
+                    columns
+                        .iter()
+                        .all(|column| column.len() == axis.motion.len())
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn each_name_stands_once_in_the_library() {
+        let names: std::collections::BTreeSet<Called> =
+            LIBRARY.iter().map(|effect| effect.called()).collect();
+        assert_eq!(names.len(), LIBRARY.len());
+        for effect in LIBRARY {
+            let found = find(effect.called()).unwrap();
+            assert_eq!(found.equation(), effect.equation());
+        }
+        assert!(find(EffectName::Backlash).is_none());
+    }
+
+    /// What an effect does at 0.05 m/s, 30 mm (u = 0.5) and 2 s, with coefficients 3 and 4.
+    fn at(name: EffectName, parameter: f64) -> (f64, f64) {
+        let at = Instant {
+            position: 0.030,
+            scaled: 0.5,
+            velocity: -0.05,
+            time_s: 2.0,
+            time_share: 0.25,
+        };
+        let Action { level, force } = find(name).unwrap().action(&at, parameter, &[3.0, 4.0]);
+        (level, force)
+    }
+
+    #[test]
+    fn each_effect_has_the_value_of_its_equation() {
+        let e = (-1.0_f64).exp();
+        let table = [
+            (Inertia, 0.0, (0.0, 0.0)),
+            (Coulomb, 0.0, (3.0, 0.0)),
+            (Viscous, 0.0, (0.0, -0.15)),
+            (Offset, 0.0, (0.0, 3.0)),
+            (ViscousAsymmetry, 0.0, (0.0, 0.15)),
+            (QuadraticDrag, 0.0, (0.0, -0.0075)),
+            (Stribeck, 0.05, (3.0 * e, 0.0)),
+            (FrictionDrift, 2.0, (3.0 * e, -0.2 * e)),
+            // 25 periods per metre: three quarters of one at 30 mm.
+            (TorqueRipple, 25.0, (0.0, -4.0)),
+            (PositionDependentFriction, 2.0, (2.5, 0.0)),
+        ];
+        for (name, parameter, wanted) in table {
+            let (level, force) = at(name, parameter);
+            let error = (level - wanted.0).abs().max((force - wanted.1).abs());
+            assert!(error < 1.0e-9, "{name}: {level} {force}");
+        }
+    }
+
+    fn named(name: EffectName, parameter: f64) -> Vec<Named> {
+        let axis = axis(|_, _| 0.0);
+        let naming = Naming {
+            parameter,
+            parameter_half_width: Some(0.1 * parameter),
+            coefficients: &[(3.0, 0.3), (4.0, 0.4)],
+            dataset: &Dataset {
+                lead_m_per_rev: Some(0.01),
+                ..axis.dataset
+            },
+        };
+        find(name).unwrap().parameters(&naming)
+    }
+
+    #[test]
+    fn parameters_have_the_names_and_units_that_reports_are_read_by() {
+        let units = |name, parameter| -> Vec<(String, String)> {
+            let named = named(name, parameter).into_iter();
+            named.map(|named| (named.name, named.unit)).collect()
+        };
+        let pair = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
+        assert_eq!(units(Inertia, 0.0), [pair("inertia", "N s2/m")]);
+        assert_eq!(units(Viscous, 0.0), [pair("viscous", "N s/m")]);
+        assert_eq!(units(Coulomb, 0.0), [pair("coulomb", "N")]);
+        assert_eq!(units(Offset, 0.0), [pair("offset", "N")]);
+        assert_eq!(
+            units(ViscousAsymmetry, 0.0),
+            [pair("viscous_asymmetry", "N s/m")]
+        );
+        assert_eq!(
+            units(QuadraticDrag, 0.0),
+            [pair("quadratic_drag", "N s2/m2")]
+        );
+        assert_eq!(units(Delay, 1.0e-3), [pair("delay", "s")]);
+        assert_eq!(
+            units(TorqueSaturation, 1.0e-3),
+            [pair("torque_saturation", "1/N")]
+        );
+        let stribeck = [
+            pair("stribeck_excess", "N"),
+            pair("stribeck_velocity", "m/s"),
+        ];
+        assert_eq!(units(Stribeck, 0.01), stribeck);
+    }
+
+    #[test]
+    fn a_ripple_has_amplitude_period_order_and_phase_with_their_intervals() {
+        // 3 cos + 4 sin = 5 sin(θ + atan2(3, 4)); 200 periods per metre, 10 mm per revolution.
+        let named = named(TorqueRipple, 200.0);
+        let wanted = [
+            ("torque_ripple_amplitude", 5.0, 0.5),
+            ("torque_ripple_period", 0.005, 0.0005),
+            ("torque_ripple_order", 2.0, 0.2),
+            ("torque_ripple_phase", 3.0_f64.atan2(4.0), 0.1),
+        ];
+        for (named, (name, value, half)) in named.iter().zip(wanted) {
+            assert_eq!(named.name, name);
+            assert!((named.value - value).abs() < 1.0e-12, "{named:?}");
+            assert!(
+                (named.half_width.unwrap() - half).abs() < 1.0e-12,
+                "{named:?}"
+            );
+        }
+        assert_eq!(named.len(), 4);
+        assert!(named[3].value.abs() < PI);
+    }
+
+    #[test]
+    fn what_cannot_be_its_effect_is_not_taken_for_it() {
+        let physical = |name, parameter, own: &[f64]| {
+            find(name).unwrap().is_physical(&Fitted {
+                parameter,
+                own,
+                coulomb: 10.0,
+                viscous: 100.0,
+            })
+        };
+        for (name, parameter, own, wanted) in [
+            (Stribeck, 0.01, &[39.9][..], true),
+            (Stribeck, 0.01, &[40.1], false),
+            (Stribeck, 0.01, &[-0.1], false),
+            (QuadraticDrag, 0.0, &[0.1], true),
+            (QuadraticDrag, 0.0, &[-0.1], false),
+            (Delay, 1.01e-4, &[], true),
+            (Delay, 0.99e-4, &[], false),
+            (Delay, -2.0e-3, &[], false),
+            (TorqueSaturation, 1.0e-6, &[], true),
+            (TorqueSaturation, 0.0, &[], false),
+            (TorqueRipple, 100.0, &[-1.0, 2.0], true),
+        ] {
+            assert_eq!(
+                physical(name, parameter, own),
+                wanted,
+                "{name} {parameter} {own:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_geometric_grid_has_both_ends_and_one_ratio() {
+        let grid = geometric(1.0e-3, 1.0, 4);
+        let wanted = [1.0e-3, 1.0e-2, 0.1, 1.0];
+        assert_eq!(grid.len(), 4);
+        for (value, wanted) in grid.iter().zip(wanted) {
+            assert!((value / wanted - 1.0).abs() < 1.0e-9, "{grid:?}");
+        }
+    }
+}

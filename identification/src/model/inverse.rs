@@ -184,3 +184,115 @@ impl Model {
         list
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{found, model};
+    use EffectName::{
+        Coulomb, CoulombAsymmetry, Delay, FrictionDrift, Inertia, Offset,
+        PositionDependentFriction, Presliding, Stribeck, TorqueRipple, TorqueSaturation, Viscous,
+    };
+
+    fn names(model: &Model) -> Vec<&'static str> {
+        let parts = model.parts.iter();
+        parts.map(|part| part.called().as_str()).collect()
+    }
+
+    #[test]
+    fn a_declared_model_has_the_columns_that_are_declared_in_the_order_of_the_library() {
+        let mut dataset = crate::fit::made::axis(|_, _| 0.0).dataset;
+        dataset.declared = vec![Stribeck, Coulomb, Inertia, Presliding];
+        let declared = Model::declared(&dataset);
+        assert_eq!(names(&declared), ["inertia", "coulomb", "stribeck"]);
+        assert!(
+            declared
+                .parts
+                .iter()
+                .all(|part| part.origin == Origin::Declared)
+        );
+        assert!(declared.found().is_empty());
+    }
+
+    #[test]
+    fn an_asymmetry_of_coulomb_friction_is_the_column_of_the_offset_and_comes_once() {
+        let mut dataset = crate::fit::made::axis(|_, _| 0.0).dataset;
+        for declared in [vec![CoulombAsymmetry], vec![Offset, CoulombAsymmetry]] {
+            dataset.declared = declared;
+            assert_eq!(names(&Model::declared(&dataset)), ["offset"]);
+        }
+    }
+
+    #[test]
+    fn declared_parameters_start_where_the_axis_is_likely_to_have_them() {
+        let mut dataset = crate::fit::made::axis(|_, _| 0.0).dataset;
+        dataset.declared = vec![
+            Stribeck,
+            FrictionDrift,
+            PositionDependentFriction,
+            TorqueRipple,
+            Delay,
+        ];
+        let start = |dataset: &Dataset, name| Model::declared(dataset).of(name).unwrap().parameter;
+        // Five times the moving velocity; 30 % of six seconds; linear.
+        assert!((start(&dataset, Stribeck) - 5.0e-3).abs() < 1.0e-12);
+        assert!((start(&dataset, FrictionDrift) - 1.8).abs() < 1.0e-3);
+        assert_eq!(start(&dataset, PositionDependentFriction), 1.0);
+        assert_eq!(start(&dataset, Delay), 2.5e-4);
+        // Once a revolution, where that is known.
+        assert_eq!(start(&dataset, TorqueRipple), 100.0);
+        dataset.lead_m_per_rev = Some(0.005);
+        assert_eq!(start(&dataset, TorqueRipple), 200.0);
+    }
+
+    #[test]
+    fn delay_and_saturation_are_parts_and_without_them_there_is_neither() {
+        let plain = model(&[Inertia]);
+        assert_eq!(plain.delay_s(), 0.0);
+        assert!(plain.saturation().is_ideal());
+        let full = plain
+            .with(found(Delay, 1.0e-3))
+            .with(found(TorqueSaturation, 2.0e-3));
+        assert_eq!(full.delay_s(), 1.0e-3);
+        assert_eq!(full.saturation().per_effort, 2.0e-3);
+        assert!(full.has(Delay) && !plain.has(Delay));
+        assert_eq!(
+            names(&full.without(&full.parts[1])),
+            ["inertia", "torque_saturation"]
+        );
+    }
+
+    #[test]
+    fn found_effects_come_once_in_the_order_in_which_they_came_in() {
+        let full = model(&[Inertia])
+            .with(found(Delay, 1.0e-3))
+            .with(found(TorqueRipple, 100.0))
+            .with(found(Stribeck, 0.01))
+            .with(found(TorqueRipple, 300.0));
+        assert_eq!(
+            full.found(),
+            [Delay, TorqueRipple, Stribeck].map(Called::from)
+        );
+        // Of two ripples one goes, by its period; the other keeps the name.
+        let one = full.without(&full.parts[2]);
+        assert_eq!(one.parts.len(), 4);
+        assert_eq!(one.of(TorqueRipple).unwrap().parameter, 300.0);
+    }
+
+    #[test]
+    fn parts_are_refined_from_the_forces_outwards() {
+        let full = model(&[TorqueSaturation, Delay, Viscous]).with(found(Stribeck, 0.01));
+        assert_eq!(full.outwards(), [2, 3, 1, 0]);
+    }
+
+    #[test]
+    fn another_parameter_leaves_the_other_parts_alone() {
+        let full = model(&[Inertia]).with(found(Stribeck, 0.01));
+        let moved = full.with_parameter(1, 0.02);
+        assert_eq!(
+            (full.parts[1].parameter, moved.parts[1].parameter),
+            (0.01, 0.02)
+        );
+        assert!(full.parts[0].is_same(&moved.parts[0]) && !full.parts[1].is_same(&moved.parts[1]));
+    }
+}

@@ -122,3 +122,58 @@ impl Effect for TorqueSaturation {
         vec![naming.nonlinear("torque_saturation", naming.parameter, unit)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: Saturation = Saturation { per_effort: 0.01 };
+
+    #[test]
+    fn commanded_and_delivered_effort_undo_each_other_on_both_sides_of_zero() {
+        for wanted in [-40.0, -1.0, 0.0, 25.0, 70.0] {
+            let back = LAW.delivered(LAW.commanded(wanted));
+            assert!((back - wanted).abs() < 1.0e-9, "{wanted} {back}");
+        }
+        // 50 N of 100 N are left at k = 1 %.
+        assert!((LAW.delivered(100.0) - 50.0).abs() < 1.0e-12);
+        assert!((LAW.commanded(-50.0) + 100.0).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn the_slope_is_the_derivative_of_the_commanded_effort() {
+        for wanted in [-60.0, 0.0, 30.0] {
+            let step = 1.0e-4;
+            let change = LAW.commanded(wanted + step) - LAW.commanded(wanted - step);
+            assert!((LAW.slope(wanted) - change / (2.0 * step)).abs() < 1.0e-4);
+        }
+    }
+
+    #[test]
+    fn beyond_four_fifths_the_inverse_does_not_run_away() {
+        assert!((LAW.commanded(200.0) - 1000.0).abs() < 1.0e-9);
+        assert!((LAW.slope(200.0) - 25.0).abs() < 1.0e-9);
+        assert!(!LAW.is_ideal() && Saturation::default().is_ideal());
+    }
+
+    #[test]
+    fn losses_of_the_largest_moving_effort_are_tried_and_bounded() {
+        let mut axis = crate::fit::made::axis(|_, _| 0.0);
+        axis.motion.effort_lp.fill(-20.0);
+        let unseen = axis
+            .motion
+            .fitted
+            .iter()
+            .position(|fitted| !fitted)
+            .unwrap();
+        axis.motion.effort_lp[unseen] = 500.0;
+        let setting = Setting {
+            dataset: &axis.dataset,
+            residual: &[],
+        };
+        let grid = TorqueSaturation.grid(&axis.motion, &setting);
+        assert!((grid[0] - 2.0e-4).abs() < 1.0e-12 && (grid[7] - 0.02).abs() < 1.0e-12);
+        let (low, high) = TorqueSaturation.bounds(&axis.motion);
+        assert!((low - 2.0e-5).abs() < 1.0e-12 && (high - 0.03).abs() < 1.0e-12);
+    }
+}
