@@ -532,7 +532,7 @@ mod tests {
         let many: Vec<f64> = (0..700).map(|i| 0.01 + 1.0e-5 * f64::from(i)).collect();
         let part = |vs: &f64| bench.columns(&found(Stribeck, *vs)).len();
         assert_eq!(many.iter().map(part).sum::<usize>(), 700);
-        let kept = bench.kept.borrow().len();
+        let kept = bench.kept().len();
         assert!(kept < 100, "{kept}");
         assert_eq!(with(0.01), first);
     }

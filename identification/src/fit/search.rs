@@ -68,8 +68,8 @@ mod tests {
     #[test]
     fn the_value_of_least_error_is_the_smallest() {
         let error = |value: f64| (value - 2.2).powi(2);
-        assert_eq!(smallest(vec![4.0, 2.0, 3.0], &error), Some(2.0));
-        assert_eq!(smallest(Vec::new(), &error), None);
+        assert_eq!(smallest(&[4.0, 2.0, 3.0], &error), Some(2.0));
+        assert_eq!(smallest(&[], &error), None);
     }
 
     #[test]
