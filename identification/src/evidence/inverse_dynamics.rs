@@ -110,3 +110,106 @@ impl InverseDynamics {
         }
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use axis_model::EffectName::{Coulomb, Inertia, Viscous};
+
+    use super::*;
+    use crate::record::samples::Record;
+    use crate::simulate::made;
+
+    pub(crate) const DEFLECTION_M: f64 = 2.0e-4;
+
+    /// 700 kg, 900 N·s/m and 300 N of friction, whose direction is the sign or a bristle.
+    pub(crate) fn record(deflection: Option<f64>) -> Record {
+        let bare = made::record(1.0e-3, made::two_sines(3000));
+        let motion = Kinematics::new(&declared(bare.clone()), &bare).unwrap();
+        let seen = deflection.map(|width| bristle::motion(&motion, width));
+        let direction = seen.map_or_else(|| motion.direction.clone(), |seen| seen.direction);
+        let effort = |row: usize| {
+            700.0 * motion.acceleration[row] + 900.0 * motion.velocity[row] + 300.0 * direction[row]
+        };
+        Record {
+            effort: (0..bare.len()).map(effort).collect(),
+            ..bare
+        }
+    }
+
+    pub(crate) fn declared(record: Record) -> Dataset {
+        Dataset {
+            declared: vec![Inertia, Viscous, Coulomb],
+            ..made::dataset(record, None)
+        }
+    }
+
+    fn fitted(dataset: &Dataset, motion: &Kinematics, deflection: Option<f64>) -> InverseDynamics {
+        let bench = Bench::new(dataset, motion);
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        InverseDynamics::fitted(pair, Model::declared(dataset), deflection)
+    }
+
+    fn assert_near(value: f64, wanted: f64, share: f64) {
+        assert!(
+            (value / wanted - 1.0).abs() < share,
+            "{value}, wanted {wanted}"
+        );
+    }
+
+    #[test]
+    fn each_friction_is_explained_by_its_own_structure_and_not_by_the_other() {
+        for of_the_record in [None, Some(DEFLECTION_M)] {
+            let dataset = declared(record(of_the_record));
+            let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+            for of_the_model in [None, Some(DEFLECTION_M)] {
+                let model = fitted(&dataset, &motion, of_the_model);
+                let left = model.on(&dataset, &motion);
+                let is_right = of_the_record == of_the_model;
+                let case = format!("{of_the_record:?} {of_the_model:?}");
+                assert_eq!(
+                    left.force_percent < 1.0e-6,
+                    is_right,
+                    "{case}: {}",
+                    left.force_percent
+                );
+                let again = model.force_error_percent(&dataset, &motion);
+                assert_eq!(again, left.force_percent, "{case}");
+                if is_right {
+                    assert_near(model.fitted.of(Coulomb).unwrap()[0], 300.0, 1.0e-6);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_structure_takes_the_coefficients_of_another_record_and_keeps_its_bristle() {
+        let dataset = declared(record(Some(DEFLECTION_M)));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let model = fitted(&dataset, &motion, Some(DEFLECTION_M));
+        let mut stronger = dataset.train.clone();
+        stronger.effort.iter_mut().for_each(|effort| *effort *= 2.0);
+        let motion = Kinematics::new(&dataset, &stronger).unwrap();
+        assert_near(model.force_error_percent(&dataset, &motion), 50.0, 1.0e-6);
+        let refitted = model.refitted(&dataset, &motion);
+        assert_eq!(refitted.deflection, Some(DEFLECTION_M));
+        assert_near(refitted.fitted.of(Inertia).unwrap()[0], 1400.0, 1.0e-6);
+        assert!(refitted.force_error_percent(&dataset, &motion) < 1.0e-6);
+    }
+
+    #[test]
+    fn residual_and_prediction_are_in_the_unit_of_the_effort_and_add_up() {
+        let dataset = declared(record(None));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let model = fitted(&dataset, &motion, None);
+        let mut pushed = dataset.train.clone();
+        pushed.effort.iter_mut().for_each(|effort| *effort += 7.0);
+        let motion = Kinematics::new(&dataset, &pushed).unwrap();
+        let left = model.on(&dataset, &motion);
+        let middle = motion.len() / 2;
+        assert_near(left.residual[middle], 7.0, 1.0e-6);
+        assert_near(motion.effort[middle] - left.prediction[middle], 7.0, 1.0e-6);
+    }
+}

@@ -63,3 +63,48 @@ impl ReversalStage {
         at_reversals::deflection(self.inverse.as_ref(), free_run)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::inverse_dynamics::tests::{DEFLECTION_M, declared, record};
+    use crate::model::inverse::Model;
+    use crate::motion::kinematics::Kinematics;
+
+    fn stage(deflection: Option<f64>, difference: Option<&Difference>) -> ReversalStage {
+        let dataset = declared(record(deflection));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let bench = Bench::new(&dataset, &motion);
+        let fitted = bench.fit(&Model::declared(&dataset));
+        ReversalStage::of(&bench, &fitted, difference)
+    }
+
+    #[test]
+    fn a_bristle_is_decided_with_its_deflection_and_the_free_run_takes_it_over() {
+        let stage = stage(Some(DEFLECTION_M), None);
+        assert!(stage.decided.presliding && !stage.decided.backlash);
+        let accepted = stage.accepted_shape().unwrap().accepted;
+        assert!(accepted.presliding && !accepted.backlash);
+        let deflection = stage.deflection().unwrap();
+        assert!(
+            (deflection / DEFLECTION_M - 1.0).abs() < 0.2,
+            "{deflection}"
+        );
+    }
+
+    #[test]
+    fn rigid_friction_is_no_effect_at_reversals() {
+        let stage = stage(None, None);
+        assert_eq!(stage.decided, AtReversals::default());
+        assert!(stage.accepted_shape().is_none());
+        assert!(stage.free_run_alone().is_some());
+    }
+
+    #[test]
+    fn with_a_load_scale_the_free_run_is_not_asked_for_the_deflection() {
+        let stage = stage(Some(DEFLECTION_M), Some(&Difference::default()));
+        assert!(stage.free_run.is_some() && stage.free_run_alone().is_none());
+        let inverse = stage.inverse.unwrap().deflection;
+        assert_eq!(stage.deflection(), Some(inverse));
+    }
+}
