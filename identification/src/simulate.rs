@@ -11,4 +11,5 @@ pub(crate) mod load;
 #[cfg(test)]
 pub(crate) mod made;
 pub(crate) mod model;
+pub(crate) mod parameters;
 pub(crate) mod run;

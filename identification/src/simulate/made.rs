@@ -1,5 +1,10 @@
 //! Records and datasets made for tests.
 
+use axis_model::EffectName;
+
+use crate::fit::fitted::Fitted;
+use crate::model::effects::find;
+use crate::model::inverse::{Model, Part};
 use crate::record::dataset::Dataset;
 use crate::record::form::ControllerForm;
 use crate::record::samples::Record;
@@ -47,4 +52,16 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
 pub(crate) fn two_sines(rows: u32) -> Vec<f64> {
     let path = |t: f64| 0.02 * (3.0 * t).sin() + 0.004 * (11.0 * t).sin();
     (0..rows).map(|row| path(1.0e-3 * f64::from(row))).collect()
+}
+
+/// A fitted model: effects with their nonlinear parameters and coefficients.
+pub(crate) fn fitted(parts: &[(EffectName, f64, &[f64])]) -> Fitted {
+    let part = |(name, parameter, _): &(EffectName, f64, &[f64])| {
+        Part::declared(find(*name).unwrap(), *parameter)
+    };
+    let model = Model {
+        parts: parts.iter().map(part).collect(),
+    };
+    let coefficients: Vec<f64> = parts.iter().flat_map(|(_, _, own)| own.to_vec()).collect();
+    Fitted::new(model, &coefficients)
 }

@@ -1,22 +1,33 @@
-//! An identified model, ready to be simulated, and its parameters as one vector.
+//! An identified model, ready to be simulated.
+//!
+//! ```text
+//! commanded u ─▶ [ u/(1 + k |u|) ] ─▶ motor ─▶ [ mechanics ] ◀─ load
+//!                                       ▲ ripple             ▲ friction level, other forces
+//! ```
+//!
+//! The inverse model gives forces by motion; here they act. Masses are in the mechanics' state, the
+//! delay in what holds the efforts ([`hold`](crate::simulate::hold)), the saturation on the effort.
+//! Its parameters as a table: [`parameters`](crate::simulate::parameters).
 
 use axis_model::EffectName;
 
-use super::axis::{Acting, Mechanics, Shape};
 use crate::fit::fitted::Fitted;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::effects::{Action, Instant, Stage};
 use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
+use crate::simulate::axis::{Acting, Mechanics, Shape};
 
 pub(crate) mod estimates;
 
 /// A force with its coefficients.
 #[derive(Clone)]
-pub(crate) struct Active {
-    part: Part,
-    own: Vec<f64>,
+pub(crate) struct Force {
+    /// Which effect, and its nonlinear parameter.
+    pub part: Part,
+    /// Coefficients of its columns.
+    pub own: Vec<f64>,
 }
 
 /// A model for free-run simulation.
@@ -24,36 +35,37 @@ pub(crate) struct Active {
 pub(crate) struct Simulated {
     /// Moved mass, and what makes a reversal.
     pub mechanics: Mechanics,
-    /// Terms other than the mass.
-    terms: Vec<Active>,
+    /// Forces.
+    pub forces: Vec<Force>,
     /// The actuator.
-    saturation: Saturation,
+    pub saturation: Saturation,
     /// Delay beyond the hold, s.
     pub delay_s: f64,
+    /// Middle and half of the travel of the training record.
     travel: (f64, f64),
+    /// Duration of the training record, s.
     duration_s: f64,
 }
 
-/// One entry of the parameter vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Entry {
-    /// Its size, for scaling.
-    pub scale: f64,
-    /// Step of the numerical derivative, in units of the scale.
-    pub step: f64,
-    /// Whether it stays positive.
-    pub positive: bool,
+/// A moment of a simulation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Moment {
+    /// Time since the start of the record, s.
+    pub time_s: f64,
+    /// Position of the motor.
+    pub position: f64,
+    /// Velocity of the load.
+    pub velocity: f64,
+    /// Commanded effort.
+    pub commanded: f64,
 }
 
-const STEP: f64 = 1.0e-3;
-/// The cost over a gap is jagged: contacts come and go with it.
-const JAGGED_STEP: f64 = 0.04;
-
-impl Entry {
-    /// Whether the cost over it is jagged.
-    #[must_use]
-    pub(crate) fn is_jagged(&self) -> bool {
-        self.step >= JAGGED_STEP
+/// Part of the delay of a record that the simulation has by itself, s. A simulated effort is held
+/// from its row on; an instantaneous record sees half a period of that as delay.
+const fn hold_s(hold: EffortHold, period_s: f64) -> f64 {
+    match hold {
+        EffortHold::Instant => 0.5 * period_s,
+        EffortHold::ZeroOrder => 0.0,
     }
 }
 
@@ -69,164 +81,173 @@ impl Simulated {
         let mass = *fitted.of(EffectName::Inertia)?.first()?;
         let is_force = |part: &Part| part.effect.stage() == Stage::Force && !part.effect.is_mass();
         let forces = fitted.terms().filter(|term| is_force(term.part));
-        let terms = forces.map(|term| Active {
+        let forces = forces.map(|term| Force {
             part: term.part.clone(),
             own: term.own.to_vec(),
         });
-        // A simulated effort is held from its row on; an instantaneous record sees half a period of
-        // that as delay.
-        let hold_s = if dataset.hold == EffortHold::Instant {
-            0.5 * period_s
-        } else {
-            0.0
-        };
-        let delay_s = (fitted.model().delay_s() - hold_s).max(0.0);
-        let saturation = fitted.model().saturation();
-        let duration_s = dataset.train.duration_s();
-        (mass > 0.0).then_some(Self {
+        let delay_s = fitted.model().delay_s() - hold_s(dataset.hold, period_s);
+        (mass > 0.0).then(|| Self {
             mechanics: Mechanics { mass, shape },
-            terms: terms.collect(),
-            saturation,
-            delay_s,
+            forces: forces.collect(),
+            saturation: fitted.model().saturation(),
+            delay_s: delay_s.max(0.0),
             travel: dataset.travel(),
-            duration_s,
+            duration_s: dataset.train.duration_s(),
         })
     }
 
-    /// What acts at an instant under a commanded effort.
+    fn instant(&self, now: Moment) -> Instant {
+        Instant {
+            position: now.position,
+            scaled: (now.position - self.travel.0) / self.travel.1,
+            velocity: now.velocity,
+            time_s: now.time_s,
+            time_share: now.time_s / self.duration_s,
+        }
+    }
+
+    /// What acts at a moment.
     #[must_use]
-    pub(crate) fn acting(
-        &self,
-        position: f64,
-        velocity: f64,
-        time_s: f64,
-        commanded: f64,
-    ) -> Acting {
-        let scaled = (position - self.travel.0) / self.travel.1;
-        let at = Instant {
-            position,
-            scaled,
-            velocity,
-            time_s,
-            time_share: time_s / self.duration_s,
-        };
-        let delivered = self.saturation.delivered(commanded);
-        let mut acting = Acting {
-            motor: delivered,
+    pub(crate) fn acting(&self, now: Moment) -> Acting {
+        let instant = self.instant(now);
+        let start = Acting {
+            motor: self.saturation.delivered(now.commanded),
             ..Acting::default()
         };
-        for Active { part, own } in &self.terms {
-            let Action { level, force } = part.effect.action(&at, part.parameter, own);
-            acting.level += level;
-            if part.effect.acts_on_motor() {
-                acting.motor -= force;
-            } else {
-                acting.load += force;
-            }
+        self.forces.iter().fold(start, |mut acting, force| {
+            let effect = force.part.effect;
+            let action = effect.action(&instant, force.part.parameter, &force.own);
+            acting.add(action, effect.acts_on_motor());
+            acting
+        })
+    }
+}
+
+impl Acting {
+    fn add(&mut self, action: Action, on_motor: bool) {
+        self.level += action.level;
+        if on_motor {
+            self.motor -= action.force;
+        } else {
+            self.load += action.force;
         }
-        acting
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::made;
+    use EffectName::{
+        Coulomb, Delay, FrictionDrift, Inertia, Offset, PositionDependentFriction, TorqueRipple,
+        TorqueSaturation, Viscous,
+    };
+
+    /// Positions from 1 m to 5 m over 10 s.
+    fn dataset() -> Dataset {
+        let positions = vec![1.0, 2.0, 3.0, 4.0, 5.0];
+        made::dataset(made::record(2.0, positions), None)
     }
 
-    /// The entries of the parameter vector.
-    #[must_use]
-    pub(crate) fn entries(&self) -> Vec<Entry> {
-        let coulomb = self
-            .terms
-            .iter()
-            .find(|active| active.part.is(EffectName::Coulomb));
-        let force = coulomb
-            .map_or(self.mechanics.mass, |active| active.own[0].abs())
-            .max(f64::MIN_POSITIVE);
-        let free = |scale: f64| Entry {
-            scale,
-            step: STEP,
-            positive: false,
+    fn model(parts: &[(EffectName, f64, &[f64])]) -> Option<Simulated> {
+        Simulated::new(&dataset(), 2.0, &made::fitted(parts), Shape::default())
+    }
+
+    const MASS: (EffectName, f64, &[f64]) = (Inertia, 0.0, &[90.0]);
+
+    #[test]
+    fn without_a_positive_mass_there_is_no_simulation() {
+        assert!(model(&[(Coulomb, 0.0, &[25.0])]).is_none());
+        assert!(model(&[(Inertia, 0.0, &[0.0])]).is_none());
+        assert!(model(&[(Inertia, 0.0, &[-90.0])]).is_none());
+        let simulated = model(&[MASS]).unwrap();
+        assert_eq!(
+            (simulated.mechanics.mass, simulated.forces.len()),
+            (90.0, 0)
+        );
+    }
+
+    #[test]
+    fn friction_is_a_level_and_forces_act_against_positive_motion_on_the_load() {
+        let parts = [
+            MASS,
+            (Coulomb, 0.0, &[25.0]),
+            (Viscous, 0.0, &[200.0]),
+            (Offset, 0.0, &[3.0]),
+        ];
+        let now = Moment {
+            velocity: 0.1,
+            commanded: 60.0,
+            ..Moment::default()
         };
-        let positive = |scale: f64| Entry {
-            positive: true,
-            ..free(scale)
+        let acting = model(&parts).unwrap().acting(now);
+        let wanted = Acting {
+            motor: 60.0,
+            load: 23.0,
+            level: 25.0,
         };
-        let jagged = |scale: f64| Entry {
-            step: JAGGED_STEP,
-            ..positive(scale)
+        assert_eq!(acting, wanted);
+    }
+
+    #[test]
+    fn ripple_acts_against_the_motor() {
+        // A cosine of 7 N at its crest.
+        let parts = [MASS, (TorqueRipple, 0.5, &[7.0, 0.0])];
+        let now = Moment {
+            position: 4.0,
+            commanded: 60.0,
+            ..Moment::default()
         };
-        let mut entries = vec![positive(self.mechanics.mass)];
-        for Active { part, own } in &self.terms {
-            let is_coulomb = part.is(EffectName::Coulomb);
-            let scales = own.iter().map(|value| value.abs().max(0.05 * force));
-            entries.extend(scales.map(|scale| {
-                if is_coulomb {
-                    positive(scale)
-                } else {
-                    free(scale)
-                }
-            }));
-            entries.extend(
-                part.effect
-                    .is_tuned()
-                    .then(|| positive(part.parameter.abs())),
-            );
-        }
-        entries.extend((!self.saturation.is_ideal()).then(|| positive(self.saturation.per_effort)));
-        entries.extend((self.delay_s != 0.0).then(|| positive(self.delay_s)));
-        if let Some(bristle) = self.mechanics.shape.bristle {
-            entries.extend([
-                positive(bristle.deflection),
-                positive(bristle.damping.max(2.0 * self.mechanics.mass)),
-            ]);
-        }
-        if let Some(gap) = self.mechanics.shape.gap {
-            entries.extend([gap.width, 1.0, 1.0, 1.0].map(jagged));
-        }
-        entries
+        let acting = model(&parts).unwrap().acting(now);
+        assert!((acting.motor - 53.0).abs() < 1.0e-12 && acting.load == 0.0);
     }
 
-    /// The parameter vector, unscaled, in the order of the entries.
-    #[must_use]
-    pub(crate) fn values(&self) -> Vec<f64> {
-        let mut copy = self.clone();
-        let mut values = Vec::new();
-        copy.visit(&mut |value| values.push(*value));
-        values
+    #[test]
+    fn a_saturating_drive_delivers_less_on_both_sides() {
+        let simulated = model(&[MASS, (TorqueSaturation, 0.01, &[])]).unwrap();
+        for sign in [1.0, -1.0] {
+            let now = Moment {
+                commanded: sign * 100.0,
+                ..Moment::default()
+            };
+            assert_eq!(simulated.acting(now).motor, sign * 50.0);
+        }
     }
 
-    /// The model with another parameter vector.
-    #[must_use]
-    pub(crate) fn with(&self, values: &[f64]) -> Self {
-        let mut copy = self.clone();
-        let mut rest = values.iter();
-        copy.visit(&mut |value| *value = rest.next().copied().unwrap_or(*value));
-        if let Some(gap) = &mut copy.mechanics.shape.gap {
-            gap.load_share = gap.load_share.clamp(0.05, 0.95);
-            gap.motor_friction = gap.motor_friction.clamp(0.0, 0.95);
-            gap.restitution = gap.restitution.clamp(0.0, 0.98);
-        }
-        copy
+    #[test]
+    fn positions_count_from_the_middle_of_the_travel_and_times_by_the_duration() {
+        let now = Moment {
+            time_s: 2.5,
+            position: 4.0,
+            ..Moment::default()
+        };
+        let instant = model(&[MASS]).unwrap().instant(now);
+        assert_eq!((instant.scaled, instant.time_share), (0.5, 0.25));
+        assert_eq!((instant.position, instant.time_s), (4.0, 2.5));
+        // Friction by place 6 N a half travel, friction that falls to 1/e of 8 N in 2.5 s.
+        let parts = [
+            MASS,
+            (PositionDependentFriction, 1.0, &[6.0]),
+            (FrictionDrift, 2.5, &[8.0, 0.0]),
+        ];
+        let level = model(&parts).unwrap().acting(now).level;
+        assert!(
+            (level - (3.0 + 8.0 * (-1.0_f64).exp())).abs() < 1.0e-12,
+            "{level}"
+        );
     }
 
-    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
-        each(&mut self.mechanics.mass);
-        for Active { part, own } in &mut self.terms {
-            own.iter_mut().for_each(&mut *each);
-            if part.effect.is_tuned() {
-                each(&mut part.parameter);
-            }
-        }
-        if !self.saturation.is_ideal() {
-            each(&mut self.saturation.per_effort);
-        }
-        if self.delay_s != 0.0 {
-            each(&mut self.delay_s);
-        }
-        if let Some(bristle) = &mut self.mechanics.shape.bristle {
-            each(&mut bristle.deflection);
-            each(&mut bristle.damping);
-        }
-        if let Some(gap) = &mut self.mechanics.shape.gap {
-            each(&mut gap.width);
-            each(&mut gap.load_share);
-            each(&mut gap.motor_friction);
-            each(&mut gap.restitution);
+    #[test]
+    fn the_hold_of_an_instantaneous_record_is_part_of_its_delay() {
+        for (hold, delay_s, wanted) in [
+            (EffortHold::ZeroOrder, 1.5, 1.5),
+            (EffortHold::Instant, 1.5, 0.5),
+            (EffortHold::Instant, 0.75, 0.0),
+        ] {
+            let dataset = Dataset { hold, ..dataset() };
+            let fitted = made::fitted(&[MASS, (Delay, delay_s, &[])]);
+            let simulated = Simulated::new(&dataset, 2.0, &fitted, Shape::default()).unwrap();
+            assert_eq!(simulated.delay_s, wanted, "{hold:?}, {delay_s} s");
         }
     }
 }

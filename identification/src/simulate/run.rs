@@ -10,7 +10,7 @@ use crate::record::samples::Record;
 use crate::simulate::axis::Axis;
 use crate::simulate::drive::{Drive, velocity};
 use crate::simulate::hold::HeldEfforts;
-use crate::simulate::model::Simulated;
+use crate::simulate::model::{Moment, Simulated};
 
 /// Longest sub-step, s: a velocity loop of 1000 rad/s still has four sub-steps a radian.
 const SUB_STEP_S: f64 = 2.5e-4;
@@ -85,10 +85,13 @@ fn over_row(
 ) -> Axis {
     let h = steps.length_s;
     for since in steps.middles() {
-        let commanded = efforts.mean(since, h);
-        let middle = axis.motor.x + 0.5 * h * axis.motor.v;
-        let acting = model.acting(middle, axis.load.v, time_s + since, commanded);
-        axis = axis.after(&model.mechanics, acting, h);
+        let now = Moment {
+            time_s: time_s + since,
+            position: axis.motor.x + 0.5 * h * axis.motor.v,
+            velocity: axis.load.v,
+            commanded: efforts.mean(since, h),
+        };
+        axis = axis.after(&model.mechanics, model.acting(now), h);
     }
     axis
 }

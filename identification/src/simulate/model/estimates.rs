@@ -3,9 +3,11 @@
 use axis_model::vocabulary::{Backlash, Presliding};
 use axis_model::{Effect, EffectName, Estimate};
 
-use super::{Active, Simulated};
+use super::{Force, Simulated};
 use crate::model::effects::{Named, Naming};
+use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
+use crate::simulate::parameters::Place;
 
 /// What a simulation was fitted to be.
 pub(crate) struct Estimates {
@@ -15,25 +17,27 @@ pub(crate) struct Estimates {
     pub shape: Vec<Effect<Estimate>>,
 }
 
-/// Half widths of 95 % intervals, in the order of the entries of the parameter vector.
-struct HalfWidths<'a>(std::slice::Iter<'a, f64>);
+/// Half widths of 95 % intervals, by the place of their parameter.
+struct HalfWidths(Vec<(Place, f64)>);
 
-impl HalfWidths<'_> {
-    fn next(&mut self) -> f64 {
-        self.0.next().copied().unwrap_or(0.0)
+impl HalfWidths {
+    /// Half width of the parameter at a place; zero where there is none.
+    fn of(&self, place: Place) -> f64 {
+        let row = self.0.iter().find(|(other, _)| *other == place);
+        row.map_or(0.0, |(_, half_width)| *half_width)
     }
 
-    fn named(&mut self, name: String, value: f64, unit: String) -> Named {
+    fn named(&self, place: Place, name: String, value: f64, unit: String) -> Named {
         Named {
             name,
             value,
-            half_width: Some(self.next()),
+            half_width: Some(self.of(place)),
             unit,
         }
     }
 
-    fn estimate(&mut self, value: f64, unit: &str) -> Estimate {
-        let half_width = self.next();
+    fn estimate(&self, place: Place, value: f64, unit: &str) -> Estimate {
+        let half_width = self.of(place);
         Estimate {
             value,
             unit: unit.into(),
@@ -44,88 +48,104 @@ impl HalfWidths<'_> {
 }
 
 impl Simulated {
-    /// The parameters; `half_widths` in the order of the entries.
+    /// The parameters; `half_widths` in the order of their table.
     #[must_use]
     pub(crate) fn estimates(&self, dataset: &Dataset, half_widths: &[f64]) -> Estimates {
-        let mut half_widths = HalfWidths(half_widths.iter());
-        let mut parts = self.forces(dataset, &mut half_widths);
-        parts.extend(self.actuator(dataset, &mut half_widths));
+        let table = self.parameters().into_iter().map(|row| row.place);
+        let half_widths = HalfWidths(table.zip(half_widths.iter().copied()).collect());
+        let mut parts = self.named_forces(dataset, &half_widths);
+        parts.extend(self.named_actuator(dataset, &half_widths));
         Estimates {
             parts,
-            shape: self.shape(dataset, &mut half_widths),
+            shape: self.estimated_shape(dataset, &half_widths),
         }
     }
 
     /// Mass, then the forces in their order.
-    fn forces(&self, dataset: &Dataset, half_widths: &mut HalfWidths<'_>) -> Vec<Named> {
+    fn named_forces(&self, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
         let (effort, length) = (dataset.effort.unit(), dataset.kind.position_unit());
-        let mut named = vec![half_widths.named(
+        let mass = half_widths.named(
+            Place::Mass,
             EffectName::Inertia.to_string(),
             self.mechanics.mass,
             format!("{effort} s^2/{length}"),
-        )];
-        for Active { part, own } in &self.terms {
-            let coefficients: Vec<(f64, f64)> = own
-                .iter()
-                .map(|value| (*value, half_widths.next()))
-                .collect();
-            let is_tuned = part.effect.is_tuned();
-            named.extend(part.effect.parameters(&Naming {
-                parameter: part.parameter,
-                parameter_half_width: is_tuned.then(|| half_widths.next()),
-                coefficients: &coefficients,
-                dataset,
-            }));
-        }
-        named
+        );
+        let forces = self.forces.iter().enumerate();
+        let forces = forces.flat_map(|(at, force)| force.named(at, dataset, half_widths));
+        std::iter::once(mass).chain(forces).collect()
     }
 
     /// Saturation and delay, where there are any.
-    fn actuator(&self, dataset: &Dataset, half_widths: &mut HalfWidths<'_>) -> Vec<Named> {
-        let mut named = Vec::new();
-        if !self.saturation.is_ideal() {
-            named.push(half_widths.named(
+    fn named_actuator(&self, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
+        let saturation = (!self.saturation.is_ideal()).then(|| {
+            half_widths.named(
+                Place::Saturation,
                 EffectName::TorqueSaturation.to_string(),
                 self.saturation.per_effort,
                 format!("1/{}", dataset.effort.unit()),
-            ));
-        }
-        if self.delay_s != 0.0 {
+            )
+        });
+        let delay = (self.delay_s != 0.0).then(|| {
             let name = format!("{}_beyond_hold", EffectName::Delay);
-            named.push(half_widths.named(name, self.delay_s, "s".into()));
-        }
-        named
+            half_widths.named(Place::Delay, name, self.delay_s, "s".into())
+        });
+        saturation.into_iter().chain(delay).collect()
     }
 
     /// Bristle and gap, where there are any.
-    fn shape(&self, dataset: &Dataset, half_widths: &mut HalfWidths<'_>) -> Vec<Effect<Estimate>> {
+    fn estimated_shape(
+        &self,
+        dataset: &Dataset,
+        half_widths: &HalfWidths,
+    ) -> Vec<Effect<Estimate>> {
         let length = dataset.kind.position_unit();
-        let damping_unit = format!("{} s/{length}", dataset.effort.unit());
+        let damping = format!("{} s/{length}", dataset.effort.unit());
+        let of = |place, value, unit| half_widths.estimate(place, value, unit);
         let shape = self.mechanics.shape;
         let bristle = shape.bristle.map(|bristle| {
             Effect::from(Presliding {
-                deflection: half_widths.estimate(bristle.deflection, length),
-                damping: Some(half_widths.estimate(bristle.damping, &damping_unit)),
+                deflection: of(Place::Deflection, bristle.deflection, length),
+                damping: Some(of(Place::Damping, bristle.damping, &damping)),
             })
         });
         let gap = shape.gap.map(|gap| {
+            let share = |place, value, unit| Some(of(place, value, unit));
             Effect::from(Backlash {
-                gap: half_widths.estimate(gap.width, length),
-                load_share: Some(half_widths.estimate(gap.load_share, "of the moved mass")),
-                motor_friction: Some(half_widths.estimate(gap.motor_friction, "of the friction")),
-                restitution: Some(half_widths.estimate(gap.restitution, "of the velocity")),
+                gap: of(Place::GapWidth, gap.width, length),
+                load_share: share(Place::LoadShare, gap.load_share, "of the moved mass"),
+                motor_friction: share(Place::MotorFriction, gap.motor_friction, "of the friction"),
+                restitution: share(Place::Restitution, gap.restitution, "of the velocity"),
             })
         });
         bristle.into_iter().chain(gap).collect()
     }
 }
 
+impl Force {
+    /// The parameters of the force that stands at a place of the model.
+    fn named(&self, force: usize, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
+        let coefficient = |(column, value): (usize, &f64)| {
+            let place = Place::Coefficient { force, column };
+            (*value, half_widths.of(place))
+        };
+        let coefficients: Vec<(f64, f64)> = self.own.iter().enumerate().map(coefficient).collect();
+        let Part {
+            effect, parameter, ..
+        } = self.part;
+        effect.parameters(&Naming {
+            parameter,
+            parameter_half_width: effect
+                .is_tuned()
+                .then(|| half_widths.of(Place::Nonlinear { force })),
+            coefficients: &coefficients,
+            dataset,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::fitted::Fitted;
-    use crate::model::effects::find;
-    use crate::model::inverse::{Model, Part};
     use crate::simulate::axis::{Gap, Shape};
     use crate::simulate::friction::Bristle;
     use crate::simulate::made;
@@ -133,16 +153,13 @@ mod tests {
     /// Every kind of entry once. Hold and record agree, so the whole delay stays.
     fn simulated(dataset: &Dataset) -> Simulated {
         use EffectName::{Coulomb, Delay, Inertia, Stribeck, TorqueSaturation};
-        let parts = [
-            (Inertia, 0.0),
-            (Coulomb, 0.0),
-            (Stribeck, 0.006),
-            (TorqueSaturation, 1.0e-4),
-            (Delay, 7.0e-4),
-        ];
-        let part = |(name, parameter)| Some(Part::found(find(name)?, parameter));
-        let parts = parts.into_iter().filter_map(part).collect();
-        let fitted = Fitted::new(Model { parts }, &[700.0, 300.0, 180.0]);
+        let fitted = made::fitted(&[
+            (Inertia, 0.0, &[700.0]),
+            (Coulomb, 0.0, &[300.0]),
+            (Stribeck, 0.006, &[180.0]),
+            (TorqueSaturation, 1.0e-4, &[]),
+            (Delay, 7.0e-4, &[]),
+        ]);
         let shape = Shape {
             bristle: Some(Bristle {
                 deflection: 8.0e-6,
@@ -162,7 +179,7 @@ mod tests {
     fn each_half_width_goes_to_the_entry_in_whose_place_it_stands() {
         let dataset = made::dataset(made::record(1.0e-3, made::two_sines(3000)), None);
         let model = simulated(&dataset);
-        let values = model.values();
+        let values: Vec<f64> = model.parameters().iter().map(|row| row.value).collect();
         let half_widths: Vec<f64> = (1..=values.len()).map(|place| place as f64).collect();
         let estimates = model.estimates(&dataset, &half_widths);
         let parts = estimates.parts.iter();
