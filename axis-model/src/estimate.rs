@@ -32,6 +32,19 @@ impl Estimate {
     }
 }
 
+impl Estimate {
+    /// The estimate of a quantity that is more than this one by a known amount.
+    #[must_use]
+    pub fn moved(&self, by: f64) -> Self {
+        Self {
+            value: self.value + by,
+            unit: self.unit.clone(),
+            low: self.low + by,
+            high: self.high + by,
+        }
+    }
+}
+
 impl Effect<Estimate> {
     /// The values alone, each moved into the range that a machine file may state.
     ///
@@ -91,5 +104,8 @@ mod tests {
         let turned = force.scaled(-0.5, "N m");
         assert_eq!((turned.value, turned.low, turned.high), (-1.0, -2.0, -0.5));
         assert_eq!(turned.unit, "N m");
+        let moved = force.moved(0.5);
+        assert_eq!((moved.value, moved.low, moved.high), (2.5, 1.5, 4.5));
+        assert_eq!(moved.unit, "N");
     }
 }

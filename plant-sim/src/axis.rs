@@ -1,5 +1,6 @@
 //! One axis: actuator, mechanics, effects and encoders, advanced by one control cycle at a time.
 
+use axis_model::Inertia;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -82,6 +83,19 @@ pub struct AxisParameters {
 }
 
 impl AxisParameters {
+    /// What has to be accelerated, in the words of the vocabulary, kg.
+    #[must_use]
+    pub const fn inertia(&self) -> Inertia {
+        let (motor, load) = (
+            self.mechanics.motor_inertia_kg,
+            self.mechanics.table_mass_kg,
+        );
+        Inertia {
+            inertia: motor + load,
+            load: Some(load),
+        }
+    }
+
     /// Force at the table of a motor torque of 1 µN·m, N.
     #[must_use]
     pub fn newton_per_micro_nm(&self) -> f64 {

@@ -19,7 +19,10 @@ mod forms;
 mod source;
 mod together;
 
-pub use forms::{Bus, Gains, Limits, PositionSensor};
+pub use actual::refusal;
+pub use forms::{
+    ActuatorForm, Bus, EncodersForm, Gains, Limits, MechanicsForm, PositionSensor, Timing,
+};
 pub use source::MachineError;
 
 use forms::FileForm;

@@ -111,8 +111,7 @@ impl Set {
 
     fn loop_gains(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
         let gains = &axis.gains;
-        let inertia_kg =
-            axis.actual.mechanics.motor_inertia_kg + axis.actual.mechanics.table_mass_kg;
+        let inertia_kg = axis.actual.inertia().inertia;
         let source = match gains.position_sensor {
             PositionSensor::Motor => 0.0,
             PositionSensor::Load => 1.0,

@@ -1,344 +1,324 @@
 //! The identified model as a machine file, which `circle`, `tune` and `plant` accept.
 //!
-//! `[axis.actual]` is the identified model; `[axis.identified]` beside it holds the parameters as
-//! they were found, with intervals and units. What a record does not say (the split of the masses,
-//! the stiffness of the screw) is stated as assumed. Of several ripple orders the first is
-//! simulated, of position dependence the linear part, of friction drift the Coulomb part.
+//! `[axis.mechanics]` and `[axis.actual.effects]` are the identified model, in the words of the
+//! vocabulary; `[axis.identified]` beside them holds the parameters as they were found, with
+//! intervals and units, and says what a record does not: where the split of the masses comes from
+//! (`table_mass`), and what the simulator cannot be told (`left_out`). A screw whose stiffness was
+//! not identified is stiff for the simulator.
 
-use std::f64::consts::TAU;
-use std::fmt::Write as _;
+use std::collections::BTreeMap;
 
-use identification::{AxisKind, Dataset, Effort, EffortHold, Identification};
-use plant_sim::machine::{Gains, Limits, MachineAxis, PositionSensor};
+use axis_model::{EffectTable, Estimate};
+use identification::Identification;
+use plant_sim::machine::{ActuatorForm, Bus, EncodersForm, Gains, Limits, MechanicsForm, Timing};
+use serde::Serialize;
 
-/// What is known of an axis besides its identification.
-#[derive(Clone, Debug)]
-pub struct Known {
-    /// Travel per revolution, m.
-    pub lead_m: f64,
-    /// Motor encoder.
-    pub counts_per_rev: f64,
-    /// Load scale, m.
-    pub load_resolution_m: f64,
-    /// Current loop, s.
-    pub lag_s: f64,
-    /// Limit of the force, N.
-    pub force_limit_n: f64,
-    /// Limits of the motion.
-    pub limits: Limits,
-    /// Gains of the drive.
-    pub gains: Gains,
-    /// Sample period, s.
-    pub period_s: f64,
-    /// Delay that the record sees because the effort is held while its rows say it acts at once, s.
-    pub hold_s: f64,
+mod known;
+mod stated;
+
+pub use known::Known;
+
+/// The file.
+#[derive(Serialize)]
+struct ModelFile {
+    name: String,
+    seed: u64,
+    bus: Bus,
+    #[serde(rename = "loop")]
+    timing: Timing,
+    axis: Vec<AxisTables>,
 }
 
-/// Share of the moved mass that is taken for the table's where nothing says it.
-const TABLE_SHARE: f64 = 0.4;
-/// Damping ratio that is taken for the screw.
-const SCREW_DAMPING: f64 = 0.1;
-/// A screw that is stiff for the simulator: this share of what its sub-step carries.
-const STIFF: f64 = 0.05;
-/// Lead that is taken where the record does not know it, m.
-const LEAD_M: f64 = 0.010;
-
-impl Known {
-    /// From a machine file.
-    #[must_use]
-    pub fn of_machine(axis: &MachineAxis, period_s: f64) -> Self {
-        let actual = &axis.actual;
-        Self {
-            lead_m: actual.lead_m_per_rev,
-            counts_per_rev: f64::from(actual.motor_encoder_counts_per_rev),
-            load_resolution_m: actual.load_encoder_resolution_m,
-            lag_s: actual.current_loop_time_constant_s,
-            force_limit_n: actual.force_limit_n,
-            limits: axis.limits,
-            gains: axis.gains,
-            period_s,
-            hold_s: 0.0,
-        }
-    }
-
-    /// From a dataset; `None` where the axis is not one that the simulator has (rotary, or effort
-    /// that is no force).
-    #[must_use]
-    pub fn of_dataset(dataset: &Dataset, mass_kg: f64) -> Option<Self> {
-        if dataset.kind != AxisKind::Linear || dataset.effort != Effort::Force {
-            return None;
-        }
-        let record = &dataset.train;
-        let fastest = record
-            .position
-            .windows(11)
-            .map(|w| (w[10] - w[0]).abs())
-            .fold(0.0, f64::max);
-        let hardest = record
-            .effort
-            .iter()
-            .fold(0.0, |most: f64, effort| most.max(effort.abs()));
-        let furthest = record
-            .position
-            .iter()
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
-        let controller = dataset.controller.clone().unwrap_or_default();
-        let lead_m = dataset.lead_m_per_rev.unwrap_or(LEAD_M);
-        let bandwidth = controller
-            .velocity_gain_n_s_per_m
-            .map_or(25.0, |gain| gain / (mass_kg * TAU));
-        Some(Self {
-            lead_m,
-            counts_per_rev: (lead_m / dataset.resolution).round().clamp(100.0, 1.0e8),
-            load_resolution_m: dataset.load_resolution.clamp(1.0e-10, 1.0e-4),
-            lag_s: dataset.effort_lag_s,
-            force_limit_n: dataset.effort_limit.unwrap_or(3.0 * hardest),
-            limits: Limits {
-                velocity_m_per_s: (1.2 * fastest / (10.0 * record.period_s)).clamp(0.1, 5.0),
-                acceleration_m_per_s2: (hardest / mass_kg).clamp(0.5, 200.0),
-                travel_m: (1.2 * furthest).clamp(0.12, 10.0),
-            },
-            gains: Gains {
-                position_sensor: match controller.position_sensor.as_deref() {
-                    Some("load") => PositionSensor::Load,
-                    _ => PositionSensor::Motor,
-                },
-                position_gain_per_s: controller
-                    .position_gain_per_s
-                    .unwrap_or(40.0)
-                    .clamp(1.0, 1000.0),
-                velocity_bandwidth_hz: bandwidth.clamp(0.1, 1000.0),
-                velocity_integral_hz: controller
-                    .integral_per_s
-                    .map_or(5.0, |rate| rate / TAU)
-                    .clamp(0.0, 500.0),
-                velocity_filter: controller.velocity_filter.unwrap_or(0.7).clamp(0.01, 1.0),
-                torque_low_pass_hz: None,
-                torque_notch_hz: None,
-            },
-            period_s: record.period_s,
-            hold_s: if dataset.hold == EffortHold::Instant {
-                0.5 * record.period_s
-            } else {
-                0.0
-            },
-        })
-    }
+/// One `[[axis]]`: with tables of its own, or like another.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum AxisTables {
+    Own(Box<Own>),
+    Like { name: String, like: String },
 }
+
+#[derive(Serialize)]
+struct Own {
+    name: String,
+    mechanics: MechanicsForm,
+    encoders: EncodersForm,
+    actuator: ActuatorForm,
+    limits: Limits,
+    gains: Gains,
+    actual: Actual,
+    declared: Declared,
+    identified: Identified,
+}
+
+#[derive(Serialize)]
+struct Actual {
+    effects: EffectTable,
+}
+
+#[derive(Serialize)]
+struct Declared {
+    effects: Vec<String>,
+}
+
+/// For people: the simulator does not read it.
+#[derive(Serialize)]
+struct Identified {
+    verdict: String,
+    table_mass: &'static str,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    left_out: Vec<String>,
+    #[serde(flatten)]
+    parameters: BTreeMap<String, Estimate>,
+}
+
+/// The first line of the file.
+const HEAD: &str = "# Identified model: a machine file for circle, tune and plant.\n";
+/// The first line where there is no machine file to make.
+const HEAD_WITHOUT_MACHINE: &str = "# Identified model. No machine file: the simulator has linear \
+                                    axes with efforts in newtons.\n";
+/// Bit rate of the bus of each axis: classic CAN at its fastest.
+const BUS: Bus = Bus::Classic {
+    bit_rate: 1_000_000,
+};
 
 /// The machine file of identified axes. One axis gets a second one like it, since a circle needs
 /// two.
 #[must_use]
 pub fn text(name: &str, axes: &[(String, Known, &Identification)]) -> String {
     let period_s = axes.first().map_or(1.0e-3, |(_, known, _)| known.period_s);
-    let mut text = format!(
-        "# Identified model of {name}: a machine file for circle, tune and plant. [axis.actual] is what was identified.\n\
-         name = \"{}\"\nseed = 1\n\n[bus]\nformat = \"classic\"\nbit_rate = 1_000_000\n\n[loop]\nperiod_s = {period_s:e}\n",
-        name.replace(['\"', '\\'], " ")
-    );
-    for (name, known, result) in axes {
-        axis(&mut text, name, known, result);
-    }
-    if let [(name, ..)] = axes {
-        let _ = write!(
-            text,
-            "\n[[axis]]   # a circle needs two\nname = \"{name}2\"\nlike = \"{name}\"\n"
-        );
-    }
-    text
-}
-
-fn axis(text: &mut String, name: &str, known: &Known, result: &Identification) {
-    let report = &result.report;
-    let get = |key: &str| report.parameters.get(key).map(|parameter| parameter.value);
-    let or_zero = |key: &str| get(key).unwrap_or(0.0);
-    let mass = or_zero("inertia").max(2.0e-3);
-    let table =
-        get("load_inertia").or_else(|| get("backlash_load_share").map(|share| share * mass));
-    let assumed = if table.is_some() {
-        ""
-    } else {
-        "   # split assumed"
-    };
-    let table = table
-        .unwrap_or(TABLE_SHARE * mass)
-        .clamp(0.05 * mass, 0.95 * mass);
-    let reduced = table * (mass - table) / mass;
-    let stiff = STIFF * reduced / plant_sim::axis::SUB_STEP_S.powi(2);
-    let stiffness = get("compliance_stiffness")
-        .unwrap_or(stiff)
-        .clamp(1.0e4, stiff);
-    let damping = 2.0 * SCREW_DAMPING * (stiffness * reduced).sqrt();
-    let (lead, g, l) = (known.lead_m, &known.gains, &known.limits);
-    let sensor = if g.position_sensor == PositionSensor::Load {
-        "load"
-    } else {
-        "motor"
-    };
-    let noise = result.residual_rms.min(known.force_limit_n);
-    let _ = write!(
-        text,
-        "\n[[axis]]\nname = \"{name}\"\n\n[axis.mechanics]\nlead_m_per_rev = {lead:e}\nmotor_inertia_kg = {:e}{assumed}\ntable_mass_kg = {table:e}\n\
-         screw_stiffness_n_per_m = {stiffness:e}\nscrew_damping_n_s_per_m = {damping:e}\nbacklash_m = {:e}\n\n\
-         [axis.encoders]\nmotor_counts_per_rev = {:.0}\nload_resolution_m = {:e}\n\n\
-         [axis.actuator]\ncurrent_loop_time_constant_s = {:e}\nforce_limit_n = {:e}\nforce_noise_n = 0.0\nforce_record_noise_n = {noise:e}\n\n\
-         [axis.limits]\nvelocity_m_per_s = {:e}\nacceleration_m_per_s2 = {:e}\ntravel_m = {:e}\n\n\
-         [axis.gains]\nposition_sensor = \"{sensor}\"\nposition_gain_per_s = {:e}\nvelocity_bandwidth_hz = {:e}\nvelocity_integral_hz = {:e}\nvelocity_filter = {:e}\n",
-        mass - table,
-        or_zero("backlash_gap"),
-        known.counts_per_rev,
-        known.load_resolution_m,
-        known.lag_s,
-        known.force_limit_n,
-        l.velocity_m_per_s,
-        l.acceleration_m_per_s2,
-        l.travel_m,
-        g.position_gain_per_s,
-        g.velocity_bandwidth_hz,
-        g.velocity_integral_hz,
-        g.velocity_filter,
-    );
-    friction(text, result);
-    effects(text, known, result);
-    let names: Vec<String> = report
-        .declared
+    let mut tables: Vec<AxisTables> = axes
         .iter()
-        .chain(&report.found)
-        .map(|name| format!("\"{name}\""))
+        .map(|(name, known, result)| AxisTables::Own(Box::new(Own::of(name, known, result))))
         .collect();
-    let _ = write!(
-        text,
-        "\n[axis.declared]\neffects = [{}]\n\n[axis.identified]\nverdict = \"{}\"\n",
-        names.join(", "),
-        report.verdict
-    );
-    for (name, p) in &report.parameters {
-        let _ = writeln!(
-            text,
-            "{name} = {{ value = {:e}, low = {:e}, high = {:e}, unit = \"{}\" }}",
-            p.value, p.low, p.high, p.unit
-        );
+    if let [(name, ..)] = axes {
+        tables.push(AxisTables::Like {
+            name: format!("{name}2"),
+            like: name.clone(),
+        });
     }
+    let file = ModelFile {
+        name: name.into(),
+        seed: 1,
+        bus: BUS,
+        timing: Timing { period_s },
+        axis: tables,
+    };
+    written(HEAD, &file)
 }
 
-fn friction(text: &mut String, result: &Identification) {
-    let get = |key: &str| {
-        result
-            .report
-            .parameters
-            .get(key)
-            .map(|parameter| parameter.value)
-    };
-    let coulomb = get("coulomb").unwrap_or(0.0).max(1.0e-2);
-    let viscous = get("viscous").unwrap_or(0.0).max(0.0);
-    let asymmetry = get("viscous_asymmetry").map_or(0.0, |a| {
-        (a / viscous.max(f64::MIN_POSITIVE)).clamp(-0.9, 0.9)
-    });
-    let _ = write!(
-        text,
-        "\n[axis.actual.sliding]\ncoulomb_n = {coulomb:e}\nstatic_n = {:e}\nstribeck_velocity_m_per_s = {:e}\nviscous_n_s_per_m = {viscous:e}\n\
-         viscous_asymmetry = {asymmetry:e}\nquadratic_drag_n_s2_per_m2 = {:e}\n\n[axis.actual.friction]\n",
-        coulomb + get("stribeck_excess").unwrap_or(0.0).max(0.0),
-        get("stribeck_velocity")
-            .unwrap_or(2.0e-3)
-            .clamp(1.0e-6, 1.0),
-        get("quadratic_drag").unwrap_or(0.0).max(0.0),
-    );
-    let _ = match get("presliding_deflection").filter(|deflection| *deflection > 0.0) {
-        Some(deflection) => {
-            let stiffness = (coulomb / deflection).clamp(1.0e3, 1.0e12);
-            let damping = get("presliding_damping").unwrap_or(0.0).clamp(0.0, 1.0e7);
-            write!(
-                text,
-                "law = \"lu-gre\"\nbristle_stiffness_n_per_m = {stiffness:e}\nbristle_damping_n_s_per_m = {damping:e}\n"
-            )
+fn written(head: &str, form: &impl Serialize) -> String {
+    let text = toml::to_string(form).expect("the form has nothing that TOML cannot say");
+    format!("{head}{text}")
+}
+
+impl Own {
+    fn of(name: &str, known: &Known, result: &Identification) -> Self {
+        let report = &result.report;
+        let (mechanics, table_mass) = stated::mechanics(known, &result.effects);
+        let stated = stated::effects(known, &result.effects, mechanics.table_mass_kg);
+        let names = report.declared.iter().chain(&report.found);
+        Self {
+            name: name.into(),
+            mechanics,
+            encoders: stated::encoders(known),
+            actuator: stated::actuator(known, result),
+            limits: known.limits,
+            gains: known.gains,
+            actual: Actual {
+                effects: stated.effects,
+            },
+            declared: Declared {
+                effects: names.cloned().collect(),
+            },
+            identified: Identified {
+                verdict: report.verdict.clone(),
+                table_mass,
+                left_out: stated.left_out,
+                parameters: report.parameters.clone(),
+            },
         }
-        None => writeln!(text, "law = \"coulomb\""),
-    };
+    }
 }
 
-fn effects(text: &mut String, known: &Known, result: &Identification) {
-    let parameters = &result.report.parameters;
-    let get = |key: &str| parameters.get(key).map(|parameter| parameter.value);
-    let coulomb = get("coulomb").unwrap_or(0.0).max(1.0e-2);
-    let _ = write!(
-        text,
-        "\n[axis.actual.effects]\noffset_n = {:e}\n",
-        get("offset").unwrap_or(0.0)
-    );
-    if let (Some(amplitude), Some(period), Some(phase)) = (
-        get("torque_ripple_amplitude"),
-        get("torque_ripple_period"),
-        get("torque_ripple_phase"),
-    ) {
-        let order = known.lead_m / period;
-        let _ = writeln!(
-            text,
-            "torque_ripple = {{ amplitude_n = {amplitude:e}, order_per_rev = {order:e}, phase_rad = {phase:e} }}"
-        );
-    }
-    if let (Some(amplitude), Some(period)) =
-        (get("pitch_error_amplitude"), get("pitch_error_period"))
-    {
-        let _ = writeln!(
-            text,
-            "pitch_error = {{ amplitude_m = {amplitude:e}, period_m = {period:e} }}"
-        );
-    }
-    if let Some(slope) = get("position_dependent_friction_linear") {
-        let (middle, half) = result.travel;
-        let _ = writeln!(
-            text,
-            "position_dependent_friction_per_m = {:e}   # the linear part",
-            slope / half / (coulomb - slope * middle / half).max(1.0e-2)
-        );
-    }
-    if let (Some(surplus), Some(tau)) = (
-        get("friction_drift_coulomb"),
-        get("friction_drift_time_constant"),
-    ) {
-        let gain = (surplus / coulomb).clamp(-0.9, 10.0);
-        let _ = writeln!(
-            text,
-            "friction_drift = {{ gain = {gain:e}, time_constant_s = {tau:e} }}"
-        );
-    }
-    if let Some(k) = get("torque_saturation") {
-        let _ = writeln!(text, "torque_saturation_per_n = {k:e}");
-    }
-    if let Some(delay_s) = get("delay") {
-        let _ = writeln!(
-            text,
-            "delay_s = {:e}",
-            (delay_s - known.hold_s).clamp(0.0, known.period_s.min(1.0e-3))
-        );
-    }
+/// An axis that the simulator does not have.
+#[derive(Serialize)]
+struct ParametersOnly<'a> {
+    name: &'a str,
+    declared: &'a [String],
+    found: &'a [String],
+    verdict: &'a str,
+    identified: &'a BTreeMap<String, Estimate>,
 }
 
 /// Parameters alone, for an axis that the simulator does not have.
 #[must_use]
 pub fn parameters_only(name: &str, result: &Identification) -> String {
     let report = &result.report;
-    let list = |names: &[String]| {
-        names
-            .iter()
-            .map(|name| format!("\"{name}\""))
-            .collect::<Vec<_>>()
-            .join(", ")
+    let form = ParametersOnly {
+        name,
+        declared: &report.declared,
+        found: &report.found,
+        verdict: &report.verdict,
+        identified: &report.parameters,
     };
-    let mut text = format!(
-        "# Identified model. No machine file: the simulator has linear axes with efforts in newtons.\nname = \"{}\"\ndeclared = [{}]\nfound = [{}]\nverdict = \"{}\"\n\n[identified]\n",
-        name.replace(['\"', '\\'], " "),
-        list(&report.declared),
-        list(&report.found),
-        report.verdict
-    );
-    for (name, p) in &report.parameters {
-        let _ = writeln!(
-            text,
-            "{name} = {{ value = {:e}, low = {:e}, high = {:e}, unit = \"{}\" }}",
-            p.value, p.low, p.high, p.unit
-        );
+    written(HEAD_WITHOUT_MACHINE, &form)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axis_model::{
+        Backlash, Coulomb, Delay, Effect, FrictionDrift, Inertia, Presliding, TorqueRipple,
+        ViscousAsymmetry,
+    };
+    use identification::Report;
+    use plant_sim::Machine;
+
+    fn estimate(value: f64) -> Estimate {
+        Estimate {
+            value,
+            unit: "N".into(),
+            low: value - 1.0,
+            high: value + 1.0,
+        }
     }
-    text
+
+    fn identification(effects: Vec<Effect<Estimate>>) -> Identification {
+        Identification {
+            effects,
+            residual_rms: 3.0,
+            report: Report {
+                declared: vec!["inertia".into(), "coulomb".into()],
+                found: vec!["delay".into()],
+                verdict: "explained".into(),
+                parameters: BTreeMap::from([("coulomb".into(), estimate(250.0))]),
+                ..Report::default()
+            },
+            ..Identification::default()
+        }
+    }
+
+    /// The file of one axis, and the machine that it is read to.
+    fn written(effects: Vec<Effect<Estimate>>) -> (toml::Table, Machine) {
+        let machine = Machine::reference();
+        let known = Known {
+            hold_s: 0.5e-3,
+            ..Known::of_machine(&machine.axes[0], machine.period_s)
+        };
+        let text = text("test", &[("X".into(), known, &identification(effects))]);
+        let machine = Machine::parse("model.toml", &text).unwrap();
+        (text.parse().unwrap(), machine)
+    }
+
+    fn inertia(inertia: f64, load: Option<f64>) -> Effect<Estimate> {
+        let load = load.map(estimate);
+        Effect::Inertia(Inertia {
+            inertia: estimate(inertia),
+            load,
+        })
+    }
+
+    fn identified(file: &toml::Table) -> &toml::Table {
+        file["axis"][0]["identified"].as_table().unwrap()
+    }
+
+    #[test]
+    fn what_was_identified_is_what_the_simulator_reads() {
+        let (file, machine) = written(vec![
+            inertia(700.0, Some(300.0)),
+            Effect::Coulomb(Coulomb {
+                coulomb: estimate(250.0),
+            }),
+            Effect::ViscousAsymmetry(ViscousAsymmetry {
+                viscous_asymmetry: estimate(-0.2),
+            }),
+            Effect::Delay(Delay {
+                delay: estimate(0.8e-3),
+            }),
+        ]);
+        let [x, second] = machine.axes.as_slice() else {
+            panic!("a circle needs two axes");
+        };
+        let mechanics = x.actual.mechanics;
+        assert!((mechanics.table_mass_kg - 300.0).abs() < 1.0e-9);
+        assert!((mechanics.motor_inertia_kg - 400.0).abs() < 1.0e-9);
+        let sliding = x.actual.sliding;
+        assert_eq!((sliding.coulomb_n, sliding.static_n), (250.0, 250.0));
+        assert_eq!(sliding.viscous_asymmetry, -0.2);
+        assert!(
+            (x.actual.effects.delay_s() - 0.3e-3).abs() < 1.0e-12,
+            "beyond the hold"
+        );
+        assert_eq!(x.declared.len(), 3);
+        assert_eq!((second.name.as_str(), &second.actual), ("X2", &x.actual));
+        assert_eq!(
+            identified(&file)["table_mass"].as_str(),
+            Some("motor and load position")
+        );
+        assert_eq!(identified(&file)["coulomb"]["high"].as_float(), Some(251.0));
+    }
+
+    #[test]
+    fn where_the_mass_of_the_table_comes_from_is_said() {
+        let gap = Effect::Backlash(Backlash {
+            gap: estimate(2.0e-5),
+            load_share: Some(estimate(0.3)),
+            motor_friction: None,
+            restitution: None,
+        });
+        let (file, machine) = written(vec![inertia(700.0, None), gap]);
+        let mechanics = machine.axes[0].actual.mechanics;
+        assert!((mechanics.table_mass_kg - 210.0).abs() < 1.0e-9);
+        assert_eq!(mechanics.backlash_m, 2.0e-5);
+        assert_eq!(
+            identified(&file)["table_mass"].as_str(),
+            Some("impacts in the gap")
+        );
+        let (file, machine) = written(vec![inertia(700.0, None)]);
+        assert!((machine.axes[0].actual.mechanics.table_mass_kg - 280.0).abs() < 1.0e-9);
+        assert_eq!(identified(&file)["table_mass"].as_str(), Some("assumed"));
+        assert!(!identified(&file).contains_key("left_out"));
+    }
+
+    #[test]
+    fn what_the_simulator_cannot_be_told_is_left_out_and_said() {
+        let ripple = |phase| {
+            Effect::TorqueRipple(TorqueRipple {
+                amplitude: estimate(20.0),
+                order: Some(estimate(6.0)),
+                period: Some(estimate(0.01 / 6.0)),
+                phase,
+            })
+        };
+        let drift = Effect::FrictionDrift(FrictionDrift {
+            gain: estimate(0.4),
+            time_constant: estimate(20.0),
+            viscous_gain: Some(estimate(0.1)),
+        });
+        let effects = vec![ripple(Some(estimate(0.3))), ripple(None), drift];
+        let (file, machine) = written([vec![inertia(700.0, None)], effects].concat());
+        let left_out = identified(&file)["left_out"].as_array().unwrap();
+        let left_out: Vec<&str> = left_out.iter().filter_map(|word| word.as_str()).collect();
+        let wanted = [
+            "torque_ripple without a phase",
+            "viscous_gain of friction_drift",
+        ];
+        assert_eq!(left_out, wanted);
+        assert_eq!(machine.axes[0].actual.effects.list().len(), 2);
+    }
+
+    #[test]
+    fn bristles_are_not_stiffer_than_the_sub_step_carries() {
+        let presliding = Effect::Presliding(Presliding {
+            deflection: estimate(1.0e-9),
+            damping: None,
+        });
+        let coulomb = Effect::Coulomb(Coulomb {
+            coulomb: estimate(250.0),
+        });
+        let (_, machine) = written(vec![inertia(700.0, None), coulomb, presliding]);
+        let stiffness = machine.axes[0].actual.law.stiffness_n_per_m();
+        let most = 0.2 * 280.0 / plant_sim::axis::SUB_STEP_S.powi(2);
+        assert!((stiffness / most - 1.0).abs() < 1.0e-9, "{stiffness}");
+    }
 }

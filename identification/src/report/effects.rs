@@ -5,7 +5,7 @@
 //! friction and the fit in efforts, the shares are made here:
 //!
 //! ```text
-//! Fc + a u + b u²,  u = (x − m) / h     =  F0 (1 + k x + q x²)
+//! Fc + a u + b u²,  u = (x − m) / h     =  F0 (1 + k x + q x²),   F0 where x is zero
 //! Fc + c exp(−t / τ)                    =  Fc (1 + g exp(−t / τ))
 //! ```
 //!
@@ -117,14 +117,11 @@ fn over_position(table: &mut Table, coulomb: Option<f64>, travel: Travel) {
     let Some(level) = level.filter(|level| *level > 0.0) else {
         return;
     };
+    if let Some(coulomb) = table.get_mut("coulomb") {
+        *coulomb = coulomb.moved(level - coulomb.value);
+    }
     let slope = a.value + 2.0 * curve * at_zero;
-    let shift = slope - a.value;
-    let moved = Estimate {
-        value: slope,
-        low: a.low + shift,
-        high: a.high + shift,
-        ..a
-    };
+    let moved = a.moved(slope - a.value);
     let unit = |power: &str| format!("1/{}{power}", travel.unit);
     table.insert(LINEAR.into(), moved.scaled(1.0 / (half * level), &unit("")));
     if let Some(b) = b {
@@ -280,6 +277,7 @@ mod tests {
         let (middle, half) = (0.05, 0.2);
         let report = report(&[("coulomb", 200.0), (LINEAR, 40.0), (QUADRATIC, -12.0)]);
         let found = effects(&report, travel(middle, half));
+        let coulomb = only(&found, EffectName::Coulomb)[0].1;
         let parts = only(&found, EffectName::PositionDependentFriction);
         let [(_, k), (_, q)] = parts.as_slice() else {
             panic!("{parts:?}");
@@ -290,7 +288,7 @@ mod tests {
         };
         for x in [-0.15, -0.03, 0.02, 0.25] {
             let share = 1.0 + k * x + q * x * x;
-            assert!((fitted(x) - fitted(0.0) * share).abs() < 1.0e-9, "{x}");
+            assert!((fitted(x) - coulomb * share).abs() < 1.0e-9, "{x}");
         }
     }
 

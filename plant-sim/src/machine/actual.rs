@@ -68,6 +68,12 @@ pub(super) fn read(
     Ok(stated.actual(sliding_at, law_at))
 }
 
+/// Why `[axis.actual.effects]` cannot state an effect, and what to do; `None` where it can.
+#[must_use]
+pub fn refusal(effect: &Effect) -> Option<&'static str> {
+    Stated::default().take(effect).err()
+}
+
 /// What was stated so far.
 #[derive(Default)]
 struct Stated {

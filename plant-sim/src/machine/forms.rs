@@ -30,8 +30,10 @@ pub(super) struct FileForm {
 pub(super) const LONGEST_PERIOD_S: f64 = 0.02;
 
 ranged! {
+    /// `[loop]`.
     #[derive(Clone, Copy, Debug)]
-    pub(super) struct Timing {
+    pub struct Timing {
+        /// Control cycle, s.
         pub period_s: f64 [1.0e-4 => LONGEST_PERIOD_S],
     }
 }
@@ -117,39 +119,58 @@ impl AxisForm {
 }
 
 ranged! {
+    /// `[axis.mechanics]`.
     #[derive(Clone, Copy, Debug)]
-    pub(super) struct MechanicsForm {
+    pub struct MechanicsForm {
+        /// Travel per motor revolution.
         pub lead_m_per_rev: f64 [1.0e-4 => 1.0],
+        /// Motor, coupling and screw, seen at the table.
         pub motor_inertia_kg: f64 [1.0e-3 => 1.0e6],
+        /// Table.
         pub table_mass_kg: f64 [1.0e-3 => 1.0e6],
+        /// Screw stiffness.
         pub screw_stiffness_n_per_m: f64 [1.0e4 => 1.0e12],
+        /// Screw damping.
         pub screw_damping_n_s_per_m: f64 [0.0 => 1.0e7],
+        /// Width of the gap between screw and table.
         pub backlash_m: f64 [0.0 => 0.01],
+        /// Force of gravity on the table, towards positive position.
         #[serde(default)]
         pub gravity_n: f64 [-1.0e6 => 1.0e6],
+        /// Where the table stands at power-up.
         #[serde(default)]
         pub start_m: f64 [-10.0 => 10.0],
     }
 }
 
 ranged! {
+    /// `[axis.encoders]`.
     #[derive(Clone, Copy, Debug)]
-    pub(super) struct EncodersForm {
+    pub struct EncodersForm {
+        /// Motor encoder.
         pub motor_counts_per_rev: u32 [100.0 => 1.0e8],
+        /// Load scale.
         pub load_resolution_m: f64 [1.0e-10 => 1.0e-4],
+        /// Motor position where its encoder reads zero.
         #[serde(default)]
         pub motor_zero_m: f64 [-100.0 => 100.0],
+        /// Table position where the scale reads zero.
         #[serde(default)]
         pub load_zero_m: f64 [-100.0 => 100.0],
     }
 }
 
 ranged! {
+    /// `[axis.actuator]`.
     #[derive(Clone, Copy, Debug)]
-    pub(super) struct ActuatorForm {
+    pub struct ActuatorForm {
+        /// Current loop, first order.
         pub current_loop_time_constant_s: f64 [0.0 => 0.01],
+        /// Limit of the force.
         pub force_limit_n: f64 [1.0e-3 => 1.0e6],
+        /// Noise of the force that acts.
         pub force_noise_n: f64 [0.0 => 1.0e6],
+        /// Noise of the recorded effort.
         pub force_record_noise_n: f64 [0.0 => 1.0e6],
     }
 }
