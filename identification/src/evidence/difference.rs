@@ -221,3 +221,246 @@ impl Difference {
         Some((apart.rms_um(&self.declared), apart.rms_um(&self.extended)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, on, usual};
+    use crate::simulate::load::Behind;
+    use crate::simulate::made::{record, two_sines};
+    use std::f64::consts::TAU;
+
+    const COUNT: f64 = 1.0e-7;
+
+    /// A motor with a load that is late by what is told of row, position and effort.
+    fn axis(lag: impl Fn(&[f64], usize) -> f64) -> Axis {
+        let position = two_sines(6000);
+        let mut made = record(1.0e-3, position.clone());
+        let noise = |row: usize| 0.3 * COUNT * (1.7 * (row * row % 1013) as f64).sin();
+        let load = (0..6000).map(|row| position[row] - lag(&position, row) - 5.0e-6 + noise(row));
+        made.load = Some(load.collect());
+        let mut axis = on(made);
+        (axis.dataset.resolution, axis.dataset.load_resolution) = (COUNT, 0.5 * COUNT);
+        axis.put(usual);
+        axis
+    }
+
+    fn judged(axis: &Axis) -> Difference {
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+        };
+        difference(&axis.dataset, &axis.motion, path).unwrap()
+    }
+
+    #[test]
+    fn without_a_load_scale_there_is_no_difference() {
+        let mut axis = axis(|_, _| 0.0);
+        axis.motion.difference = None;
+        let path = Path {
+            position: &[],
+            transmitted: &[],
+        };
+        assert!(difference(&axis.dataset, &axis.motion, path).is_none());
+    }
+
+    #[test]
+    fn of_two_scales_with_other_zeros_nothing_is_found() {
+        let difference = judged(&axis(|_, _| 0.0));
+        assert!(difference.found.is_empty() && !difference.moves_apart());
+        assert_eq!(
+            (difference.gap, difference.stiffness, difference.pitch()),
+            (None, None, None)
+        );
+        assert!(difference.after_um < 0.03, "{}", difference.after_um);
+    }
+
+    #[test]
+    fn a_pitch_error_is_found_with_amplitude_and_period() {
+        let axis = axis(|x, row| 2.0e-6 * (TAU * 500.0 * x[row] + 0.4).cos());
+        let difference = judged(&axis);
+        assert_eq!(difference.found, [EffectName::PitchError]);
+        let (amplitude, per_length) = difference.pitch().unwrap();
+        assert!((amplitude / 2.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
+        assert!((per_length / 500.0 - 1.0).abs() < 0.01, "{per_length}");
+        // 2 µm of amplitude are 1.4 µm rms.
+        assert!(
+            (difference.before_um / 1.41 - 1.0).abs() < 0.1,
+            "{}",
+            difference.before_um
+        );
+        assert!(difference.after_um < 0.3 && !difference.moves_apart());
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+        };
+        let (before, after) = difference.on(&axis.motion, path).unwrap();
+        assert_eq!((before, after), (difference.before_um, difference.after_um));
+    }
+
+    #[test]
+    fn a_gap_is_found_with_its_width() {
+        // 40 % of 90 kg behind the gap, with all of the friction: 25 N and 200 N s/m.
+        let behind = Behind {
+            gap: 20.0e-6,
+            coulomb: 25.0 / 36.0,
+            viscous: 200.0 / 36.0,
+            restitution: 0.3,
+        };
+        let lag = behind.follow(&two_sines(6000), 1.0e-3);
+        let difference = judged(&axis(|_, row| lag[row]));
+        assert_eq!(difference.found.first(), Some(&EffectName::Backlash));
+        let gap = difference.gap.unwrap();
+        assert!((gap / 20.0e-6 - 1.0).abs() < 0.02, "{gap}");
+        assert!(difference.moves_apart() && difference.stiffness.is_none());
+    }
+
+    #[test]
+    fn a_spring_is_found_with_its_stiffness() {
+        let mut wound = axis(|_, _| 0.0);
+        // 60 kg of 90 kg are behind 5 N/µm.
+        let motor = wound.motion.low_passed(&wound.motion.acceleration);
+        let force: Vec<f64> = wound
+            .motion
+            .effort_lp
+            .iter()
+            .zip(motor)
+            .map(|(f, a)| f - 30.0 * a)
+            .collect();
+        let difference = wound.motion.difference.as_mut().unwrap();
+        difference
+            .iter_mut()
+            .zip(force)
+            .for_each(|(x, force)| *x += force / 5.0e6);
+        let difference = judged(&wound);
+        assert_eq!(difference.found, [EffectName::Compliance]);
+        let stiffness = difference.stiffness.unwrap();
+        assert!((stiffness / 5.0e6 - 1.0).abs() < 0.02, "{stiffness}");
+        assert!(difference.moves_apart() && difference.gap.is_none());
+    }
+
+    #[test]
+    fn what_is_declared_is_fitted_and_not_found() {
+        let mut axis = axis(|x, row| 2.0e-6 * (TAU * 500.0 * x[row]).cos());
+        axis.dataset.declared.push(EffectName::PitchError);
+        let difference = judged(&axis);
+        assert!(difference.found.is_empty());
+        assert!(difference.before_um < 0.3 && difference.pitch().is_some());
+    }
+
+    fn output(axis: &Axis, count: f64) -> MotorLoad<'_> {
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+        };
+        MotorLoad {
+            apart: Apart::on(&axis.motion, path).unwrap(),
+            count,
+            before: 100.0,
+            inertia: 90.0,
+        }
+    }
+
+    #[test]
+    fn coefficients_beyond_the_counts_and_of_the_right_sign_are_physical() {
+        let axis = axis(|_, _| 0.0);
+        let output = output(&axis, 1.0e-6);
+        let largest = axis
+            .motion
+            .effort_lp
+            .iter()
+            .fold(0.0_f64, |most, f| most.max(f.abs()));
+        let play = |gap: f64| {
+            Way::Play(Behind {
+                gap,
+                ..Behind::default()
+            })
+        };
+        let pitch = Way::Pitch { per_length: 500.0 };
+        let softest = 2.0e-6 / largest;
+        for (way, own, wanted) in [
+            (play(2.0e-6), &[0.8][..], true),
+            (play(2.0e-6), &[1.2], true),
+            (play(2.0e-6), &[0.79], false),
+            (play(2.0e-6), &[1.21], false),
+            (play(1.9e-6), &[1.0], false),
+            (pitch, &[1.2e-6, -1.61e-6], true),
+            (pitch, &[1.2e-6, 1.59e-6], false),
+            (Way::WindUp, &[1.01 * softest, -30.0 * softest], true),
+            (Way::WindUp, &[0.99 * softest, -30.0 * softest], false),
+            (Way::WindUp, &[1.01 * softest, 30.0 * softest], false),
+            (Way::WindUp, &[1.01 * softest, -92.0 * softest], false),
+            (Way::WindUp, &[-1.01 * softest, 30.0 * softest], false),
+            (Way::Constant, &[1.0], false),
+        ] {
+            assert_eq!(output.is_physical(way, own), wanted, "{way:?} {own:?}");
+        }
+    }
+
+    #[test]
+    fn a_gain_is_accepted_at_its_limits_and_not_below_any_of_them() {
+        let axis = axis(|_, _| 0.0);
+        let mut output = output(&axis, 1.0);
+        // Four samples: 4 removed are an rms of one count.
+        output.apart.mask.fill(false);
+        output.apart.mask[..4].fill(true);
+        let accepts = |removed: f64, share: f64, t: f64, physical: bool| {
+            output.accepts(&Candidate {
+                scored: Scored {
+                    effect: EffectName::Backlash.into(),
+                    parameter: 0.0,
+                    gain: Gain {
+                        removed,
+                        share,
+                        percent: 1.0,
+                        t,
+                    },
+                    physical,
+                    accepted: false,
+                    round: 0,
+                },
+                model: Vec::new(),
+            })
+        };
+        assert!(accepts(4.0, 0.10, 2.0, true));
+        assert!(!accepts(4.0, 0.10, 2.0, false));
+        assert!(!accepts(3.9, 0.10, 2.0, true));
+        assert!(!accepts(4.0, 0.09, 2.0, true));
+        assert!(!accepts(4.0, 0.10, 1.9, true));
+        let of_all = |before: f64| {
+            MotorLoad {
+                before,
+                ..self::output(&axis, 1.0e-9)
+            }
+            .accepts(&Candidate {
+                scored: Scored {
+                    effect: EffectName::Backlash.into(),
+                    parameter: 0.0,
+                    gain: Gain {
+                        removed: 1.0,
+                        share: 0.5,
+                        percent: 1.0,
+                        t: 9.0,
+                    },
+                    physical: true,
+                    accepted: false,
+                    round: 0,
+                },
+                model: Vec::new(),
+            })
+        };
+        assert!(of_all(99.0) && !of_all(101.0));
+        assert_eq!(output.most(), 3);
+    }
+
+    #[test]
+    fn the_quantity_for_people_is_width_stiffness_or_wave_number() {
+        let gap = Behind {
+            gap: 3.0e-6,
+            ..Behind::default()
+        };
+        assert_eq!(parameter(Way::Play(gap), &[0.9]), 3.0e-6);
+        assert_eq!(parameter(Way::WindUp, &[2.0e-7, 0.0]), 5.0e6);
+        assert_eq!(parameter(Way::Pitch { per_length: 7.0 }, &[1.0, 2.0]), 7.0);
+    }
+}

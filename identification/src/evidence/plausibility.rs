@@ -159,3 +159,203 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
     });
     sums.1 / f64::max(sums.0, f64::MIN_POSITIVE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, on, usual};
+    use crate::record::form::ControllerForm;
+    use crate::simulate::made::{record, two_sines};
+
+    fn refused(axis: &Axis) -> String {
+        let checked = check(&axis.dataset, &axis.motion);
+        checked
+            .err()
+            .map_or(String::new(), |error| error.to_string())
+    }
+
+    #[test]
+    fn a_usual_axis_is_plausible() {
+        assert_eq!(refused(&axis(usual)), "");
+    }
+
+    #[test]
+    fn a_factor_of_about_a_thousand_is_a_unit_either_way_and_with_either_sign() {
+        for (factor, wanted) in [
+            (300.0, true),
+            (299.0, false),
+            (2999.0, true),
+            (3001.0, false),
+            (-1000.0, true),
+            (1.0e-3, true),
+            (1.0 / 290.0, false),
+            (1.0, false),
+            (0.0, false),
+        ] {
+            assert_eq!(is_thousand(factor), wanted, "{factor}");
+        }
+    }
+
+    #[test]
+    fn an_effort_against_the_acceleration_has_the_wrong_sign() {
+        let swapped = refused(&axis(|motion, row| -usual(motion, row)));
+        assert!(
+            swapped.contains("force_n falls where the axis speeds up"),
+            "{swapped}"
+        );
+        // An inertia that hardly takes part says nothing.
+        let light = |motion: &Kinematics, row: usize| 25.0 - 0.5 * motion.acceleration[row];
+        assert_eq!(refused(&axis(light)), "");
+    }
+
+    #[test]
+    fn the_share_of_the_inertia_is_one_of_mean_squares() {
+        let axis = axis(|motion, row| 90.0 * motion.acceleration[row]);
+        assert!((inertia_share(&axis.motion, 90.0) - 1.0).abs() < 0.01);
+        assert!((inertia_share(&axis.motion, -45.0) - 0.25).abs() < 0.01);
+    }
+
+    fn with_positions(scale: f64, change: impl FnOnce(&mut Axis)) -> String {
+        let position = two_sines(3000).iter().map(|x| scale * x).collect();
+        let mut axis = on(record(1.0e-3, position));
+        axis.dataset.resolution = 0.0;
+        change(&mut axis);
+        check_position(&axis.dataset, "training", &axis.dataset.train)
+            .err()
+            .map_or(String::new(), |error| error.to_string())
+    }
+
+    #[test]
+    fn a_linear_axis_that_is_too_long_or_too_fast_is_in_millimetres() {
+        // 46 mm of travel, at most 0.1 m/s.
+        assert_eq!(with_positions(450.0, |_| ()), "");
+        let fast = with_positions(600.0, |_| ());
+        assert!(fast.contains("is it in millimetres?"), "{fast}");
+        let slow = |axis: &mut Axis| axis.dataset.train.period_s = 1.0;
+        assert_eq!(with_positions(2000.0, slow), "");
+        let long = with_positions(2400.0, |axis| axis.dataset.train.period_s = 1.0);
+        assert!(long.contains("is it in millimetres?"), "{long}");
+        let rotary = |axis: &mut Axis| axis.dataset.kind = AxisKind::Rotary;
+        assert_eq!(with_positions(1.0e6, rotary), "");
+    }
+
+    #[test]
+    fn a_resolution_that_is_a_thousand_times_the_smallest_step_is_in_another_unit() {
+        let rounded = |resolution: f64, jittered: bool| {
+            with_positions(1.0, |axis| {
+                let count = 1.0e-6;
+                let positions = &mut axis.dataset.train.position;
+                for x in positions {
+                    *x = (*x / count).round() * count;
+                }
+                axis.dataset.resolution = resolution;
+                axis.dataset.train.jittered = jittered;
+            })
+        };
+        assert_eq!(rounded(1.0e-6, false), "");
+        assert!(rounded(1.0e-3, false).contains("check the unit of both"));
+        assert!(rounded(1.0e-9, false).contains("check the unit of both"));
+        assert_eq!(rounded(1.0e-9, true), "");
+        assert_eq!(rounded(1.0e-5, false), "");
+    }
+
+    #[test]
+    fn the_smallest_step_is_not_that_of_standstill() {
+        assert_eq!(smallest_step(&[1.0, 1.0, 4.0, 3.5]), 0.5);
+        assert_eq!(smallest_step(&[1.0, 1.0]), f64::INFINITY);
+    }
+
+    fn follower(scale: f64, is_load: bool) -> String {
+        let mut axis = axis(usual);
+        let train = &mut axis.dataset.train;
+        let column = Some(train.position.iter().map(|x| 0.3 + scale * x).collect());
+        if is_load {
+            train.load = column;
+        } else {
+            train.reference = column;
+        }
+        check_followers(&axis.dataset, "training", &axis.dataset.train)
+            .err()
+            .map_or(String::new(), |error| error.to_string())
+    }
+
+    #[test]
+    fn a_load_that_does_not_follow_is_refused_with_what_it_looks_like() {
+        for (scale, looks) in [
+            (1.0, ""),
+            (0.81, ""),
+            (1.24, ""),
+            (0.79, "belongs to another axis"),
+            (1.26, "belongs to another axis"),
+            (-1.0, "its sign is swapped"),
+            (-3.0, "belongs to another axis"),
+            (1000.0, "off by a thousand"),
+            (0.0, "it stands still"),
+        ] {
+            let text = follower(scale, true);
+            assert!(
+                text.contains(looks) && text.is_empty() == looks.is_empty(),
+                "{scale} {text}"
+            );
+        }
+    }
+
+    #[test]
+    fn of_setpoints_only_a_wrong_unit_or_direction_is_refused() {
+        for (scale, looks) in [
+            (1.0, ""),
+            (5.0, ""),
+            (-0.4, ""),
+            (0.0, ""),
+            (-0.6, "its sign is swapped"),
+            (1000.0, "off by a thousand"),
+            (1.0e-3, "off by a thousand"),
+        ] {
+            let text = follower(scale, false);
+            assert!(
+                text.contains(looks) && text.is_empty() == looks.is_empty(),
+                "{scale} {text}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_effort_that_its_controller_does_not_give_is_refused() {
+        let with = |factor: f64| {
+            let mut axis = axis(usual);
+            axis.dataset.controller = Some(ControllerForm {
+                position_gain_per_s: Some(40.0),
+                velocity_gain_n_s_per_m: Some(1000.0),
+                ..ControllerForm::default()
+            });
+            let train = &mut axis.dataset.train;
+            let late: Vec<f64> = train.position.iter().map(|x| 1.01 * x).collect();
+            let period_s = train.period_s;
+            let velocity =
+                |path: &[f64], row: usize| (path[row] - path[row.saturating_sub(1)]) / period_s;
+            train.effort = (0..train.position.len())
+                .map(|row| {
+                    let error = 40.0 * (late[row] - train.position[row]);
+                    let slower = velocity(&late, row) - velocity(&train.position, row);
+                    factor * 1000.0 * (error + slower)
+                })
+                .collect();
+            train.reference = Some(late);
+            refused(&axis)
+        };
+        assert!(
+            with(-1.0).contains("has the other sign than the controller"),
+            "{}",
+            with(-1.0)
+        );
+        assert!(with(1000.0).contains("check its unit, and that of the gains"));
+        assert!(!with(1.0).contains("controller"), "{}", with(1.0));
+    }
+
+    #[test]
+    fn a_slope_is_one_about_both_means() {
+        assert!((slope(&[1.0, 2.0, 3.0], &[10.0, 12.0, 14.0]) - 2.0).abs() < 1.0e-12);
+        assert!((slope(&[5.0, 7.0], &[1.0, 0.0]) + 0.5).abs() < 1.0e-12);
+        assert_eq!(slope(&[5.0, 5.0], &[1.0, 0.0]), 0.0);
+    }
+}

@@ -100,3 +100,93 @@ fn share(motion: &Kinematics, residual: &[f64], columns: &[Vec<f64>]) -> f64 {
     let left: f64 = fit.held_out.iter().sum();
     (1.0 - left / fit.total.max(f64::MIN_POSITIVE)).max(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{axis, usual};
+
+    #[test]
+    fn a_hat_is_one_at_its_knot_zero_at_its_neighbours_and_flat_beyond_the_ends() {
+        let knots = [1.0, 2.0, 4.0];
+        for (at, value, wanted) in [
+            (1, 2.0, 1.0),
+            (1, 1.5, 0.5),
+            (1, 3.0, 0.5),
+            (1, 1.0, 0.0),
+            (1, 4.5, 0.0),
+            (0, 0.0, 1.0),
+            (0, 1.25, 0.75),
+            (2, 9.0, 1.0),
+            (2, 3.5, 0.75),
+            (0, f64::NAN, 0.0),
+        ] {
+            assert!(
+                (hat(&knots, at, value) - wanted).abs() < 1.0e-12,
+                "{at} {value}"
+            );
+        }
+        // Together they are one everywhere.
+        for value in [0.0, 1.3, 2.0, 3.7, 8.0] {
+            let sum: f64 = (0..3).map(|at| hat(&knots, at, value)).sum();
+            assert!((sum - 1.0).abs() < 1.0e-12);
+        }
+    }
+
+    #[test]
+    fn values_of_the_other_sign_stand_outside() {
+        let forwards = split(&[1.0, -2.0, 0.0], 1.0);
+        assert!(forwards[0] == 1.0 && forwards[1].is_nan() && forwards[2].is_nan());
+        let backwards = split(&[1.0, -2.0, 0.0], -1.0);
+        assert!(backwards[0].is_nan() && backwards[1] == -2.0);
+    }
+
+    #[test]
+    fn a_residual_goes_most_with_what_made_it() {
+        let axis = axis(usual);
+        let motion = &axis.motion;
+        let first = |law: &dyn Fn(usize) -> f64| {
+            let residual: Vec<f64> = (0..motion.len()).map(law).collect();
+            let structures = structures(motion, &residual);
+            let shares: Vec<f64> = structures.iter().map(|structure| structure.share).collect();
+            assert!(shares.windows(2).all(|pair| pair[0] >= pair[1]) && shares.len() == 3);
+            (structures[0].over, structures[0].share)
+        };
+        let (over, share) = first(&|row| motion.velocity_lp[row].abs());
+        assert!(
+            over == "velocity by direction" && share > 0.95,
+            "{over} {share}"
+        );
+        let (over, share) = first(&|row| motion.position_lp[row].powi(2));
+        assert!(over == "position" && share > 0.9, "{over} {share}");
+        let (over, share) = first(&|row| (motion.time_s[row] - 3.0).powi(2));
+        assert!(over == "time" && share > 0.9, "{over} {share}");
+    }
+
+    #[test]
+    fn noise_goes_with_nothing_and_no_share_is_negative() {
+        let axis = axis(usual);
+        let noise = |row: usize| (1.7 * (row * row % 1013) as f64).sin();
+        let residual: Vec<f64> = (0..axis.motion.len()).map(noise).collect();
+        let structures = structures(&axis.motion, &residual);
+        let small = |one: &Structure| (0.0..0.02).contains(&one.share);
+        assert!(structures.iter().all(small), "{structures:?}");
+    }
+
+    #[test]
+    fn a_hundred_moving_samples_are_needed_for_features() {
+        let mut axis = axis(usual);
+        let moving: Vec<usize> = (0..axis.motion.len())
+            .filter(|row| axis.motion.moving[*row])
+            .collect();
+        let count =
+            |axis: &crate::fit::made::Axis| hats(&axis.motion.time_s, &axis.motion, 8).len();
+        axis.motion.moving.fill(false);
+        moving[..99]
+            .iter()
+            .for_each(|row| axis.motion.moving[*row] = true);
+        assert_eq!(count(&axis), 0);
+        axis.motion.moving[moving[99]] = true;
+        assert_eq!(count(&axis), 8);
+    }
+}

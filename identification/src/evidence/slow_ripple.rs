@@ -247,3 +247,103 @@ fn halves(motion: &Kinematics) -> [Kinematics; 2] {
         ..motion.clone()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, model, on, usual};
+    use crate::simulate::made::record;
+    use axis_model::EffectName::{Coulomb, Inertia, Offset, Viscous};
+
+    #[test]
+    fn halves_agree_within_six_tenths_of_their_mean() {
+        // Mean 1: 0.6 apart, along and across.
+        assert!(agree([1.299, 0.0], [0.701, 0.0]) && !agree([1.301, 0.0], [0.699, 0.0]));
+        assert!(agree([1.0, 0.299], [1.0, -0.299]) && !agree([1.0, 0.301], [1.0, -0.301]));
+        assert!(!agree([1.0, 0.0], [-1.0, 0.0]));
+    }
+
+    #[test]
+    fn an_axis_dwells_with_a_slow_row_per_reversal_or_with_few_reversals() {
+        let velocity = |slow: usize| {
+            let mut velocity = vec![0.5; 1000];
+            velocity[..slow].fill(-0.09);
+            velocity
+        };
+        assert!(!dwells(&velocity(19), 0.1, 20));
+        assert!(dwells(&velocity(20), 0.1, 20));
+        assert!(dwells(&velocity(0), 0.1, 19));
+        assert!(!dwells(&velocity(20), 0.08, 20));
+    }
+
+    #[test]
+    fn each_half_has_half_of_the_samples_and_none_of_the_others() {
+        let mut axis = axis(usual);
+        axis.motion.fitted.fill(false);
+        axis.motion.fitted[100..201].fill(true);
+        let [first, second] = halves(&axis.motion);
+        let rows = |motion: &Kinematics| -> Vec<usize> {
+            (0..motion.len())
+                .filter(|row| motion.fitted[*row])
+                .collect()
+        };
+        assert_eq!(rows(&first), (100..150).collect::<Vec<usize>>());
+        assert_eq!(rows(&second), (150..201).collect::<Vec<usize>>());
+    }
+
+    #[test]
+    fn the_median_speed_is_one_of_moving_samples_in_both_directions() {
+        let mut axis = axis(usual);
+        let motion = &mut axis.motion;
+        motion.moving.fill(false);
+        motion.moving[..5].fill(true);
+        motion.velocity_lp[..5].copy_from_slice(&[-0.5, 0.1, 0.2, -0.4, 0.3]);
+        assert_eq!(median_speed(motion), 0.3);
+    }
+
+    /// 10 mm to and fro at 4 Hz for 14 s: at 6 m/s² the axis passes its reversals within 0.3 ms. A
+    /// slower swing brings them to other places.
+    fn swinging() -> Axis {
+        let sine = |row: u32, hz: f64| (TAU * hz * 1.0e-3 * f64::from(row)).sin();
+        let path = |row: u32| 0.01 * sine(row, 4.0) + 0.006 * sine(row, 0.31);
+        let mut axis = on(record(1.0e-3, (0..14_000).map(path).collect()));
+        axis.dataset.lead_m_per_rev = Some(0.01);
+        axis
+    }
+
+    fn ripple(axis: &mut Axis, amplitude: f64, order: f64) -> Option<RippleAtReversals> {
+        axis.put(|motion, row| {
+            let angle = TAU * order / 0.01 * motion.position_lp[row];
+            usual(motion, row) + amplitude * angle.cos()
+        });
+        axis.dataset.validate = axis.dataset.train.clone();
+        slow_ripple(
+            &axis.dataset,
+            &axis.motion,
+            &model(&[Inertia, Viscous, Coulomb, Offset]),
+        )
+    }
+
+    #[test]
+    fn an_order_that_shows_about_reversals_is_found_with_its_amplitude() {
+        let found = ripple(&mut swinging(), 4.0, 5.0).expect("ripple");
+        let orders: Vec<u32> = found.orders.iter().map(|order| order.per_rev).collect();
+        assert!(orders.contains(&5), "{orders:?}");
+        let order = found
+            .orders
+            .iter()
+            .find(|order| order.per_rev == 5)
+            .unwrap();
+        assert!((order.amplitude - 4.0).abs() < 1.0, "{order:?}");
+        assert!(found.train_percent.extended < 0.5 * found.train_percent.declared);
+        assert!(found.validate_percent.extended < 0.5 * found.validate_percent.declared);
+    }
+
+    #[test]
+    fn without_ripple_or_without_a_lead_there_is_nothing() {
+        assert!(ripple(&mut swinging(), 0.0, 5.0).is_none());
+        let mut axis = swinging();
+        axis.dataset.lead_m_per_rev = None;
+        assert!(ripple(&mut axis, 4.0, 5.0).is_none());
+    }
+}
