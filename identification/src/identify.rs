@@ -20,6 +20,7 @@ use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::{self, Motions};
+use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::{EXCERPT, ExcerptSize, excerpt};
 use crate::report;
@@ -34,7 +35,7 @@ use crate::report::forms::Identification;
 /// Where the record leaves nothing to fit.
 pub fn identify(
     dataset: &Dataset,
-    progress: &mut dyn FnMut(&str),
+    progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     identify_excerpt(dataset, EXCERPT, progress)
 }
@@ -42,7 +43,7 @@ pub fn identify(
 fn identify_excerpt(
     dataset: &Dataset,
     size: ExcerptSize,
-    progress: &mut dyn FnMut(&str),
+    progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
@@ -56,7 +57,10 @@ fn identify_excerpt(
         low: &low,
     };
     let findings = findings(pair, &motions, progress);
-    let all = excerpt.as_ref().map(|_| AllRows::of(&findings, dataset));
+    let all = excerpt.as_ref().map(|_| {
+        progress(&Step::AllRows);
+        AllRows::of(&findings, dataset)
+    });
     Ok(report::identification(&findings, all.as_ref()))
 }
 
@@ -64,18 +68,17 @@ fn identify_excerpt(
 fn findings<'a>(
     pair: Pair<'a>,
     motions: &'a Motions,
-    progress: &mut dyn FnMut(&str),
+    progress: &mut dyn FnMut(&Step),
 ) -> Findings<'a> {
     let (bench, dataset) = (pair.bench, pair.bench.dataset);
-    progress("fitting the declared model");
+    progress(&Step::Declared);
     let declared = declared(pair);
-    progress("scoring candidate effects");
+    progress(&Step::Candidates);
     let effort = on_effort(pair, &declared, &motions.validate, progress);
     let fitted = bench.fit(&effort.model);
-    progress("looking at motor and load");
+    progress(&Step::MotorAndLoad);
     let difference = on_difference(bench, &fitted);
-    progress("simulating reversals: stick, bristle, gap");
-    let reversals = ReversalStage::of(bench, &fitted, difference.as_ref());
+    let reversals = ReversalStage::of(bench, &fitted, difference.as_ref(), progress);
     let mut stages = Stages {
         effort,
         difference,
@@ -84,7 +87,7 @@ fn findings<'a>(
     };
     let models = models(pair, declared, &stages);
     stages.ripple = slow_ripple(dataset, &motions.train, models.declared.fitted.model());
-    progress("validating");
+    progress(&Step::Validating);
     Findings::of(dataset, [&motions.train, &motions.validate], stages, models)
 }
 
@@ -100,7 +103,7 @@ fn on_effort(
     pair: Pair<'_>,
     declared: &Model,
     validate: &Kinematics,
-    progress: &mut dyn FnMut(&str),
+    progress: &mut dyn FnMut(&Step),
 ) -> Selection {
     let mut selected = effort::select(pair, declared.clone(), progress);
     let other = Bench::new(pair.bench.dataset, validate);
@@ -152,4 +155,115 @@ pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
             dataset.name
         ))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::samples::Record;
+    use crate::record::units::{AxisKind, Effort, EffortHold};
+
+    /// 20 s at 1 kHz of an axis without mass, so that nothing is simulated: Coulomb and viscous
+    /// friction, an offset, and a ripple of 15 N that nobody declared.
+    fn record(phase: f64) -> Record {
+        let time_s: Vec<f64> = (0..20_000).map(|row| 1.0e-3 * f64::from(row)).collect();
+        let position: Vec<f64> = time_s.iter().map(|t| counted(path(*t, phase))).collect();
+        let effort = (0..time_s.len()).map(|row| {
+            let t = time_s[row];
+            let velocity = (path(t + 1.0e-5, phase) - path(t - 1.0e-5, phase)) / 2.0e-5;
+            let ripple = 15.0 * (std::f64::consts::TAU * 200.0 * position[row]).cos();
+            let noise = 2.0 * (1.0e4 * (row as f64 * 12.9898).sin()).fract();
+            100.0 * velocity.signum() + 300.0 * velocity + 5.0 + ripple + noise
+        });
+        let effort: Vec<f64> = effort.collect();
+        Record {
+            period_s: 1.0e-3,
+            load: None,
+            reference: None,
+            rows: time_s.iter().copied().zip(effort.iter().copied()).collect(),
+            effort,
+            position,
+            jittered: false,
+            joints: Vec::new(),
+            interpolated: vec![false; time_s.len()],
+            time_s,
+        }
+    }
+
+    fn path(t: f64, phase: f64) -> f64 {
+        0.03 * (0.9 * t + phase).sin() + 0.008 * (2.9 * t).sin()
+    }
+
+    /// An encoder of 0.1 µm.
+    fn counted(position: f64) -> f64 {
+        1.0e-7 * (position / 1.0e-7).round()
+    }
+
+    fn dataset() -> Dataset {
+        Dataset {
+            name: "long".into(),
+            kind: AxisKind::Linear,
+            effort: Effort::Force,
+            hold: EffortHold::Instant,
+            effort_lag_s: 0.0,
+            lead_m_per_rev: None,
+            resolution: 1.0e-7,
+            load_resolution: 0.0,
+            effort_limit: None,
+            controller: None,
+            declared: vec![EffectName::Coulomb, EffectName::Viscous, EffectName::Offset],
+            train: record(0.0),
+            validate: record(1.0),
+            held_back: false,
+            notes: Vec::new(),
+        }
+    }
+
+    fn identified(rows: usize) -> Identification {
+        let size = ExcerptSize { rows, windows: 3 };
+        identify_excerpt(&dataset(), size, &mut |_| ()).unwrap()
+    }
+
+    #[test]
+    fn windows_of_a_long_record_give_the_names_and_the_errors_of_the_whole() {
+        let (whole, windows) = (identified(20_000), identified(12_000));
+        assert_eq!(whole.report.found, ["torque_ripple"]);
+        assert_eq!(windows.report.found, whole.report.found);
+        assert_eq!(windows.report.verdict, whole.report.verdict);
+        let pairs = [
+            (&windows.report.train, &whole.report.train),
+            (&windows.report.validate, &whole.report.validate),
+        ];
+        for (of_windows, of_whole) in pairs {
+            let before =
+                of_windows.force_error_before_percent / of_whole.force_error_before_percent;
+            let after = of_windows.force_error_after_percent / of_whole.force_error_after_percent;
+            assert!((0.98..1.02).contains(&before), "{before}");
+            assert!((0.98..1.05).contains(&after), "{after}");
+        }
+    }
+
+    #[test]
+    fn every_row_of_a_long_record_has_a_prediction_and_none_is_a_spike() {
+        let windows = identified(12_000);
+        let curves = &windows.curves;
+        assert_eq!(curves.extended.len(), 20_000);
+        assert_eq!(curves.time_s, dataset().validate.time_s);
+        let errors = curves.extended.iter().zip(&curves.effort);
+        // Noise of 2 N; about a reversal the sign may be a row off: twice the Coulomb friction.
+        let apart = errors.filter(|(predicted, effort)| (*predicted - *effort).abs() > 6.0);
+        assert!(apart.count() < 60);
+    }
+
+    #[test]
+    fn the_report_says_how_much_was_fitted_and_a_short_record_says_nothing() {
+        let fitted_on = |identification: Identification| {
+            let warnings = identification.report.warnings.into_iter();
+            warnings
+                .filter(|warning| warning.starts_with("fitted on 12000 of 20000 rows"))
+                .count()
+        };
+        assert_eq!(fitted_on(identified(12_000)), 1);
+        assert_eq!(fitted_on(identified(20_000)), 0);
+    }
 }

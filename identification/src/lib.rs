@@ -21,12 +21,14 @@ mod fit;
 mod identify;
 mod model;
 mod motion;
+mod progress;
 mod record;
 mod report;
 mod simulate;
 
 pub use error::IdentificationError;
 pub use identify::{declared_coulomb, identify};
+pub use progress::Step;
 pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::forms::{EffectCurve, Errors, FreeRunErrors, Identification, Report};

@@ -19,19 +19,20 @@ use crate::fit::tuning::{self, Pair};
 use crate::model::effects::load_inertia::LoadInertia;
 use crate::model::effects::{self, Effect, LIBRARY, Setting};
 use crate::model::inverse::{Model, Origin, Part};
+use crate::progress::Step;
 
 /// The effort of moving samples, at both cut-offs.
 struct Effort<'a>(Pair<'a>);
 
 /// Forward selection from the declared model, and removal of what is superfluous in the end.
 /// `progress` hears of every effect.
-pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&str)) -> Selection {
+pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&Step)) -> Selection {
     let mut heard = |scored: &Scored| {
-        let percent = 100.0 * scored.gain.share;
-        let effect = scored.effect;
-        progress(&format!(
-            "{effect} removes {percent:.0} % of the held-out residual"
-        ));
+        progress(&Step::Found {
+            effect: scored.effect.to_string(),
+            percent: 100.0 * scored.gain.share,
+            round: scored.round,
+        });
     };
     let mut selection = selection::select(&Effort(pair), start, &mut heard);
     remove(pair.bench, &mut selection.model);
@@ -257,7 +258,7 @@ mod tests {
         };
         let mut said = Vec::new();
         let selection = select(pair, model(&DECLARED), &mut |text| {
-            said.push(text.to_owned());
+            said.push(text.to_string());
         });
         assert_eq!(selection.found(), [ViscousAsymmetry]);
         assert!(selection.nameless().is_empty());

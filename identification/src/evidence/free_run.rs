@@ -12,6 +12,7 @@ use crate::evidence::thresholds::{
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
+use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::simulate::axis::{Gap, Shape};
@@ -141,7 +142,11 @@ impl Judge<'_> {
 /// Judges the reversals of a training record with an inverse model to start from; `None` where that
 /// has no mass or friction.
 #[must_use]
-pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals> {
+pub(crate) fn reversals(
+    dataset: &Dataset,
+    fitted: &Fitted,
+    progress: &mut dyn FnMut(&Step),
+) -> Option<Reversals> {
     let record = &dataset.train;
     let drive = Drive::of(dataset);
     let smallest = FEWEST_COUNTS * dataset.resolution;
@@ -156,6 +161,7 @@ pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals>
     };
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, record.period_s, fitted, shape);
+    progress(&Step::Rigid);
     let rigid = judge.fitted(&start(Shape::default())?);
     let damping = 30.0 * rigid.model.mechanics.mass;
     let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
@@ -169,14 +175,17 @@ pub(crate) fn reversals(dataset: &Dataset, fitted: &Fitted) -> Option<Reversals>
             gap: None,
         })
     });
+    progress(&Step::Bristle);
     let bristle = judge.best(&bristles.collect::<Vec<_>>(), 1)?;
     let rounding = ROUNDING * dataset.resolution;
     let worth = rigid.all > VISIBLE_ROUNDINGS * rounding
         || bristle.held_out.min(bristle.all) < HELPS_RATIO * rigid.held_out.max(rigid.all);
+    progress(&Step::Gap);
     let gap = worth
         .then(|| judge.best(&gaps(unit, start), STARTS))
         .flatten();
     let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
+    progress(&Step::BristleAndGap);
     let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
     if let Some(both) = &both {
         accepted = judge.add(accepted, &bristle, gap.as_ref(), both);

@@ -7,6 +7,7 @@ use crate::evidence::free_run::{self, Reversals};
 use crate::evidence::reversal::{self, Presliding};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
+use crate::progress::Step;
 
 /// What the witnesses said of reversals, and what was made of it.
 pub(crate) struct ReversalStage {
@@ -22,9 +23,14 @@ pub(crate) struct ReversalStage {
 
 impl ReversalStage {
     /// Asks all witnesses about a fitted model of the training record.
-    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, difference: Option<&Difference>) -> Self {
+    pub(crate) fn of(
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        difference: Option<&Difference>,
+        progress: &mut dyn FnMut(&Step),
+    ) -> Self {
         let inverse = reversal::presliding(bench, fitted);
-        let mut free_run = free_run::reversals(bench.dataset, fitted);
+        let mut free_run = free_run::reversals(bench.dataset, fitted, progress);
         let load_scale = difference.map(|found| LoadScale {
             gap: found.gap.is_some(),
         });
@@ -76,7 +82,7 @@ mod tests {
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let bench = Bench::new(&dataset, &motion);
         let fitted = bench.fit(&Model::declared(&dataset));
-        ReversalStage::of(&bench, &fitted, difference)
+        ReversalStage::of(&bench, &fitted, difference, &mut |_| ())
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! `quadrant identify`: which effect does the declared model of a recorded axis lack? Offline.
 
-use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 
 use identification::{Dataset, Identification};
 
 use crate::cli;
 use crate::console;
-use crate::error::Outcome;
+use crate::error::{Failure, Outcome};
 use crate::model_file::{self, Known};
 use crate::output_files::{json, make_folder, write};
 use crate::presentation::page::Page;
@@ -24,7 +24,10 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
         arguments.validate.as_deref(),
         arguments.declared.clone(),
     )?;
-    let result = identification::identify(&dataset, &mut |text| progress::step(text))?;
+    let work = progress::Work::begins();
+    let result = identification::identify(&dataset, &mut |step| {
+        work.step(&step.to_string(), step.done());
+    })?;
     // Files first: whoever reads the output may stop early.
     if let Some(path) = &arguments.json {
         write(path, &json(&result.report)?)?;
@@ -39,10 +42,14 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     Ok(())
 }
 
-fn write_folder(folder: &Path, dataset: &Dataset, result: &Identification) -> Outcome<()> {
+/// Writes everything that is said of a result into a folder.
+///
+/// # Errors
+/// Where a file cannot be written.
+pub fn write_folder(folder: &Path, dataset: &Dataset, result: &Identification) -> Outcome<()> {
     make_folder(folder)?;
     write(&folder.join("identification.json"), &json(&result.report)?)?;
-    write(&folder.join("prediction.csv"), &prediction_csv(result))?;
+    write_prediction(&folder.join("prediction.csv"), result)?;
     write(&folder.join("model.toml"), &model_toml(dataset, result))?;
     let mut page = Page::new(&format!("Identification of {}", dataset.name));
     add_identification(&mut page, "Result", result)?;
@@ -62,15 +69,23 @@ fn model_toml(dataset: &Dataset, result: &Identification) -> String {
     }
 }
 
-/// `prediction.csv` of the validation record.
-fn prediction_csv(result: &Identification) -> String {
+/// `prediction.csv` of the validation record, a row at a time: it may have a million.
+fn write_prediction(path: &Path, result: &Identification) -> Outcome<()> {
+    let failed = |error: std::io::Error| Failure::file(path, &error);
+    let file = std::fs::File::create(path).map_err(failed)?;
+    let mut file = std::io::BufWriter::new(file);
+    write_rows(&mut file, result)
+        .and_then(|()| file.flush())
+        .map_err(failed)
+}
+
+fn write_rows(file: &mut impl std::io::Write, result: &Identification) -> std::io::Result<()> {
     let curves = &result.curves;
-    let mut text = format!("time_s,{},declared,extended\n", result.effort_column);
+    writeln!(file, "time_s,{},declared,extended", result.effort_column)?;
     let recorded = curves.time_s.iter().zip(&curves.effort);
     let predicted = curves.declared.iter().zip(&curves.extended);
     for ((time, effort), (declared, extended)) in recorded.zip(predicted) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{time},{effort},{declared:.6},{extended:.6}");
+        writeln!(file, "{time},{effort},{declared:.6},{extended:.6}")?;
     }
-    text
+    Ok(())
 }

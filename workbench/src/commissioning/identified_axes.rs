@@ -96,8 +96,9 @@ fn begin(axis: &str, dataset: Dataset) -> Work {
     progress::step(&format!("identifying axis {axis}"));
     let axis = axis.to_owned();
     std::thread::spawn(move || {
-        identification::identify(&dataset, &mut |text| {
-            progress::step(&format!("axis {axis}: {text}"));
+        let work = progress::Work::begins();
+        identification::identify(&dataset, &mut |step| {
+            work.step(&format!("axis {axis}: {step}"), step.done());
         })
     })
 }
