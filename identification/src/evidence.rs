@@ -1,4 +1,16 @@
-//! What a record lacks: findings on every measured output.
+//! What a record lacks: a judge for each measured output, and what follows from all of them.
+//!
+//! | output | judge | effects |
+//! |---|---|---|
+//! | effort of moving samples | [`effort`] | columns, delay, saturation |
+//! | effort about reversals | [`reversal`] | presliding |
+//! | the same, of an axis that never dwells | [`slow_ripple`] | torque ripple |
+//! | free-run position | [`free_run`] | presliding, backlash |
+//! | motor − load | [`difference`] | backlash, compliance, pitch error |
+//!
+//! [`selection`] is the one forward selection that judges share, [`thresholds`] has every limit.
+//! [`reversal_stage`] asks the witnesses of a reversal and [`at_reversals`] decides. [`findings`]
+//! puts together what was found, and [`verdict`] says whether something is left.
 
 pub(crate) mod all_rows;
 pub(crate) mod at_reversals;

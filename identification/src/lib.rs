@@ -6,12 +6,18 @@
 //!                               └── refit ◀── accept ◀── candidates on held-out blocks
 //! ```
 //!
-//! The model is inverse dynamics: force = Σ coefficient · column. Both sides go through the same
-//! zero-phase low-pass; only moving samples are fitted. A candidate is judged on blocks of the
-//! training record that were left out of its fit, and accepted one at a time, largest first, where
-//! it removes enough of the held-out error, by more than its uncertainty. Displacement effects that
-//! act at reversal only (presliding) are judged on the samples about reversals; those between motor
-//! and load (backlash, compliance, pitch error) on the difference of the two positions.
+//! The model is inverse dynamics: effort = Σ coefficient · column. Both sides go through the same
+//! zero-phase low-pass, and only moving samples are fitted. A candidate is judged on blocks of the
+//! training record that were left out of its fit. Candidates are accepted one at a time, largest
+//! first, where what they remove is relevant, matters and is certain.
+//!
+//! What acts at reversals (presliding, backlash) is judged on the effort about reversals and on the
+//! position of a simulation in closed loop. What acts between motor and load (backlash, compliance,
+//! pitch error) is judged on the difference of the two positions.
+//!
+//! Rooms, each of which uses those before it and none after it: `record`, `motion`, `model`, `fit`,
+//! `simulate`, `evidence`, `report`. [`identify()`] is the list of the steps. Method, limits and
+//! figures: docs/identification.md.
 //!
 //! Nothing here knows the simulator or its parameters.
 
