@@ -161,7 +161,11 @@ impl Left<'_> {
 
 #[cfg(test)]
 mod tests {
+    use axis_model::EffectName;
+
     use super::*;
+    use crate::fit::blocks::Gain;
+    use crate::simulate::made;
 
     fn nothing_left() -> Left<'static> {
         Left {
@@ -298,5 +302,73 @@ mod tests {
         assert!(parts[2].starts_with("structure over position (20 %"));
         assert!(parts[3].starts_with("structure at reversals"));
         assert!(parts[4].starts_with("motor and load"));
+    }
+
+    fn scored(round: usize, share: f64, physical: bool) -> Scored {
+        Scored {
+            effect: EffectName::Delay.into(),
+            parameter: 1.0e-3,
+            gain: Gain {
+                removed: 1.0,
+                share,
+                percent: 1.0,
+                t: 5.0,
+            },
+            physical,
+            accepted: false,
+            round,
+        }
+    }
+
+    #[test]
+    fn the_best_candidate_of_a_round_is_the_largest_that_can_be_its_effect() {
+        let list = [
+            scored(0, 0.4, true),
+            scored(0, 0.7, true),
+            scored(0, 0.9, false),
+            scored(1, 0.2, true),
+            scored(2, -0.1, true),
+        ];
+        let best = [0, 1, 2, 3].map(|round| best_of_round(&list, round));
+        assert_eq!(best, [0.7, 0.2, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_residual_is_white_below_the_share_of_the_smallest_accepted_effect() {
+        let left = ResidualStructure {
+            share: Compared {
+                declared: 0.05,
+                extended: 0.0499,
+            },
+            over: "time",
+        };
+        let white = left.is_white();
+        assert!(!white.declared && white.extended);
+    }
+
+    /// A difference counts beyond 3 µm *and* ten counts of the coarser encoder.
+    #[test]
+    fn motor_and_load_move_apart_beyond_both_limits_only() {
+        let table = [
+            // µm left, counts of motor and load in µm, apart
+            (3.5, [0.1, 0.34], true),
+            (2.9, [0.1, 0.1], false),
+            (3.0, [0.1, 0.1], false),
+            (3.5, [0.1, 0.36], false),
+            (3.5, [0.36, 0.1], false),
+            (50.0, [4.9, 0.0], true),
+        ];
+        for (after_um, [motor_um, load_um], apart) in table {
+            let record = made::record(1.0e-3, made::two_sines(10));
+            let dataset = Dataset {
+                resolution: 1.0e-6 * motor_um,
+                load_resolution: 1.0e-6 * load_um,
+                ..made::dataset(record, None)
+            };
+            let mut difference = Difference::default();
+            difference.after_um = after_um;
+            let case = format!("{after_um} µm, counts of {motor_um} and {load_um} µm");
+            assert_eq!(moves_apart(&dataset, &difference), apart, "{case}");
+        }
     }
 }
