@@ -1,0 +1,229 @@
+//! From the commanded effort to the effort at the motor: quantum, dead time, current loop,
+//! droop, ripple of the torque constant.
+//!
+//! The closed current loop is of first order (a zero that cancels the winding) or of second order
+//! (Leonhard, Control of Electrical Drives, 2001, ch. 7). Iron that saturates delivers
+//! u/(1 + k|u|). A torque constant that depends on the rotor's place delivers
+//! u·(1 + share·cos(waves·x + phase)) (Holtz and Springob, IEEE Trans. Ind. Electron. 43, 1996).
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+/// Closed current loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CurrentLoop {
+    /// Follows at once.
+    Ideal,
+    /// First order with a time constant, s.
+    First(f64),
+    /// Second order: natural frequency, Hz, and damping ratio.
+    Second(f64, f64),
+}
+
+/// Ripple of the torque constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantRipple {
+    /// Amplitude as a share.
+    pub share: f64,
+    /// Wave number, rad per unit of position.
+    pub waves: f64,
+    /// Phase at position zero, rad.
+    pub phase: f64,
+}
+
+/// What a drive does that no name of the list says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Flaw {
+    /// Commands below this deliver nothing, larger ones less by it.
+    DeadZone(f64),
+    /// The delivered effort is larger by a share from a time on, s.
+    Stronger(f64, f64),
+    /// Delivered effort larger by a share in one direction than in the other.
+    Lopsided(f64),
+}
+
+/// A drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Step of the command, N or N m; zero where there is none.
+    pub quantum: f64,
+    /// Time until a command reaches the current loop, s.
+    pub dead_time_s: f64,
+    /// Current loop.
+    pub current_loop: CurrentLoop,
+    /// k of u/(1 + k|u|).
+    pub droop: f64,
+    /// Ripple of the torque constant.
+    pub ripple: Option<ConstantRipple>,
+    /// Flaw.
+    pub flaw: Option<Flaw>,
+}
+
+impl Default for Drive {
+    fn default() -> Self {
+        Self {
+            quantum: 0.0,
+            dead_time_s: 0.0,
+            current_loop: CurrentLoop::First(4.0e-5),
+            droop: 0.0,
+            ripple: None,
+            flaw: None,
+        }
+    }
+}
+
+/// State of a drive.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DriveState {
+    waiting: VecDeque<f64>,
+    current: f64,
+    rate: f64,
+}
+
+/// What a drive gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delivered {
+    /// Current, as effort by the nominal torque constant: what the drive's own sensor sees.
+    pub current: f64,
+    /// Effort on the motor.
+    pub effort: f64,
+}
+
+impl Drive {
+    /// One step with a command.
+    pub fn step(
+        &self,
+        state: &mut DriveState,
+        command: f64,
+        (position, time_s): (f64, f64),
+        step_s: f64,
+    ) -> Delivered {
+        let due = self.waited(state, rounded(command, self.quantum), step_s);
+        let current = self.follow(state, due, step_s);
+        let drooped = current / (1.0 + self.droop * current.abs());
+        let ripple = self.ripple.map_or(0.0, |wave| {
+            wave.share * libm::cos(wave.waves * position + wave.phase)
+        });
+        let effort = flawed(self.flaw, drooped * (1.0 + ripple), time_s);
+        Delivered { current, effort }
+    }
+
+    fn waited(&self, state: &mut DriveState, command: f64, step_s: f64) -> f64 {
+        let steps = (self.dead_time_s / step_s).round() as usize;
+        state.waiting.push_back(command);
+        if state.waiting.len() > steps {
+            state.waiting.pop_front().unwrap_or(command)
+        } else {
+            0.0
+        }
+    }
+
+    fn follow(&self, state: &mut DriveState, due: f64, step_s: f64) -> f64 {
+        match self.current_loop {
+            CurrentLoop::Ideal => state.current = due,
+            CurrentLoop::First(time_constant_s) => {
+                state.current +=
+                    (due - state.current) * (1.0 - libm::exp(-step_s / time_constant_s));
+            }
+            CurrentLoop::Second(frequency_hz, damping) => {
+                let w = TAU * frequency_hz;
+                let bend = w * w * (due - state.current) - 2.0 * damping * w * state.rate;
+                state.rate += step_s * bend;
+                state.current += step_s * state.rate;
+            }
+        }
+        state.current
+    }
+}
+
+/// To the nearest step; as it is where there is none.
+#[must_use]
+pub fn rounded(value: f64, quantum: f64) -> f64 {
+    if quantum > 0.0 {
+        (value / quantum).round() * quantum
+    } else {
+        value
+    }
+}
+
+fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64) -> f64 {
+    match flaw {
+        None => effort,
+        Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
+        Some(Flaw::Stronger(share, from_s)) if time_s >= from_s => effort * (1.0 + share),
+        Some(Flaw::Stronger(..)) => effort,
+        Some(Flaw::Lopsided(share)) => effort + share * effort.abs(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP_S: f64 = 1.0e-5;
+
+    fn after(drive: &Drive, command: f64, steps: usize) -> Delivered {
+        let mut state = DriveState::default();
+        let mut delivered = None;
+        for _ in 0..steps {
+            delivered = Some(drive.step(&mut state, command, (0.0, 0.0), STEP_S));
+        }
+        delivered.unwrap()
+    }
+
+    #[test]
+    fn a_loop_of_first_order_has_63_percent_after_its_time_constant() {
+        let drive = Drive {
+            current_loop: CurrentLoop::First(5.0e-4),
+            ..Drive::default()
+        };
+        assert!((after(&drive, 10.0, 50).current - 6.321).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn a_loop_of_second_order_overshoots_by_its_damping_and_settles() {
+        let drive = Drive {
+            current_loop: CurrentLoop::Second(800.0, 0.5),
+            ..Drive::default()
+        };
+        let most = (1..400)
+            .map(|n| after(&drive, 1.0, n).current)
+            .fold(0.0, f64::max);
+        // exp(−πζ/√(1 − ζ²)) = 16.3 %
+        assert!((most - 1.163).abs() < 0.01, "{most}");
+        assert!((after(&drive, 1.0, 2000).current - 1.0).abs() < 1.0e-6);
+    }
+
+    #[test]
+    fn a_command_waits_for_its_dead_time() {
+        let drive = Drive {
+            dead_time_s: 1.0e-3,
+            current_loop: CurrentLoop::Ideal,
+            ..Drive::default()
+        };
+        assert_eq!(after(&drive, 3.0, 100).effort, 0.0);
+        assert_eq!(after(&drive, 3.0, 101).effort, 3.0);
+    }
+
+    #[test]
+    fn the_sensor_of_the_drive_sees_neither_droop_nor_ripple() {
+        let drive = Drive {
+            current_loop: CurrentLoop::Ideal,
+            droop: 0.01,
+            ripple: Some(ConstantRipple {
+                share: 0.1,
+                waves: 1.0,
+                phase: 0.0,
+            }),
+            ..Drive::default()
+        };
+        let delivered = after(&drive, 100.0, 1);
+        assert_eq!(delivered.current, 100.0);
+        assert!((delivered.effort - 55.0).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn commands_are_rounded_to_the_quantum() {
+        assert!((rounded(0.26, 0.1) - 0.3).abs() < 1e-12 && rounded(0.26, 0.0) == 0.26);
+    }
+}

@@ -1,0 +1,175 @@
+//! An entry: a folder with `dataset.toml`, `train.csv`, `validate.csv` and `truth.json`.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::Path;
+
+use crate::control::{Law, Sensor};
+use crate::draw::Draw;
+use crate::rig::{EffortColumn, Kind, Rig};
+use crate::sensing::Source;
+use crate::table::Table;
+use crate::truth::{Effect, Known, Truth, Verdict};
+
+/// An entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Name of its folder.
+    pub name: String,
+    /// `dataset.toml`.
+    pub dataset: String,
+    /// Training record.
+    pub train: Table,
+    /// Validation record.
+    pub validate: Table,
+    /// What is true.
+    pub truth: Truth,
+}
+
+impl Entry {
+    /// Records a rig; the truth says what its declared model, the rig's base, lacks.
+    #[must_use]
+    pub fn of(name: &str, rig: &Rig, truth: Truth, seed: u64) -> Self {
+        Self::with_validation(name, rig, rig, truth, seed)
+    }
+
+    /// The same, with the validation record from another rig.
+    #[must_use]
+    pub fn with_validation(name: &str, rig: &Rig, other: &Rig, truth: Truth, seed: u64) -> Self {
+        let mut draw = Draw::of(name, seed);
+        Self {
+            name: name.into(),
+            dataset: dataset(name, rig, &truth.declared),
+            train: rig.table(&rig.training, &mut draw),
+            validate: other.table(&other.validation, &mut draw),
+            truth,
+        }
+    }
+
+    /// Writes it into a folder of its name.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub fn write(&self, root: &Path) -> io::Result<()> {
+        let folder = root.join(&self.name);
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(folder.join("dataset.toml"), &self.dataset)?;
+        std::fs::write(folder.join("train.csv"), self.train.csv())?;
+        std::fs::write(folder.join("validate.csv"), self.validate.csv())?;
+        let truth = serde_json::to_string_pretty(&self.truth).map_err(io::Error::other)?;
+        std::fs::write(folder.join("truth.json"), truth + "\n")
+    }
+}
+
+/// The truth of a rig that lacks some effects.
+#[must_use]
+pub fn truth(make: &str, form: &str, rig: &Rig, declared: &[Effect], lacking: &[Effect]) -> Truth {
+    Truth {
+        make: make.into(),
+        form: form.into(),
+        effects: lacking.to_vec(),
+        verdict: Verdict::Explained,
+        or_unexplained: false,
+        same_force: vec![(Effect::Offset, Effect::CoulombAsymmetry)],
+        declared: declared.to_vec(),
+        oracle: [declared, lacking].concat(),
+        parameters: parameters(rig),
+        cause: String::new(),
+    }
+}
+
+/// Inertia, Coulomb and viscous friction in the unit of the record, and what the make knows.
+fn parameters(rig: &Rig) -> Vec<Known> {
+    let per = rig.column.per_effort();
+    let (effort, position) = (rig.column.unit(), rig.kind.position_unit());
+    let known = |name, value: f64, unit: String| Known {
+        name,
+        value: value * per,
+        unit,
+    };
+    let mut all = vec![
+        known(
+            "inertia",
+            rig.train.inertia(),
+            format!("{effort} s2/{position}"),
+        ),
+        known("coulomb", rig.train.coulomb(), effort.into()),
+        known(
+            "viscous",
+            rig.train.viscous(),
+            format!("{effort} s/{position}"),
+        ),
+    ];
+    all.extend(rig.known.clone());
+    all
+}
+
+/// Text of `dataset.toml`.
+fn dataset(name: &str, rig: &Rig, declared: &[Effect]) -> String {
+    let mut text = format!("name = \"{name}\"\nsample_period_s = {:e}\n", rig.row_s());
+    text.push_str(match rig.sensing.effort.source {
+        Source::Command => "effort_hold = \"zero-order\"\n",
+        Source::Current => "effort_hold = \"instant\"\n",
+    });
+    if let Some(lag_s) = rig.stated.effort_lag_s {
+        let _ = writeln!(text, "effort_lag_s = {lag_s:e}");
+    }
+    text.push_str(&axis(rig));
+    text.push_str(&controller(rig));
+    let names: Vec<String> = declared
+        .iter()
+        .map(|e| format!("\"{}\"", e.name()))
+        .collect();
+    let _ = write!(text, "\n[declared]\neffects = [{}]\n", names.join(", "));
+    text
+}
+
+fn axis(rig: &Rig) -> String {
+    let (kind, unit) = match rig.kind {
+        Kind::Linear => ("linear", "m"),
+        Kind::Rotary => ("rotary", "rad"),
+    };
+    let mut text = format!("\n[axis]\nkind = \"{kind}\"\n");
+    if let Some(lead) = rig.stated.lead_m_per_rev {
+        let _ = writeln!(text, "lead_m_per_rev = {lead:e}");
+    }
+    if rig.stated.resolution {
+        let motor = rig.sensing.motor.resolution;
+        let _ = writeln!(text, "encoder_resolution_{unit} = {motor:e}");
+        if let Some(scale) = &rig.sensing.load {
+            let _ = writeln!(
+                text,
+                "load_encoder_resolution_{unit} = {:e}",
+                scale.resolution
+            );
+        }
+    }
+    text
+}
+
+/// The form of the file knows a cascade on force.
+fn controller(rig: &Rig) -> String {
+    let Law::Cascade {
+        position_per_s,
+        velocity,
+        integral_per_s,
+        feedforward: true,
+    } = rig.controller.law
+    else {
+        return String::new();
+    };
+    if !rig.stated.controller || rig.column != EffortColumn::Force {
+        return String::new();
+    }
+    let sensor = match rig.controller.sensor {
+        Sensor::Motor => "motor",
+        Sensor::Load => "load",
+    };
+    format!(
+        "\n[controller]\nposition_gain_per_s = {position_per_s:e}\n\
+         velocity_gain_n_s_per_m = {velocity:e}\nintegral_per_s = {integral_per_s:e}\n\
+         velocity_filter = {:e}\nacceleration_feedforward_kg = {:e}\n\
+         position_sensor = \"{sensor}\"\n",
+        rig.controller.filter_share, rig.controller.feedforward_inertia
+    )
+}

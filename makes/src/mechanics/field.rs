@@ -1,0 +1,175 @@
+//! Forces of place and time, and drag: what acts on a body beside joints and friction.
+//!
+//! Drag is c·v + q·v·|v| + d·v³ against motion, c by direction. A field is a force along positive
+//! motion, a function of position, velocity and time.
+
+use std::f64::consts::TAU;
+
+/// Drag of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drag {
+    /// Which body.
+    pub body: usize,
+    /// Viscous friction in positive motion, N s/m or N m s/rad.
+    pub forward: f64,
+    /// In negative motion.
+    pub backward: f64,
+    /// Quadratic, N s²/m² or N m s²/rad².
+    pub quadratic: f64,
+    /// Cubic, N s³/m³ or N m s³/rad³.
+    pub cubic: f64,
+}
+
+impl Drag {
+    /// Viscous drag, the same in both directions.
+    #[must_use]
+    pub fn viscous(body: usize, viscous: f64) -> Self {
+        Self {
+            body,
+            forward: viscous,
+            backward: viscous,
+            ..Self::default()
+        }
+    }
+
+    /// The force against positive motion.
+    #[must_use]
+    pub fn against(&self, velocity: f64) -> f64 {
+        let linear = if velocity >= 0.0 {
+            self.forward
+        } else {
+            self.backward
+        };
+        let per_velocity = self.quadratic * velocity.abs() + self.cubic * velocity * velocity;
+        (linear + per_velocity) * velocity
+    }
+}
+
+/// A force along positive motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Field {
+    /// Gravity, counterweight, preload: constant.
+    Constant(f64),
+    /// amplitude · sin(waves · x + phase): cogging, a screw's runout.
+    Cogging {
+        /// Amplitude.
+        amplitude: f64,
+        /// Wave number, rad per unit.
+        waves: f64,
+        /// Phase at position zero, rad.
+        phase: f64,
+    },
+    /// −stiffness · (x − rest).
+    Spring {
+        /// Stiffness.
+        stiffness: f64,
+        /// Where it is slack.
+        rest: f64,
+    },
+    /// A buffer that is touched beyond a position: pushes back only (Hunt and Crossley's contact
+    /// without hysteresis, exponent one).
+    Stop {
+        /// Where it begins; on the side of its sign.
+        at: f64,
+        /// Stiffness.
+        stiffness: f64,
+    },
+    /// A latch that pulls into its middle: −depth · s·exp(½(1 − s²)), s = (x − at)/width; the
+    /// largest force is the depth.
+    Latch {
+        /// Middle.
+        at: f64,
+        /// Distance of the largest force.
+        width: f64,
+        /// Largest force.
+        depth: f64,
+    },
+    /// A force over time that comes from elsewhere: amplitude · sin(2π f t).
+    Hum {
+        /// Amplitude.
+        amplitude: f64,
+        /// Frequency, Hz.
+        frequency_hz: f64,
+    },
+    /// A force that is there from a time on.
+    Step {
+        /// Force.
+        force: f64,
+        /// From when, s.
+        at_s: f64,
+    },
+}
+
+impl Field {
+    /// The force at a position and a time.
+    #[must_use]
+    pub fn at(&self, position: f64, time_s: f64) -> f64 {
+        match *self {
+            Self::Constant(force) => force,
+            Self::Cogging {
+                amplitude,
+                waves,
+                phase,
+            } => amplitude * libm::sin(waves * position + phase),
+            Self::Spring { stiffness, rest } => -stiffness * (position - rest),
+            Self::Stop { at, stiffness } => {
+                let beyond = (position - at) * at.signum();
+                -stiffness * beyond.max(0.0) * at.signum()
+            }
+            Self::Latch { at, width, depth } => {
+                let s = (position - at) / width;
+                -depth * s * libm::exp(0.5 * (1.0 - s * s))
+            }
+            Self::Hum {
+                amplitude,
+                frequency_hz,
+            } => amplitude * libm::sin(TAU * frequency_hz * time_s),
+            Self::Step { force, at_s } => {
+                if time_s >= at_s {
+                    force
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drag_is_odd_where_it_is_the_same_in_both_directions() {
+        let drag = Drag {
+            quadratic: 3.0,
+            cubic: 5.0,
+            ..Drag::viscous(0, 2.0)
+        };
+        assert_eq!(drag.against(1.0), 10.0);
+        assert_eq!(drag.against(-1.0), -10.0);
+    }
+
+    #[test]
+    fn a_stop_pushes_back_on_its_side_only() {
+        let stop = Field::Stop {
+            at: -0.2,
+            stiffness: 1000.0,
+        };
+        assert_eq!(stop.at(-0.1, 0.0), 0.0);
+        assert!((stop.at(-0.21, 0.0) - 10.0).abs() < 1.0e-9);
+        assert_eq!(stop.at(0.5, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_depth_of_a_latch_is_its_largest_force() {
+        let latch = Field::Latch {
+            at: 0.1,
+            width: 0.01,
+            depth: 20.0,
+        };
+        assert!((latch.at(0.11, 0.0) + 20.0).abs() < 1.0e-9);
+        assert!((latch.at(0.09, 0.0) - 20.0).abs() < 1.0e-9);
+        assert_eq!(latch.at(0.1, 0.0), 0.0);
+    }
+}

@@ -1,0 +1,341 @@
+//! A train of bodies, and its step.
+//!
+//! M a = drive + joints + fields − drag − friction. The step is Moreau's midpoint rule (Acary and
+//! Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008, §10): half a step of way,
+//! a whole step of momentum in which rigid friction takes what it needs to stop the body and no
+//! more than its level, half a step of way. Without friction that is Störmer and Verlet's rule: of
+//! second order, and energy neither grows nor decays. With friction a body that sticks stands
+//! exactly.
+
+use crate::mechanics::field::{Drag, Field};
+use crate::mechanics::friction::{Contact, Surface};
+use crate::mechanics::inertia::Inertia;
+use crate::mechanics::joint::Joint;
+
+/// What a train is made of. Body 0 is the motor, the last is the load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Train {
+    /// Inertia of each body.
+    pub inertias: Vec<Inertia>,
+    /// Joint between a body and the next.
+    pub joints: Vec<Joint>,
+    /// Friction.
+    pub surfaces: Vec<Surface>,
+    /// Drag.
+    pub drags: Vec<Drag>,
+    /// Forces of place and time, with the body on which they act.
+    pub fields: Vec<(usize, Field)>,
+}
+
+/// Where a train is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrainState {
+    /// Position of each body.
+    pub positions: Vec<f64>,
+    /// Velocity of each body.
+    pub velocities: Vec<f64>,
+    /// Time, s.
+    pub time_s: f64,
+    bristles: Vec<Vec<f64>>,
+    slipped: Vec<f64>,
+    transmitted: Vec<f64>,
+}
+
+impl Train {
+    /// One body with Coulomb and viscous friction.
+    #[must_use]
+    pub fn one(inertia: f64, coulomb: f64, viscous: f64) -> Self {
+        use crate::mechanics::friction::Law;
+        Self {
+            inertias: vec![Inertia::Constant(inertia)],
+            joints: Vec::new(),
+            surfaces: vec![Surface::new(0, Law::coulomb(coulomb))],
+            drags: vec![Drag::viscous(0, viscous)],
+            fields: Vec::new(),
+        }
+    }
+
+    /// The same train with a further body behind a joint.
+    #[must_use]
+    pub fn then(mut self, joint: Joint, inertia: f64, coulomb: f64, viscous: f64) -> Self {
+        let next = Self::one(inertia, coulomb, viscous);
+        let body = self.inertias.len();
+        let at_body = |mut surface: Surface| {
+            surface.body = body;
+            surface
+        };
+        self.surfaces.extend(next.surfaces.into_iter().map(at_body));
+        self.drags.push(Drag::viscous(body, viscous));
+        self.inertias.extend(next.inertias);
+        self.joints.push(joint);
+        self
+    }
+
+    /// The body at the end.
+    #[must_use]
+    pub fn load(&self) -> usize {
+        self.inertias.len() - 1
+    }
+
+    /// Inertia of all bodies.
+    #[must_use]
+    pub fn inertia(&self) -> f64 {
+        self.inertias.iter().map(Inertia::nominal).sum()
+    }
+
+    /// Sliding level of all surfaces.
+    #[must_use]
+    pub fn coulomb(&self) -> f64 {
+        self.surfaces.iter().map(|s| s.law.level()).sum()
+    }
+
+    /// Viscous friction of all bodies, mean of both directions.
+    #[must_use]
+    pub fn viscous(&self) -> f64 {
+        self.drags
+            .iter()
+            .map(|d| 0.5 * (d.forward + d.backward))
+            .sum()
+    }
+
+    /// The same machine on another day: Coulomb friction and viscous friction times factors.
+    #[must_use]
+    pub fn on_another_day(mut self, coulomb: f64, viscous: f64) -> Self {
+        for surface in &mut self.surfaces {
+            surface.law = surface.law.clone().scaled(coulomb);
+        }
+        for drag in &mut self.drags {
+            drag.forward *= viscous;
+            drag.backward *= viscous;
+        }
+        self
+    }
+
+    /// At rest at a position.
+    #[must_use]
+    pub fn at_rest(&self, position: f64) -> TrainState {
+        let count = self.inertias.len();
+        TrainState {
+            positions: vec![position; count],
+            velocities: vec![0.0; count],
+            time_s: 0.0,
+            bristles: self
+                .surfaces
+                .iter()
+                .map(|s| vec![0.0; s.law.states()])
+                .collect(),
+            slipped: vec![0.0; self.joints.len()],
+            transmitted: vec![0.0; count],
+        }
+    }
+
+    /// One step under the effort of the drive.
+    pub fn step(&self, state: &mut TrainState, drive: f64, step_s: f64) {
+        drift(state, 0.5 * step_s);
+        state.time_s += 0.5 * step_s;
+        let mut efforts = self.free_efforts(state, drive);
+        let mut levels = vec![0.0; efforts.len()];
+        self.add_friction(state, step_s, &mut efforts, &mut levels);
+        for body in 0..efforts.len() {
+            let inertia = self.inertias[body].at(state.positions[body], state.time_s);
+            let free = state.velocities[body] + step_s * efforts[body] / inertia;
+            state.velocities[body] = held(free, step_s * levels[body] / inertia);
+        }
+        drift(state, 0.5 * step_s);
+        state.time_s += 0.5 * step_s;
+    }
+
+    /// Effort on each body without friction of surfaces.
+    fn free_efforts(&self, state: &mut TrainState, drive: f64) -> Vec<f64> {
+        let mut efforts = vec![0.0; self.inertias.len()];
+        efforts[0] = drive;
+        state.transmitted[0] = drive;
+        self.add_joints(state, &mut efforts);
+        for drag in &self.drags {
+            efforts[drag.body] -= drag.against(state.velocities[drag.body]);
+        }
+        for (body, field) in &self.fields {
+            efforts[*body] += field.at(state.positions[*body], state.time_s);
+        }
+        for (body, inertia) in self.inertias.iter().enumerate() {
+            let velocity = state.velocities[body];
+            efforts[body] -= 0.5 * inertia.slope(state.positions[body]) * velocity * velocity;
+        }
+        efforts
+    }
+
+    fn add_joints(&self, state: &mut TrainState, efforts: &mut [f64]) {
+        for (i, joint) in self.joints.iter().enumerate() {
+            let deflection = state.positions[i] - state.positions[i + 1];
+            let rate = state.velocities[i] - state.velocities[i + 1];
+            let at = state.positions[i + 1];
+            let carried = joint.carry(deflection, rate, at, state.slipped[i]);
+            state.slipped[i] = carried.slipped;
+            state.transmitted[i + 1] = carried.effort;
+            efforts[i] -= carried.effort;
+            efforts[i + 1] += carried.effort;
+        }
+    }
+
+    fn add_friction(
+        &self,
+        state: &mut TrainState,
+        step_s: f64,
+        efforts: &mut [f64],
+        levels: &mut [f64],
+    ) {
+        for (surface, bristles) in self.surfaces.iter().zip(&mut state.bristles) {
+            let body = surface.body;
+            let velocity = state.velocities[body];
+            let contact = Contact {
+                position: state.positions[body],
+                velocity,
+                direction: if velocity == 0.0 {
+                    efforts[body]
+                } else {
+                    velocity
+                }
+                .signum(),
+                transmitted: state.transmitted[body],
+                time_s: state.time_s,
+            };
+            let reaction = surface.react(bristles, &contact, step_s);
+            efforts[body] -= reaction.force;
+            levels[body] += reaction.level;
+        }
+    }
+}
+
+fn drift(state: &mut TrainState, time_s: f64) {
+    for (position, velocity) in state.positions.iter_mut().zip(&state.velocities) {
+        *position += time_s * velocity;
+    }
+}
+
+/// The velocity after friction that can take so much of it.
+fn held(free: f64, most: f64) -> f64 {
+    free - free.clamp(-most, most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::friction::{Law, Scale};
+    use std::f64::consts::TAU;
+
+    fn free(inertia: f64) -> Train {
+        Train::one(inertia, 0.0, 0.0)
+    }
+
+    /// Two bodies on a shaft, with the shaft wound up.
+    fn two_bodies() -> (Train, TrainState) {
+        let train = free(3.0).then(Joint::stiff(1.2e5, 0.0), 5.0, 0.0, 0.0);
+        let mut state = train.at_rest(0.0);
+        state.positions[0] = 1.0e-3;
+        (train, state)
+    }
+
+    fn energy(state: &TrainState) -> f64 {
+        let kinetic = 1.5 * state.velocities[0].powi(2) + 2.5 * state.velocities[1].powi(2);
+        kinetic + 0.6e5 * (state.positions[0] - state.positions[1]).powi(2)
+    }
+
+    #[test]
+    fn energy_stays_for_a_hundred_thousand_steps() {
+        let (train, mut state) = two_bodies();
+        let start = energy(&state);
+        for _ in 0..100_000 {
+            train.step(&mut state, 0.0, 1.0e-5);
+        }
+        assert!((energy(&state) / start - 1.0).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn two_bodies_swing_at_the_root_of_stiffness_over_reduced_inertia() {
+        let (train, mut state) = two_bodies();
+        let (mut crossings, mut last) = (0, 1.0_f64);
+        let expected_hz = (1.2e5 * (1.0 / 3.0 + 1.0 / 5.0_f64)).sqrt() / TAU;
+        let steps = (100.0 / expected_hz / 1.0e-5).round() as usize;
+        for _ in 0..steps {
+            train.step(&mut state, 0.0, 1.0e-5);
+            let deflection = state.positions[0] - state.positions[1];
+            crossings += usize::from(deflection * last < 0.0);
+            last = deflection;
+        }
+        assert!((199..=201).contains(&crossings), "{crossings}");
+    }
+
+    #[test]
+    fn a_body_sticks_below_the_level_and_slides_above_it() {
+        let train = Train::one(2.0, 10.0, 0.0);
+        let mut state = train.at_rest(0.1);
+        for _ in 0..1000 {
+            train.step(&mut state, 9.99, 1.0e-5);
+        }
+        assert_eq!((state.positions[0], state.velocities[0]), (0.1, 0.0));
+        for _ in 0..1000 {
+            train.step(&mut state, 14.0, 1.0e-5);
+        }
+        // (14 − 10)/2 · 10 ms
+        assert!((state.velocities[0] - 0.02).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn a_body_comes_to_rest_after_its_kinetic_energy_is_gone() {
+        let train = Train::one(2.0, 10.0, 0.0);
+        let mut state = train.at_rest(0.0);
+        state.velocities[0] = 0.5;
+        for _ in 0..20_000 {
+            train.step(&mut state, 0.0, 1.0e-5);
+        }
+        assert_eq!(state.velocities[0], 0.0);
+        // ½·2·0.5²/10
+        assert!((state.positions[0] - 0.025).abs() < 1.0e-6);
+    }
+
+    #[test]
+    fn an_arm_keeps_its_energy_while_its_inertia_changes() {
+        let mut train = free(1.0);
+        train.inertias[0] = Inertia::Harmonic {
+            mean: 2.0,
+            share: 0.5,
+            waves: 2.0,
+            phase: 0.0,
+        };
+        let mut state = train.at_rest(0.0);
+        state.velocities[0] = 3.0;
+        let energy = |state: &TrainState| {
+            0.5 * train.inertias[0].at(state.positions[0], 0.0) * state.velocities[0].powi(2)
+        };
+        let start = energy(&state);
+        let mut slowest = 3.0_f64;
+        let mut fastest = 3.0_f64;
+        for _ in 0..200_000 {
+            train.step(&mut state, 0.0, 1.0e-5);
+            slowest = slowest.min(state.velocities[0]);
+            fastest = fastest.max(state.velocities[0]);
+        }
+        assert!((energy(&state) / start - 1.0).abs() < 1.0e-3);
+        // Inertia from 1 to 3: velocity by its root.
+        assert!((fastest / slowest - 3.0_f64.sqrt()).abs() < 1.0e-2);
+    }
+
+    #[test]
+    fn friction_that_grows_with_load_takes_its_share_of_the_drive() {
+        let mut train = Train::one(1.0, 5.0, 0.0);
+        train.surfaces[0] = Surface::new(0, Law::coulomb(5.0)).with(Scale::Load(0.01));
+        let mut state = train.at_rest(0.0);
+        for _ in 0..1000 {
+            train.step(&mut state, 100.0, 1.0e-5);
+        }
+        // 100 − 5·(1 + 0.01·100) = 90 N for 10 ms
+        assert!((state.velocities[0] - 0.9).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn another_day_has_other_levels_and_the_same_inertia() {
+        let day = Train::one(2.0, 10.0, 4.0).on_another_day(1.15, 0.9);
+        assert_eq!(day.inertia(), 2.0);
+        assert!((day.coulomb() - 11.5).abs() < 1e-12 && (day.viscous() - 3.6).abs() < 1e-12);
+    }
+}
