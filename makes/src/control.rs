@@ -4,10 +4,12 @@
 //! |---|---|
 //! | cascade | kv·(e + ki·Σe·T) + M·a_ref, e = kp·(r − x) + v_ref − v |
 //! | PID | p·e + i·Σe·T + d·(e' filtered) + M·a_ref, e = r − x |
-//! | state feedback | M·(w²(r − x̂) + 2ζw(v_ref − v̂) + a_ref) + d̂, with an observer of position, velocity and disturbance (Luenberger, IEEE TAC 16, 1971) |
+//! | state feedback | M·(w²(r − x̂) + 2ζw(v_ref − v̂) + a_ref) + d̂ |
 //! | velocity | kv·(e + ki·Σe·T), e = v_ref − v |
 //! | open | the effort of the programme |
 //!
+//! x̂, v̂ and d̂ are an observer's: position, velocity and disturbance (Luenberger, IEEE TAC 16,
+//! 1971).
 //! v is the difference quotient of the measured position, smoothed by v += share·(quotient − v).
 
 use crate::motion::Setpoint;

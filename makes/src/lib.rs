@@ -12,7 +12,9 @@
 //! | [`sensing`] | encoders, the log of the effort, time stamps |
 //! | [`rig`] | all of it put together and run |
 //! | [`make`] | the makes: hidden, empty, declared, another day |
-//! | [`clean`], [`outside`], [`spoilt`] | records that must stay explained, disturbances outside the list, bad records |
+//! | [`clean`] | records that must stay explained |
+//! | [`outside`] | disturbances outside the list |
+//! | [`spoilt`] | bad records |
 //! | [`entry`], [`truth`] | the folder that is written, and `truth.json` |
 //!
 //! `cargo run -p makes --example makes -- DIR` writes all of them.

@@ -1,13 +1,14 @@
 //! Friction of a surface: a law, and what scales its level.
 //!
-//! | law | force | source |
-//! |---|---|---|
-//! | rigid | Fc(v)·sign v, holds at rest | Coulomb; Stribeck's fall with exponent p: Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30, 1994 |
-//! | smooth | Fc·tanh(v/knee) | a regularised sign: creeps at rest |
-//! | Dahl | dz = dx·(1 − z·sign(dx)/z_max) | Dahl, Aerospace report TOR-158, 1968 |
-//! | LuGre | dz/dt = v − σ₀\|v\|z/g(v), F = σ₀z + σ₁(v)·dz/dt | Canudas de Wit et al., IEEE TAC 40, 1995; σ₁ that fades with velocity: Olsson, thesis, Lund 1996 |
-//! | Maxwell slip | elastoplastic elements side by side | Lampaert, Swevers and Al-Bender, IEEE TAC 47, 2002 |
-//! | Bouc–Wen | dz = dx·(1 − ½(1 + sign(dx z))·\|z\|ⁿ) | Wen, ASCE J. Eng. Mech. 102, 1976 |
+//! - rigid: Fc(v)·sign v, holds at rest. Coulomb; Stribeck's fall with an exponent:
+//!   Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30, 1994.
+//! - smooth: Fc·tanh(v/knee), a regularised sign, which creeps at rest.
+//! - Dahl: dz = dx·(1 − z·sign(dx)/z_max). Dahl, Aerospace report TOR-158, 1968.
+//! - LuGre: dz/dt = v − σ₀|v|z/g(v), F = σ₀z + σ₁(v)·dz/dt. Canudas de Wit et al., IEEE TAC 40,
+//!   1995; σ₁ that fades with velocity: Olsson, thesis, Lund 1996.
+//! - Maxwell slip: elastoplastic elements side by side. Lampaert, Swevers and Al-Bender, IEEE TAC
+//!   47, 2002.
+//! - Bouc–Wen: dz = dx·(1 − ½(1 + sign(dx z))·|z|ⁿ). Wen, ASCE J. Eng. Mech. 102, 1976.
 //!
 //! A rigid law gives a *level*, not a force: at rest it is whatever holds, and the step of the
 //! train finds it. The others give a force and keep a state. Bristles of Dahl and LuGre are stepped
