@@ -136,7 +136,7 @@ fn rack_portal(draw: &mut Draw, presence: Presence) -> Rig {
     let mut controller = Controller::cascade(motor + portal, 2.0, 12.0, 2.0e-3);
     controller.sensor = Sensor::Motor;
     let mut rig = rig(Kind::Linear, presence.or(loose, bolted), controller, 1.0e-6);
-    rig.sensing.load = Some(Encoder::of(1.0e-6, Rounding::Down));
+    rig.sensing.load = Some(Encoder::of(1.0e-6, Rounding::Nearest));
     rig.noisy(6.0);
     rig.know("backlash_gap", presence.size(gap), "m");
     rig.know("compliance_stiffness", stiffness, "N/m");
@@ -200,7 +200,7 @@ fn tunnel_traverse(draw: &mut Draw, presence: Presence) -> Rig {
 }
 
 /// A gantry that is pulled at one side: it binds more toward one end, and its brushes drag more
-/// one way. Its encoder cuts off at five micrometres.
+/// one way. Its encoder cuts off at two micrometres.
 fn skewed_gantry(draw: &mut Draw, presence: Presence) -> Rig {
     let (mass, viscous) = (draw.near(45.0), draw.near(120.0));
     let slope = presence.size(draw.near(0.9));
@@ -213,7 +213,7 @@ fn skewed_gantry(draw: &mut Draw, presence: Presence) -> Rig {
         ..Drag::default()
     };
     let controller = Controller::cascade(mass, 4.0, 20.0, 1.0e-3);
-    let mut rig = rig(Kind::Linear, train, controller, 5.0e-6);
+    let mut rig = rig(Kind::Linear, train, controller, 2.0e-6);
     rig.noisy(0.8);
     rig.know("position_dependent_friction_linear", slope, "1/m");
     rig.know("viscous_asymmetry", -asymmetry * viscous, "N s/m");

@@ -77,7 +77,8 @@ fn plc_log(draw: &mut Draw, presence: Presence) -> Rig {
         time_constant_s: draw.near(14.0),
     });
     let controller = Controller::cascade(mass, 4.0, 25.0, 1.25e-4);
-    let mut rig = rig(Kind::Linear, train, controller, 1.0e-6);
+    // At 8 kHz a micrometre would be 8 mm/s: noise of the loop that 250 Hz would fold down.
+    let mut rig = rig(Kind::Linear, train, controller, 2.0e-8);
     rig.logs_current(32);
     rig.sensing.effort.late_s = late_s;
     rig.noisy(1.5);

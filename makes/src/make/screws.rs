@@ -119,7 +119,7 @@ fn seal_screw(draw: &mut Draw, presence: Presence) -> Rig {
     let mut train = Train::one(mass, coulomb, draw.near(400.0));
     train.surfaces[0].law = falling(excess, draw.near(0.01), 0.5, coulomb);
     let controller = Controller::cascade(mass, 4.0, 22.0, 2.0e-3);
-    let mut rig = rig(Kind::Linear, train, controller, 5.0e-7);
+    let mut rig = rig(Kind::Linear, train, controller, 1.0e-7);
     rig.column = EffortColumn::Torque(0.016 / TAU);
     rig.stated.lead_m_per_rev = Some(0.016);
     rig.noisy(2.0);
@@ -258,7 +258,7 @@ fn gapped_screw(draw: &mut Draw, presence: Presence) -> Rig {
 fn trapezoidal_nut(draw: &mut Draw, presence: Presence) -> Rig {
     let (mass, coulomb) = (draw.near(90.0), draw.near(40.0));
     let share = presence.size(draw.near(0.15) / coulomb);
-    let mut train = Train::one(mass, 0.0, draw.near(250.0));
+    let mut train = Train::one(mass, 0.0, draw.near(120.0));
     train.surfaces[0] = Surface::new(0, Law::coulomb(coulomb)).with(Scale::Load(share));
     let controller = Controller::cascade(mass, 6.0, 35.0, 1.25e-4);
     let mut rig = rig(Kind::Linear, train, controller, 2.0e-7);
@@ -267,6 +267,8 @@ fn trapezoidal_nut(draw: &mut Draw, presence: Presence) -> Rig {
     rig.logs_current(8);
     rig.noisy(1.0);
     rig.know("load_dependent_friction", share * coulomb, "");
+    // While friction is more than inertia the drive never turns over, and friction that grows
+    // with load is then the same force as more of everything: this axis is brisk.
     let brisk = Room {
         pace: Pace {
             acceleration: 5.0,
@@ -274,6 +276,6 @@ fn trapezoidal_nut(draw: &mut Draw, presence: Presence) -> Rig {
         },
         ..room(0.15, 26.0)
     };
-    rig.moved(draw, brisk, [Room::points, Room::workshop], 12.0);
+    rig.moved(draw, brisk, [Room::jogs, Room::workshop], 12.0);
     rig
 }
