@@ -182,10 +182,10 @@ fn switched_controller(draw: &mut Draw) -> Rig {
     rig
 }
 
-/// Two seconds of validation, in which about one second is motion.
+/// A second and a half of validation, in which one second is motion.
 fn one_second_validation(draw: &mut Draw) -> Rig {
     let mut rig = plain(draw);
-    rig.moved(draw, ROOM, [Room::workshop, Room::points], 2.0);
+    rig.moved(draw, ROOM, [Room::workshop, Room::points], 1.5);
     rig
 }
 

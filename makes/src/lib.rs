@@ -17,7 +17,8 @@
 //! | [`spoilt`] | bad records |
 //! | [`entry`], [`truth`] | the folder that is written, and `truth.json` |
 //!
-//! `cargo run -p makes --example makes -- DIR` writes all of them.
+//! `cargo run -p makes --example makes -- DIR` writes all of them; a seed and a part of
+//! a name may follow.
 
 mod bench;
 pub mod clean;
@@ -37,39 +38,55 @@ pub mod truth;
 
 /// How one record is made, without making it.
 pub struct Recipe {
-    /// Which table it is a row of: `makes`, `clean`, `outside` or `spoilt`.
+    /// Which table it is a row of: `makes`, `held-back`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
-    /// Makes it.
-    pub make: Box<dyn Fn() -> entry::Entry + Send + Sync>,
+    /// Name of the record.
+    pub name: String,
+    make: Box<dyn Fn() -> entry::Entry + Send + Sync>,
+}
+
+impl Recipe {
+    fn of(
+        table: &'static str,
+        name: impl Into<String>,
+        make: impl Fn() -> entry::Entry + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            table,
+            name: name.into(),
+            make: Box::new(make),
+        }
+    }
+
+    /// Makes the record.
+    #[must_use]
+    pub fn entry(&self) -> entry::Entry {
+        (self.make)()
+    }
 }
 
 /// Every record, for a seed.
 #[must_use]
 pub fn recipes(seed: u64) -> Vec<Recipe> {
-    let mut all = Vec::new();
-    for make in make::all() {
-        for form in make::Form::ALL {
-            all.push(Recipe {
-                table: "makes",
-                make: Box::new(move || make.entry(form, seed)),
-            });
-        }
-    }
-    let row = |table, make: Box<dyn Fn() -> entry::Entry + Send + Sync>| Recipe { table, make };
-    all.extend(
-        clean::CLEAN
-            .iter()
-            .map(|c| row("clean", Box::new(move || c.entry(seed)))),
-    );
-    all.extend(
-        outside::OUTSIDE
-            .iter()
-            .map(|o| row("outside", Box::new(move || o.entry(seed)))),
-    );
-    all.extend(
-        spoilt::SPOILT
-            .iter()
-            .map(|s| row("spoilt", Box::new(move || s.entry(seed)))),
-    );
+    let mut all = of_makes("makes", &make::all(), seed);
+    all.extend(of_makes("held-back", &make::held_back(), seed));
+    let clean = clean::CLEAN.iter();
+    all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
+    let outside = outside::OUTSIDE.iter();
+    all.extend(outside.map(|row| Recipe::of("outside", row.name, move || row.entry(seed))));
+    let spoilt = spoilt::SPOILT.iter();
+    all.extend(spoilt.map(|row| Recipe::of("spoilt", row.name, move || row.entry(seed))));
     all
+}
+
+fn of_makes(table: &'static str, makes: &[make::Make], seed: u64) -> Vec<Recipe> {
+    let forms = |make: make::Make| {
+        let recipe = move |form: make::Form| {
+            Recipe::of(table, make.record_name(form), move || {
+                make.entry(form, seed)
+            })
+        };
+        make::Form::ALL.map(recipe)
+    };
+    makes.iter().copied().flat_map(forms).collect()
 }
