@@ -64,7 +64,7 @@ impl Clean {
 /// it is motion's.
 fn quantised_current(draw: &mut Draw) -> Rig {
     let mut rig = plain(draw);
-    rig.sensing.effort.quantum = 18.0;
+    rig.sensing.effort.quantum = 15.0;
     rig
 }
 

@@ -36,7 +36,8 @@ impl Entry {
     /// The same, with the validation record from another rig.
     #[must_use]
     pub fn with_validation(name: &str, rig: &Rig, other: &Rig, truth: Truth, seed: u64) -> Self {
-        let mut draw = Draw::of(name, seed);
+        // Noise by make: the forms that share a training record share it to the last digit.
+        let mut draw = Draw::of(&format!("noise of {}", truth.make), seed);
         Self {
             name: name.into(),
             dataset: dataset(name, rig, &truth.declared),

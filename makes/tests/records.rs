@@ -120,6 +120,15 @@ fn a_record_is_the_same_every_time_and_another_one_for_another_seed() {
 }
 
 #[test]
+fn another_day_has_the_training_record_of_the_hidden_form_and_another_validation() {
+    let make = all()[0];
+    let (hidden, other) = (make.entry(Form::Hidden, 1), make.entry(Form::AnotherDay, 1));
+    assert_eq!(hidden.train, other.train);
+    assert_ne!(hidden.validate, other.validate);
+    assert_eq!(make.entry(Form::Declared, 1).train, hidden.train);
+}
+
+#[test]
 fn there_are_makes_enough_and_every_listed_effect_has_two() {
     let makes = all();
     assert!(makes.len() >= 28);
