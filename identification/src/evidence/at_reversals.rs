@@ -119,7 +119,7 @@ pub(crate) fn deflection(inverse: Option<&Presliding>, free_run: Option<f64>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::free_run::Accepted;
+    use crate::evidence::free_run::decision::Accepted;
 
     const NOTHING: AtReversals = AtReversals {
         presliding: false,

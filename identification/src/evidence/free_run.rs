@@ -6,9 +6,10 @@
 //! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
 //! rival.
 
-use crate::evidence::thresholds::{
-    FEWEST_COUNTS, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
-};
+pub(crate) mod decision;
+
+use crate::evidence::free_run::decision::{Accepted, Left, Scene, Tried};
+use crate::evidence::thresholds::FEWEST_COUNTS;
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
@@ -69,17 +70,6 @@ pub(crate) struct Reversals {
     pub accepted: Accepted,
 }
 
-/// What a free run accepts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Accepted {
-    /// A bristle.
-    pub presliding: bool,
-    /// A gap.
-    pub backlash: bool,
-    /// Something of the kind, but not which.
-    pub undecided: bool,
-}
-
 /// What a free run says in short.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Summary {
@@ -95,7 +85,6 @@ struct Judge<'a> {
     drive: Drive,
     record: &'a Record,
     block_rows: usize,
-    smallest: f64,
 }
 
 impl Judge<'_> {
@@ -157,7 +146,6 @@ pub(crate) fn reversals(
         drive,
         record,
         block_rows,
-        smallest,
     };
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, record.period_s, fitted, shape);
@@ -177,18 +165,31 @@ pub(crate) fn reversals(
     });
     progress(&Step::Bristle);
     let bristle = judge.best(&bristles.collect::<Vec<_>>(), 1)?;
-    let rounding = ROUNDING * dataset.resolution;
-    let worth = rigid.all > VISIBLE_ROUNDINGS * rounding
-        || bristle.held_out.min(bristle.all) < HELPS_RATIO * rigid.held_out.max(rigid.all);
+    let mut scene = Scene {
+        rigid: rigid.left(),
+        bristle: Tried {
+            left: bristle.left(),
+            size: bristle.deflection(),
+        },
+        gap: None,
+        smallest,
+    };
     progress(&Step::Gap);
-    let gap = worth
+    let gap = scene
+        .is_worth_a_gap(ROUNDING * dataset.resolution)
         .then(|| judge.best(&gaps(unit, start), STARTS))
         .flatten();
-    let mut accepted = judge.decide(&rigid, &bristle, gap.as_ref());
+    scene.gap = gap.as_ref().map(|gap| Tried {
+        left: gap.left(),
+        size: gap.width(),
+    });
+    let mut accepted = scene.decide();
     progress(&Step::BristleAndGap);
     let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
     if let Some(both) = &both {
-        accepted = judge.add(accepted, &bristle, gap.as_ref(), both);
+        let size = both.width().min(both.deflection());
+        let left = both.left();
+        accepted = scene.with_both(accepted, Tried { left, size });
     }
     Some(Reversals {
         drive,
@@ -222,23 +223,6 @@ fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated>
 }
 
 impl Judge<'_> {
-    fn decide(&self, rigid: &Judged, bristle: &Judged, gap: Option<&Judged>) -> Accepted {
-        let is_bristle =
-            bristle.deflection() >= self.smallest && bristle.is_below(rigid, SHAPE_RATIO);
-        let is_gap =
-            gap.is_some_and(|gap| gap.width() >= self.smallest && gap.is_below(rigid, SHAPE_RATIO));
-        let wins = |one: &Judged, other: Option<&Judged>| {
-            other.is_none_or(|other| one.is_below(other, RIVAL_RATIO))
-        };
-        let presliding = is_bristle && wins(bristle, gap);
-        let backlash = is_gap && gap.is_some_and(|gap| wins(gap, Some(bristle)));
-        Accepted {
-            presliding,
-            backlash,
-            undecided: (is_bristle || is_gap) && !presliding && !backlash,
-        }
-    }
-
     /// A bristle behind a gap, from what was accepted of them.
     fn both(
         &self,
@@ -272,26 +256,6 @@ impl Judge<'_> {
         let starts = starts.filter_map(|(width, share)| of(width, share));
         self.best(&starts.collect::<Vec<_>>(), 1)
     }
-
-    /// What a bristle and a gap together add to one of them.
-    fn add(
-        &self,
-        accepted: Accepted,
-        bristle: &Judged,
-        gap: Option<&Judged>,
-        both: &Judged,
-    ) -> Accepted {
-        let beats = |other: &Judged| both.is_below(other, SHAPE_RATIO);
-        let visible = both.width() >= self.smallest && both.deflection() >= self.smallest;
-        if visible && beats(bristle) && gap.is_none_or(beats) {
-            return Accepted {
-                presliding: true,
-                backlash: true,
-                undecided: false,
-            };
-        }
-        accepted
-    }
 }
 
 impl Judged {
@@ -306,8 +270,12 @@ impl Judged {
         self.model.mechanics.shape.gap.map_or(0.0, |gap| gap.width)
     }
 
-    fn is_below(&self, other: &Self, ratio: f64) -> bool {
-        self.held_out <= ratio * other.held_out && self.all <= ratio * other.all
+    /// What the decision needs of it.
+    fn left(&self) -> Left {
+        Left {
+            held_out: self.held_out,
+            all: self.all,
+        }
     }
 }
 
