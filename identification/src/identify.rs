@@ -28,7 +28,7 @@ use crate::report::forms::Identification;
 
 /// Identifies a dataset. `progress` hears of every step.
 ///
-/// Of a record of more than 60 000 rows an excerpt is fitted, and a warning of the report says so.
+/// Of a record of more than 120 000 rows an excerpt is fitted, and a warning of the report says so.
 /// Errors and predictions are of all rows.
 ///
 /// # Errors
@@ -220,7 +220,11 @@ mod tests {
     }
 
     fn identified(rows: usize) -> Identification {
-        let size = ExcerptSize { rows, windows: 3 };
+        let size = ExcerptSize {
+            whole: rows,
+            rows,
+            windows: 3,
+        };
         identify_excerpt(&dataset(), size, &mut |_| ()).unwrap()
     }
 
@@ -260,7 +264,10 @@ mod tests {
         let fitted_on = |identification: Identification| {
             let warnings = identification.report.warnings.into_iter();
             warnings
-                .filter(|warning| warning.starts_with("fitted on 12000 of 20000 rows"))
+                .filter(|warning| {
+                    warning
+                        .starts_with("long record: used 12000 of 20000 rows of the training record")
+                })
                 .count()
         };
         assert_eq!(fitted_on(identified(12_000)), 1);

@@ -2,10 +2,11 @@
 
 use super::sources::{Source, Sources};
 
-/// The rooms of `identification`, from the record to the report. An error may be told everywhere;
-/// `identify` is the list of steps and sees them all.
-pub const IDENTIFICATION: [&str; 9] = [
-    "error", "record", "motion", "model", "fit", "simulate", "evidence", "report", "identify",
+/// The rooms of `identification`, from the record to the report. An error and a step of progress
+/// may be told everywhere; `identify` is the list of steps and sees them all.
+pub const IDENTIFICATION: [&str; 10] = [
+    "error", "progress", "record", "motion", "model", "fit", "simulate", "evidence", "report",
+    "identify",
 ];
 
 /// The floors of `workbench`, from the ground up: `commands` use everything.

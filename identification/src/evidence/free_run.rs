@@ -30,8 +30,11 @@ const BLOCK_S: f64 = 2.0;
 const FEWEST_BLOCKS: usize = 6;
 /// What rounding to whole counts leaves: one count over √12.
 const ROUNDING: f64 = 0.288_675;
-/// Bristle deflections and gaps that are tried, in moving-velocity units times a second.
+/// Bristle deflections that are tried, in moving-velocity units times a second.
 const DEFLECTIONS: (f64, f64, u32) = (1.0e-3, 6.0e-2, 7);
+/// Micro-damping of a bristle to start from, over the moved mass.
+const DAMPING_PER_S: f64 = 30.0;
+/// Gaps that are tried, in the same units.
 const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
 /// Coefficients of restitution that are tried.
 const RESTITUTIONS: [f64; 2] = [0.1, 0.7];
@@ -87,7 +90,20 @@ struct Judge<'a> {
     block_rows: usize,
 }
 
-impl Judge<'_> {
+impl<'a> Judge<'a> {
+    /// The judge of a training record, driven by its controller where that is known.
+    fn of(dataset: &'a Dataset) -> Self {
+        let record = &dataset.train;
+        let block_rows = ((BLOCK_S / record.period_s) as usize)
+            .min(record.len() / FEWEST_BLOCKS)
+            .max(1);
+        Self {
+            drive: Drive::of(dataset),
+            record,
+            block_rows,
+        }
+    }
+
     fn is_fitted(&self, row: usize) -> bool {
         (row / self.block_rows).is_multiple_of(2)
     }
@@ -136,35 +152,13 @@ pub(crate) fn reversals(
     fitted: &Fitted,
     progress: &mut dyn FnMut(&Step),
 ) -> Option<Reversals> {
-    let record = &dataset.train;
-    let drive = Drive::of(dataset);
-    let smallest = FEWEST_COUNTS * dataset.resolution;
-    let block_rows = ((BLOCK_S / record.period_s) as usize)
-        .min(record.len() / FEWEST_BLOCKS)
-        .max(1);
-    let judge = Judge {
-        drive,
-        record,
-        block_rows,
-    };
+    let judge = Judge::of(dataset);
     let unit = dataset.kind.moving_velocity();
-    let start = |shape: Shape| Simulated::new(dataset, record.period_s, fitted, shape);
+    let start = |shape: Shape| Simulated::new(dataset, judge.record.period_s, fitted, shape);
     progress(&Step::Rigid);
     let rigid = judge.fitted(&start(Shape::default())?);
-    let damping = 30.0 * rigid.model.mechanics.mass;
-    let bristles = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
-    let bristles = bristles.into_iter().filter_map(|deflection| {
-        let bristle = Bristle {
-            deflection,
-            damping,
-        };
-        start(Shape {
-            bristle: Some(bristle),
-            gap: None,
-        })
-    });
     progress(&Step::Bristle);
-    let bristle = judge.best(&bristles.collect::<Vec<_>>(), 1)?;
+    let bristle = judge.best(&bristles(unit, rigid.model.mechanics.mass, start), 1)?;
     let mut scene = Scene {
         rigid: rigid.left(),
         bristle: Tried {
@@ -172,7 +166,7 @@ pub(crate) fn reversals(
             size: bristle.deflection(),
         },
         gap: None,
-        smallest,
+        smallest: FEWEST_COUNTS * dataset.resolution,
     };
     progress(&Step::Gap);
     let gap = scene
@@ -192,7 +186,7 @@ pub(crate) fn reversals(
         accepted = scene.with_both(accepted, Tried { left, size });
     }
     Some(Reversals {
-        drive,
+        drive: judge.drive,
         rigid,
         bristle,
         gap,
@@ -201,6 +195,21 @@ pub(crate) fn reversals(
     })
 }
 
+/// Bristles to start from, over a range of deflections.
+fn bristles(unit: f64, mass: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
+    let damping = DAMPING_PER_S * mass;
+    let deflections = geometric(DEFLECTIONS.0 * unit, DEFLECTIONS.1 * unit, DEFLECTIONS.2);
+    let shapes = deflections.into_iter().map(|deflection| Shape {
+        bristle: Some(Bristle {
+            deflection,
+            damping,
+        }),
+        gap: None,
+    });
+    shapes.filter_map(start).collect()
+}
+
+/// Gaps to start from, over a range of widths and of kinds of impact.
 fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated> {
     let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, GAPS.2);
     let kinds = RESTITUTIONS

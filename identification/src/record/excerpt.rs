@@ -24,16 +24,20 @@ use crate::record::units::AxisKind;
 /// How much of a record is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ExcerptSize {
-    /// A record of at most so many rows is fitted whole; of a longer one, at most so many rows.
+    /// A record of at most so many rows is fitted whole.
+    pub whole: usize,
+    /// Of a longer one at most so many rows are fitted.
     pub rows: usize,
     /// Number of windows.
     pub windows: usize,
 }
 
-/// A minute at 1 kHz in six windows. Twice the longest record on which the thresholds were found
-/// (30 000 rows); six, because Stribeck falls and drifts need several places in time, and each
-/// window loses 400 rows to the low-pass.
+/// Whole up to two minutes at 1 kHz: twice what `commission` records, so that its figures are of
+/// every row. Beyond, a minute at 1 kHz in six windows. That is twice the longest record on which
+/// the thresholds were found (30 000 rows); six, because Stribeck falls and drifts need several
+/// places in time, and each window loses 400 rows to the low-pass.
 pub(crate) const EXCERPT: ExcerptSize = ExcerptSize {
+    whole: 120_000,
     rows: 60_000,
     windows: 6,
 };
@@ -63,19 +67,32 @@ pub(crate) fn excerpt(dataset: &Dataset, size: ExcerptSize) -> Option<Dataset> {
 /// What an excerpt left out, for people.
 #[must_use]
 pub(crate) fn note(all: &Dataset, excerpt: &Dataset) -> String {
-    let pieces = excerpt.train.pieces();
-    let window_s = pieces[0].len() as f64 * excerpt.train.period_s;
+    let parts = [
+        ("training", &all.train, &excerpt.train),
+        ("validation", &all.validate, &excerpt.validate),
+    ];
+    let cut = parts
+        .into_iter()
+        .filter(|(_, all, taken)| taken.len() < all.len());
+    let cut: Vec<String> = cut
+        .map(|(name, all, taken)| {
+            let pieces = taken.pieces();
+            let window_s = pieces[0].len() as f64 * taken.period_s;
+            let (rows, of, count) = (taken.len(), all.len(), pieces.len());
+            format!("{rows} of {of} rows of the {name} record ({count} windows of {window_s:.1} s)")
+        })
+        .collect();
     format!(
-        "fitted on {} of {} rows ({} windows of {window_s:.1} s, spread over the training record): force errors and free-run errors of both records and the prediction are of all rows, everything else (ranking, residual, protocols, whole file) is of the windows",
-        excerpt.train.len(),
-        all.train.len(),
-        pieces.len()
+        "long record: used {}; force errors and free-run errors of both records and the prediction \
+         are of all rows, everything else (fit, ranking, residual, protocols, whole file) is of \
+         the windows",
+        cut.join(" and ")
     )
 }
 
 /// The windows of a record; `None` where it is short enough to be fitted whole.
 fn windows(record: &Record, kind: AxisKind, size: ExcerptSize) -> Option<Vec<Range<usize>>> {
-    if record.len() <= size.rows {
+    if record.len() <= size.whole {
         return None;
     }
     let rows = window_rows(record.period_s, size);
@@ -134,6 +151,7 @@ mod tests {
     }
 
     const SMALL: ExcerptSize = ExcerptSize {
+        whole: 14_000,
         rows: 12_000,
         windows: 3,
     };
@@ -144,8 +162,8 @@ mod tests {
 
     #[test]
     fn a_record_up_to_the_limit_is_fitted_whole() {
-        assert_eq!(of(12_000), None);
-        assert!(of(12_001).is_some());
+        assert_eq!(of(14_000), None);
+        assert!(of(14_001).is_some());
     }
 
     #[test]
