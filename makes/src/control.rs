@@ -6,12 +6,17 @@
 //! | PID | p·e + i·Σe·T + d·(e' filtered) + M·a_ref, e = r − x |
 //! | state feedback | M·(w²(r − x̂) + 2ζw(v_ref − v̂) + a_ref) + d̂ |
 //! | velocity | kv·(e + ki·Σe·T), e = v_ref − v |
+//! | PI | the forms of [`pi`] |
+//! | feedforward | M·a_ref + viscous·v_ref, with nothing measured |
 //! | open | the effort of the programme |
 //!
 //! x̂, v̂ and d̂ are an observer's: position, velocity and disturbance (Luenberger, IEEE TAC 16,
 //! 1971).
 //! v is the difference quotient of the measured position, smoothed by v += share·(quotient − v).
 
+pub mod pi;
+
+use crate::control::pi::{Lag, Pi, PiState};
 use crate::motion::Setpoint;
 
 /// Damping ratio of state feedback: no overshoot to speak of.
@@ -56,6 +61,10 @@ pub enum Law {
         /// ki, 1/s.
         integral_per_s: f64,
     },
+    /// Cascade with a PI controller in one of its forms.
+    Pi(Pi),
+    /// Feedforward alone: viscous friction of the model, effort per velocity.
+    Feedforward(f64),
     /// No loop.
     Open,
 }
@@ -102,6 +111,7 @@ pub struct ControllerState {
     velocity: f64,
     sum: f64,
     observed: [f64; 3],
+    pi: PiState,
     command: f64,
 }
 
@@ -116,6 +126,17 @@ pub struct Seen {
     pub programme: f64,
     /// Time, s.
     pub time_s: f64,
+}
+
+impl ControllerState {
+    /// How far position and velocity lag behind what is wanted.
+    fn lag(&self, seen: &Seen) -> Lag {
+        Lag {
+            position: seen.wanted.position - seen.position,
+            velocity: seen.wanted.velocity - self.velocity,
+            wanted_velocity: seen.wanted.velocity,
+        }
+    }
 }
 
 impl Controller {
@@ -171,6 +192,18 @@ impl Controller {
         Self::of(law, 0.0, period_s)
     }
 
+    /// PI in one of its forms, without feedforward.
+    #[must_use]
+    pub fn pi(pi: Pi, period_s: f64) -> Self {
+        Self::of(Law::Pi(pi), 0.0, period_s)
+    }
+
+    /// Feedforward of inertia and viscous friction, and no feedback.
+    #[must_use]
+    pub fn feedforward(inertia: f64, viscous: f64, period_s: f64) -> Self {
+        Self::of(Law::Feedforward(viscous), inertia, period_s)
+    }
+
     /// No loop.
     #[must_use]
     pub fn open(period_s: f64) -> Self {
@@ -207,6 +240,11 @@ impl Controller {
         let error = seen.wanted.position - seen.position;
         match law {
             Law::Open => seen.programme,
+            Law::Feedforward(viscous) => viscous * seen.wanted.velocity,
+            Law::Pi(pi) => {
+                let lag = state.lag(seen);
+                pi.effort(&mut state.pi, &lag, self.period_s)
+            }
             Law::Cascade {
                 position_per_s,
                 velocity,
@@ -269,6 +307,7 @@ impl Controller {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::pi::Shape;
     use crate::mechanics::train::Train;
     use crate::motion::{Pace, Path};
 
@@ -307,6 +346,8 @@ mod tests {
             Controller::cascade(3.0, 6.0, 40.0, 1.0e-3),
             Controller::pid(3.0, 15.0, 1.0e-3),
             Controller::state_feedback(3.0, 12.0, 1.0e-3),
+            Controller::pi(Pi::of(3.0, 6.0, 40.0, Shape::VelocityForm(90.0)), 1.0e-3),
+            Controller::pi(Pi::of(3.0, 6.0, 40.0, Shape::BackCalculation(90.0)), 1.0e-3),
         ];
         for controller in loops {
             let (worst, last) = worst_error(&controller);
@@ -315,6 +356,26 @@ mod tests {
                 "{worst} {last} {controller:?}"
             );
         }
+    }
+
+    #[test]
+    fn feedforward_takes_the_setpoint_and_nothing_that_is_measured() {
+        let controller = Controller::feedforward(2.0, 5.0, 1.0e-3);
+        let effort = |position| {
+            let wanted = Setpoint {
+                position: 0.0,
+                velocity: 3.0,
+                acceleration: 4.0,
+            };
+            let seen = Seen {
+                wanted,
+                position,
+                programme: 0.0,
+                time_s: 0.0,
+            };
+            controller.tick(&mut ControllerState::default(), &seen)
+        };
+        assert_eq!((effort(0.0), effort(0.7)), (23.0, 23.0));
     }
 
     #[test]

@@ -38,6 +38,8 @@ pub enum Flaw {
     DeadZone(f64),
     /// The delivered effort is larger by a share from a time on, s.
     Stronger(f64, f64),
+    /// The delivered effort falls by a share with a time constant, s.
+    Fading(f64, f64),
     /// Delivered effort larger by a share in one direction than in the other.
     Lopsided(f64),
 }
@@ -152,6 +154,10 @@ fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64) -> f64 {
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
         Some(Flaw::Stronger(share, from_s)) if time_s >= from_s => effort * (1.0 + share),
         Some(Flaw::Stronger(..)) => effort,
+        Some(Flaw::Fading(share, time_constant_s)) => {
+            let warm = 1.0 - libm::exp(-time_s.max(0.0) / time_constant_s);
+            effort * (1.0 - share * warm)
+        }
         Some(Flaw::Lopsided(share)) => effort + share * effort.abs(),
     }
 }
@@ -220,6 +226,14 @@ mod tests {
         let delivered = after(&drive, 100.0, 1);
         assert_eq!(delivered.current, 100.0);
         assert!((delivered.effort - 55.0).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn a_motor_that_fades_has_lost_63_percent_of_its_share_after_the_time_constant() {
+        let at = |time_s| flawed(Some(Flaw::Fading(0.3, 9.0)), 100.0, time_s);
+        assert_eq!((at(-1.0), at(0.0)), (100.0, 100.0));
+        assert!((at(9.0) - 81.036).abs() < 1.0e-3);
+        assert!((at(1.0e3) - 70.0).abs() < 1.0e-9);
     }
 
     #[test]

@@ -74,6 +74,15 @@ pub enum Field {
         /// Stiffness.
         stiffness: f64,
     },
+    /// Air that is closed in and pushes outward: force · (column/(column + x))^exponent.
+    AirSpring {
+        /// Force at position zero.
+        force: f64,
+        /// Height of the air at position zero.
+        column: f64,
+        /// 1 where it changes slowly and stays as warm as it is, 1.4 where it is fast.
+        exponent: f64,
+    },
     /// A latch that pulls into its middle: −depth · s·exp(½(1 − s²)), s = (x − at)/width; the
     /// largest force is the depth.
     Latch {
@@ -116,6 +125,11 @@ impl Field {
                 let beyond = (position - at) * at.signum();
                 -stiffness * beyond.max(0.0) * at.signum()
             }
+            Self::AirSpring {
+                force,
+                column,
+                exponent,
+            } => force * libm::pow(column / (column + position), exponent),
             Self::Latch { at, width, depth } => {
                 let s = (position - at) / width;
                 -depth * s * libm::exp(0.5 * (1.0 - s * s))
@@ -159,6 +173,21 @@ mod tests {
         assert_eq!(stop.at(-0.1, 0.0), 0.0);
         assert!((stop.at(-0.21, 0.0) - 10.0).abs() < 1.0e-9);
         assert_eq!(stop.at(0.5, 0.0), 0.0);
+    }
+
+    #[test]
+    fn pressure_times_volume_to_its_exponent_stays() {
+        let air = Field::AirSpring {
+            force: 500.0,
+            column: 0.3,
+            exponent: 1.4,
+        };
+        assert_eq!(air.at(0.0, 0.0), 500.0);
+        for x in [-0.1, 0.05, 0.1] {
+            let kept = air.at(x, 0.0) * libm::pow(0.3 + x, 1.4);
+            assert!((kept / (500.0 * libm::pow(0.3, 1.4)) - 1.0).abs() < 1.0e-12);
+        }
+        assert!(air.at(-0.1, 0.0) > 700.0);
     }
 
     #[test]

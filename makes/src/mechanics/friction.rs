@@ -243,6 +243,10 @@ pub enum Scale {
         /// Time constant, s.
         time_constant_s: f64,
     },
+    /// 1 + excess/(1 + (v/velocity)²): a film that builds up with speed (Hess and Soom, ASME J.
+    /// Tribology 112, 1990). Slower to fall than Stribeck's: a tenth is left at three times the
+    /// velocity.
+    Film(f64, f64),
     /// 1 + share · |transmitted effort|: worm, trapezoidal nut, gib.
     Load(f64),
     /// 1 + share · direction.
@@ -286,6 +290,10 @@ impl Scale {
                 surplus,
                 time_constant_s,
             } => surplus * libm::exp(-at.time_s / time_constant_s),
+            Self::Film(excess, velocity) => {
+                let ratio = at.velocity / velocity;
+                excess / (1.0 + ratio * ratio)
+            }
             Self::Load(share) => share * at.transmitted.abs(),
             Self::Direction(share) => share * at.direction,
             Self::Chain(share) => share * at.position * at.direction,
@@ -514,6 +522,8 @@ mod tests {
             (Scale::Slope(0.5), 1.1),
             (bump, 1.0 + 0.4 / std::f64::consts::E),
             (warm, 1.0 + 0.4 / std::f64::consts::E),
+            (Scale::Film(0.5, 0.1), 1.25),
+            (Scale::Film(0.5, 0.05), 1.1),
             (Scale::Load(0.002), 1.1),
             (Scale::Direction(0.1), 0.9),
             (Scale::Chain(0.5), 0.9),

@@ -17,6 +17,14 @@ pub enum Inertia {
         /// When it changes, s.
         at_s: Vec<f64>,
     },
+    /// A reel that fills from the start of the record. What arrives moves along already, so that
+    /// it takes no momentum.
+    Filling {
+        /// At the start.
+        empty: f64,
+        /// Growth, per second.
+        per_s: f64,
+    },
     /// J(x) = mean · (1 + share · cos(waves · x + phase)): a crank over its angle, an arm whose
     /// second link stretches and folds.
     Harmonic {
@@ -45,6 +53,7 @@ impl Inertia {
                 let changes = at_s.iter().filter(|at| time_s >= **at).count();
                 if changes % 2 == 1 { *loaded } else { *empty }
             }
+            Self::Filling { empty, per_s } => empty + per_s * time_s.max(0.0),
             Self::Harmonic {
                 mean,
                 share,
@@ -58,7 +67,7 @@ impl Inertia {
     #[must_use]
     pub fn slope(&self, position: f64) -> f64 {
         match self {
-            Self::Constant(_) | Self::Payload { .. } => 0.0,
+            Self::Constant(_) | Self::Payload { .. } | Self::Filling { .. } => 0.0,
             Self::Harmonic {
                 mean,
                 share,
@@ -73,7 +82,7 @@ impl Inertia {
     pub fn nominal(&self) -> f64 {
         match self {
             Self::Constant(inertia) => *inertia,
-            Self::Payload { empty, .. } => *empty,
+            Self::Payload { empty, .. } | Self::Filling { empty, .. } => *empty,
             Self::Harmonic { mean, .. } => *mean,
         }
     }

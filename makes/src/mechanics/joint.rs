@@ -3,14 +3,24 @@
 //! It carries F = k·δ + c·δ' with δ = x₁ − x₂, less what has slipped; inside a gap it carries
 //! nothing, and a contact only pushes. A belt's stiffness depends on where the carriage stands:
 //! the two strands of lengths l and L − l are springs side by side, k = EA·(1/l + 1/(L − l))
-//! (Hace, Jezernik and Sabanovic, IEEE Trans. Ind. Electron. 54, 2007). A coupling that slips
-//! carries its limit at most, and the rest of δ stays behind (Prandtl's elastoplastic element).
+//! (Hace, Jezernik and Sabanovic, IEEE Trans. Ind. Electron. 54, 2007). A strain-wave gear stiffens
+//! as it winds up (Tuttle and Seering, IEEE Trans. Robot. Autom. 12, 1996). A coupling that slips
+//! carries its limit at most, and the rest of δ stays behind (Prandtl's elastoplastic element). A
+//! wheel that rolls creeps: it loses F·|v|/C of way per time (Kalker, Three-Dimensional Elastic
+//! Bodies in Rolling Contact, 1990, linear theory).
 
 /// Stiffness, N/m or N m/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
     /// The same everywhere.
     Constant(f64),
+    /// k·(1 + (δ/knee)²): teeth of a flexible spline that come into mesh one after the other.
+    Hardening {
+        /// k, at no deflection.
+        stiffness: f64,
+        /// Deflection at which the secant is twice as stiff.
+        knee: f64,
+    },
     /// A belt.
     Belt {
         /// Modulus times cross-section EA, N.
@@ -27,7 +37,7 @@ impl Stiffness {
     #[must_use]
     pub fn at(&self, position: f64) -> f64 {
         match *self {
-            Self::Constant(stiffness) => stiffness,
+            Self::Constant(stiffness) | Self::Hardening { stiffness, .. } => stiffness,
             Self::Belt {
                 strain_stiffness_n,
                 length_m,
@@ -37,6 +47,15 @@ impl Stiffness {
                 strain_stiffness_n * (1.0 / strand + 1.0 / (length_m - strand))
             }
         }
+    }
+
+    /// Of the secant to a deflection.
+    fn secant(&self, position: f64, deflection: f64) -> f64 {
+        let hardening = match *self {
+            Self::Hardening { knee, .. } => (deflection / knee) * (deflection / knee),
+            Self::Constant(_) | Self::Belt { .. } => 0.0,
+        };
+        self.at(position) * (1.0 + hardening)
     }
 }
 
@@ -51,6 +70,8 @@ pub struct Joint {
     pub gap: f64,
     /// Effort at which it slips, where it does.
     pub slips_at: Option<f64>,
+    /// Way that is lost per way rolled and effort, 1/C; zero where nothing rolls.
+    pub creep: f64,
 }
 
 /// What a joint does in a step.
@@ -71,14 +92,15 @@ impl Joint {
             damping,
             gap: 0.0,
             slips_at: None,
+            creep: 0.0,
         }
     }
 
     /// What it carries: deflection and its rate, where the load stands, what has slipped.
     #[must_use]
     pub fn carry(&self, deflection: f64, rate: f64, at: f64, slipped: f64) -> Transmission {
-        let stiffness = self.stiffness.at(at);
         let pressed = dead_zone(deflection - slipped, 0.5 * self.gap);
+        let stiffness = self.stiffness.secant(at, pressed);
         let spring = stiffness * pressed;
         match self.slips_at {
             Some(limit) if spring.abs() > limit => Transmission {
@@ -90,6 +112,12 @@ impl Joint {
                 slipped,
             },
         }
+    }
+
+    /// What a rolling contact slips over a way under an effort.
+    #[must_use]
+    pub fn creeps(&self, effort: f64, way: f64) -> f64 {
+        self.creep * effort * way.abs()
     }
 
     fn damped(&self, spring: f64, rate: f64) -> f64 {
@@ -132,6 +160,33 @@ mod tests {
         };
         assert!((belt.at(0.0) - 2.0e5).abs() < 1.0e-6);
         assert!((belt.at(0.5) - belt.at(-0.5)).abs() < 1.0e-6 && belt.at(0.5) > belt.at(0.0));
+    }
+
+    #[test]
+    fn a_gear_that_hardens_has_twice_its_stiffness_at_the_knee() {
+        let stiffness = Stiffness::Hardening {
+            stiffness: 1.0e4,
+            knee: 2.0e-3,
+        };
+        let gear = Joint {
+            stiffness,
+            ..Joint::stiff(0.0, 0.0)
+        };
+        let carried = |deflection| gear.carry(deflection, 0.0, 0.0, 0.0).effort;
+        assert!((carried(2.0e-3) - 40.0).abs() < 1.0e-9);
+        assert!((carried(-4.0e-3) + 200.0).abs() < 1.0e-9);
+        assert!((carried(1.0e-5) - 0.1).abs() < 1.0e-5);
+    }
+
+    #[test]
+    fn a_wheel_loses_way_by_effort_and_way_in_either_direction() {
+        let wheel = Joint {
+            creep: 1.0e-5,
+            ..Joint::stiff(1.0e7, 0.0)
+        };
+        assert!((wheel.creeps(200.0, 0.5) - 1.0e-3).abs() < 1.0e-12);
+        assert!((wheel.creeps(200.0, -0.5) - 1.0e-3).abs() < 1.0e-12);
+        assert!((wheel.creeps(-200.0, 0.5) + 1.0e-3).abs() < 1.0e-12);
     }
 
     #[test]

@@ -133,7 +133,7 @@ impl Train {
     pub fn step(&self, state: &mut TrainState, drive: f64, step_s: f64) {
         drift(state, 0.5 * step_s);
         state.time_s += 0.5 * step_s;
-        let mut efforts = self.free_efforts(state, drive);
+        let mut efforts = self.free_efforts(state, drive, step_s);
         let mut levels = vec![0.0; efforts.len()];
         self.add_friction(state, step_s, &mut efforts, &mut levels);
         for body in 0..efforts.len() {
@@ -146,11 +146,11 @@ impl Train {
     }
 
     /// Effort on each body without friction of surfaces.
-    fn free_efforts(&self, state: &mut TrainState, drive: f64) -> Vec<f64> {
+    fn free_efforts(&self, state: &mut TrainState, drive: f64, step_s: f64) -> Vec<f64> {
         let mut efforts = vec![0.0; self.inertias.len()];
         efforts[0] = drive;
         state.transmitted[0] = drive;
-        self.add_joints(state, &mut efforts);
+        self.add_joints(state, &mut efforts, step_s);
         for drag in &self.drags {
             efforts[drag.body] -= drag.against(state.velocities[drag.body]);
         }
@@ -164,13 +164,14 @@ impl Train {
         efforts
     }
 
-    fn add_joints(&self, state: &mut TrainState, efforts: &mut [f64]) {
+    fn add_joints(&self, state: &mut TrainState, efforts: &mut [f64], step_s: f64) {
         for (i, joint) in self.joints.iter().enumerate() {
             let deflection = state.positions[i] - state.positions[i + 1];
             let rate = state.velocities[i] - state.velocities[i + 1];
             let at = state.positions[i + 1];
             let carried = joint.carry(deflection, rate, at, state.slipped[i]);
-            state.slipped[i] = carried.slipped;
+            let rolled = state.velocities[i] * step_s;
+            state.slipped[i] = carried.slipped + joint.creeps(carried.effort, rolled);
             state.transmitted[i + 1] = carried.effort;
             efforts[i] -= carried.effort;
             efforts[i + 1] += carried.effort;
@@ -330,6 +331,40 @@ mod tests {
         }
         // 100 − 5·(1 + 0.01·100) = 90 N for 10 ms
         assert!((state.velocities[0] - 0.9).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn a_pulled_trolley_falls_behind_its_wheel_by_effort_times_way() {
+        let contact = Joint {
+            creep: 2.0e-5,
+            ..Joint::stiff(1.0e6, 3.0e3)
+        };
+        let train = free(5.0).then(contact, 20.0, 100.0, 0.0);
+        let mut state = train.at_rest(0.0);
+        for _ in 0..100_000 {
+            // Held at 0.5 m/s against the trolley's 100 N.
+            let effort = 100.0 + 2000.0 * (0.5 - state.velocities[0]);
+            train.step(&mut state, effort, 1.0e-5);
+        }
+        let behind = state.positions[0] - state.positions[1];
+        // 100 N: 0.1 mm of spring, and 2 mm on every metre; the start adds its acceleration.
+        let expected = 1.0e-4 + 2.0e-5 * (100.0 * state.positions[1] + 0.5 * 20.0 * 0.25);
+        assert!(
+            (behind / expected - 1.0).abs() < 0.03,
+            "{behind} {expected}"
+        );
+    }
+
+    #[test]
+    fn a_drum_behind_an_oil_clutch_has_63_percent_of_the_speed_after_its_time_constant() {
+        let train = free(1.0e6).then(Joint::stiff(0.0, 2.0), 0.1, 0.0, 0.0);
+        let mut state = train.at_rest(0.0);
+        state.velocities[0] = 10.0;
+        // 0.1 kg m² over 2 N m s/rad
+        for _ in 0..5000 {
+            train.step(&mut state, 0.0, 1.0e-5);
+        }
+        assert!((state.velocities[1] - 6.321).abs() < 2.0e-3);
     }
 
     #[test]
