@@ -12,6 +12,7 @@
 //! | [`sensing`] | encoders, the log of the effort, time stamps |
 //! | [`rig`] | all of it put together and run |
 //! | [`make`] | the makes: hidden, empty, declared, another day |
+//! | [`make::held_back`], [`outside::held_back`] | those written apart, to be run once at the end |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -70,6 +71,7 @@ impl Recipe {
 pub fn recipes(seed: u64) -> Vec<Recipe> {
     let mut all = of_makes("makes", &make::all(), seed);
     all.extend(of_makes("held-back", &make::held_back(), seed));
+    all.extend(held_back_outside(seed));
     let clean = clean::CLEAN.iter();
     all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
     let outside = outside::OUTSIDE.iter();
@@ -77,6 +79,16 @@ pub fn recipes(seed: u64) -> Vec<Recipe> {
     let spoilt = spoilt::SPOILT.iter();
     all.extend(spoilt.map(|row| Recipe::of("spoilt", row.name, move || row.entry(seed))));
     all
+}
+
+/// Disturbances that are held back, and their machines without them.
+fn held_back_outside(seed: u64) -> impl Iterator<Item = Recipe> {
+    outside::held_back::HELD_BACK.iter().flat_map(move |row| {
+        [
+            Recipe::of("held-back", row.name, move || row.entry(seed)),
+            Recipe::of("held-back", row.empty_name(), move || row.empty_entry(seed)),
+        ]
+    })
 }
 
 fn of_makes(table: &'static str, makes: &[make::Make], seed: u64) -> Vec<Recipe> {

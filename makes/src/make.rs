@@ -9,6 +9,7 @@ pub mod arms;
 pub mod belts;
 pub mod direct;
 pub mod gears;
+pub mod held_back;
 pub mod logs;
 pub mod loops;
 pub mod screws;
@@ -139,8 +140,7 @@ impl Make {
 /// end: families in files of their own. They are a table of their own.
 #[must_use]
 pub fn held_back() -> Vec<Make> {
-    let families: [&[Make]; 0] = [];
-    families.concat()
+    held_back::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.

@@ -4,6 +4,8 @@
 //! come in another shape than the name's equation, so that the name and `unexplained` are both
 //! right. The rest has no name at all.
 
+pub mod held_back;
+
 use std::f64::consts::TAU;
 
 use crate::bench::{fast, plain, rotary, scaled};

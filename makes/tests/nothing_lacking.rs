@@ -4,7 +4,8 @@
 //! ∫F dt = M·Δv + Fv·Δx + Fc·∫sign v dt + F0·Δt, from the true motion of the run, not from its
 //! record. With its effect present the same sum leaves more, where the effect is one of effort.
 
-use makes::make::{Make, Presence, all};
+use makes::make::{Make, Presence, all, held_back};
+use makes::outside::held_back::HELD_BACK;
 use makes::rig::Rig;
 use makes::sensing::Trace;
 use makes::truth::Effect;
@@ -30,6 +31,12 @@ fn fit(rig: &Rig) -> (f64, Vec<f64>) {
     (share, found.iter().copied().collect())
 }
 
+/// Largest effort of the training record.
+fn strongest(rig: &Rig) -> f64 {
+    let trace = rig.run(&(rig.training.0.clone(), 5.0));
+    trace.current.iter().fold(0.0, |most, f| f.abs().max(most))
+}
+
 /// Δv, Δx, ∫sign v dt, Δt and the impulse of every window in which the axis does not turn over.
 fn windows(trace: &Trace) -> Vec<[f64; 5]> {
     let count = (WINDOW_S / trace.step_s).round() as usize;
@@ -47,11 +54,23 @@ fn windows(trace: &Trace) -> Vec<[f64; 5]> {
         .collect()
 }
 
+/// As many makes of a kind as the scope runs, and of those that are held back.
+fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
+    let scope = Scope::now();
+    let of = |mut makes: Vec<Make>| {
+        makes.retain(|make| kind(make));
+        makes
+    };
+    let (makes, others) = (of(all()), of(held_back()));
+    let some = scope.rows("makes", &makes, 4, 12);
+    let held_back = scope.rows("makes held back", &others, 2, 6);
+    [some, held_back].concat()
+}
+
 #[test]
 fn an_empty_make_is_what_its_declared_model_says() {
-    let makes = all();
-    let rows = Scope::now().rows("makes", &makes, 4, 12);
-    let fits = on_all_cores(rows, |make| {
+    let rows = some_of(|_| true);
+    let fits = on_all_cores(&rows, |make| {
         let rig = make.rig(Presence::Absent, 1);
         (fit(&rig), rig)
     });
@@ -64,8 +83,11 @@ fn an_empty_make_is_what_its_declared_model_says() {
             "{} {found:?}",
             make.name
         );
+        // Films of oil and air have none: what is found is then small beside the whole effort.
+        let coulomb = rig.train.coulomb();
+        let none = coulomb == 0.0 && found[2].abs() < 0.01 * strongest(&rig);
         assert!(
-            off(found[2], rig.train.coulomb()) < 0.03,
+            none || off(found[2], coulomb) < 0.03,
             "{} {found:?}",
             make.name
         );
@@ -90,11 +112,25 @@ const OF_EFFORT: [Effect; 11] = [
 #[test]
 fn an_effect_of_effort_leaves_what_the_declared_model_cannot_say() {
     let shows = |make: &Make| make.hides.iter().any(|effect| OF_EFFORT.contains(effect));
-    let makes: Vec<Make> = all().into_iter().filter(shows).collect();
-    let rows = Scope::now().rows("makes", &makes, 4, 12);
-    let left = on_all_cores(rows, |make| fit(&make.rig(Presence::Present, 1)).0);
+    let rows = some_of(shows);
+    let left = on_all_cores(&rows, |make| fit(&make.rig(Presence::Present, 1)).0);
     for (make, left) in rows.iter().zip(left) {
         println!("{} {:.2} %", make.name, 100.0 * left);
         assert!(left > 0.02, "{}: {:.2} % left", make.name, 100.0 * left);
+    }
+}
+
+#[test]
+fn a_machine_held_back_lacks_nothing_without_its_disturbance() {
+    let rows = Scope::now().rows("disturbances held back", HELD_BACK, 2, 6);
+    let fits = on_all_cores(rows, |row| (fit(&row.good_rig(1)).0, fit(&row.rig(1)).0));
+    for (row, (good, disturbed)) in rows.iter().zip(fits) {
+        println!(
+            "{} {:.2} % and {:.2} %",
+            row.name,
+            100.0 * good,
+            100.0 * disturbed
+        );
+        assert!(good < 0.02, "{}: {:.2} % left", row.name, 100.0 * good);
     }
 }
