@@ -88,11 +88,11 @@ fn errors(
     for own in stretches(record.len()) {
         if let Some(stretch) = Stretch::of(findings, record, own) {
             hear(&stretch);
-            let um = stretch.difference_um;
+            let (motion, um) = (&stretch.motion, stretch.difference_um);
             sums.declared
-                .add(&stretch, &stretch.judged.declared, um.map(|um| um.declared));
+                .add(motion, &stretch.judged.declared, um.map(|um| um.declared));
             sums.extended
-                .add(&stretch, &stretch.judged.extended, um.map(|um| um.extended));
+                .add(motion, &stretch.judged.extended, um.map(|um| um.extended));
         }
     }
     sums.each(Sums::errors)
@@ -115,10 +115,9 @@ fn stretches(rows: usize) -> Vec<Range<usize>> {
 
 impl Stretch {
     fn of(findings: &Findings<'_>, record: &Record, own: Range<usize>) -> Option<Self> {
-        let from = own.start.saturating_sub(MARGIN_ROWS);
-        let until = (own.end + MARGIN_ROWS).min(record.len());
-        let part = record.part(from..until);
-        let own = own.start - from..own.end - from;
+        let seen = with_margins(&own, record.len());
+        let own = own.start - seen.start..own.end - seen.start;
+        let part = record.part(seen);
         let motion = only(Kinematics::new(findings.dataset, &part)?, &own);
         let judged = findings
             .models
@@ -131,6 +130,11 @@ impl Stretch {
             difference_um,
         })
     }
+}
+
+/// A stretch with its margins, as far as there are so many rows.
+fn with_margins(own: &Range<usize>, rows: usize) -> Range<usize> {
+    own.start.saturating_sub(MARGIN_ROWS)..(own.end + MARGIN_ROWS).min(rows)
 }
 
 /// The motion with nothing but a range of its rows that counts.
@@ -171,8 +175,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, stretch: &Stretch, judged: &Judgement, difference_um: Option<f64>) {
-        let motion = &stretch.motion;
+    fn add(&mut self, motion: &Kinematics, judged: &Judgement, difference_um: Option<f64>) {
         let moving = motion.effort_lp.iter().zip(&motion.moving);
         let moving = moving.filter(|(_, moving)| **moving);
         let effort: f64 = moving.map(|(effort, _)| effort * effort).sum();
@@ -202,6 +205,101 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::findings::tests::{Scene, findings};
+    use crate::fit::made::{axis, usual};
+
+    #[test]
+    fn a_rest_that_is_shorter_than_two_margins_belongs_to_the_last_stretch() {
+        let ends = |rows| -> Vec<usize> { stretches(rows).iter().map(|own| own.end).collect() };
+        assert_eq!(ends(81_999), [81_999]);
+        assert_eq!(ends(82_000), [40_000, 82_000]);
+        assert_eq!(ends(121_999), [40_000, 121_999]);
+        assert_eq!(ends(122_000), [40_000, 80_000, 122_000]);
+    }
+
+    #[test]
+    fn a_stretch_is_seen_with_a_thousand_rows_at_both_ends_where_there_are_so_many() {
+        assert_eq!(with_margins(&(0..40_000), 100_000), 0..41_000);
+        assert_eq!(with_margins(&(40_000..80_000), 100_000), 39_000..81_000);
+        assert_eq!(with_margins(&(80_000..100_000), 100_000), 79_000..100_000);
+    }
+
+    #[test]
+    fn nothing_counts_in_the_margins() {
+        let mut motion = axis(usual).motion;
+        for mask in [&mut motion.moving, &mut motion.fitted, &mut motion.slow] {
+            mask.fill(true);
+        }
+        let motion = only(motion, &(1000..5000));
+        for mask in [motion.moving, motion.fitted, motion.slow] {
+            assert_eq!(mask.iter().filter(|inside| **inside).count(), 4000);
+            assert!(!mask[999] && mask[1000] && mask[4999] && !mask[5000]);
+        }
+    }
+
+    /// A stretch with moving rows of these efforts, and so many rows about reversals.
+    fn stretch(efforts: &[f64], slow_rows: usize) -> Kinematics {
+        let mut motion = axis(usual).motion;
+        for mask in [&mut motion.moving, &mut motion.slow] {
+            mask.fill(false);
+        }
+        motion.moving[..efforts.len()].fill(true);
+        motion.effort_lp[..efforts.len()].copy_from_slice(efforts);
+        motion.slow[100..100 + slow_rows].fill(true);
+        motion
+    }
+
+    fn left(force_percent: f64, reversal_rms: f64) -> Judgement {
+        Judgement {
+            force_percent,
+            reversal_rms,
+            residual: Vec::new(),
+            prediction: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn two_stretches_leave_what_both_leave_together() {
+        let mut sums = Sums::default();
+        // 60 % of √(3² + 4²) are 3, a third of 12 is 4: √(3² + 4²)/√(5² + 12²).
+        sums.add(&stretch(&[3.0, -4.0], 2), &left(60.0, 3.0), Some(2.0));
+        sums.add(&stretch(&[12.0], 1), &left(100.0 / 3.0, 6.0), Some(4.0));
+        let errors = sums.errors();
+        let near = |value: f64, wanted: f64| assert!((value - wanted).abs() < 1.0e-12, "{value}");
+        near(errors.force_percent, 500.0 / 13.0);
+        // √((2·3² + 6²)/3) of the effort; four rows of 2 µm and two of 4 µm.
+        near(errors.reversal_rms, 18.0_f64.sqrt());
+        near(errors.difference_um.unwrap(), 8.0_f64.sqrt());
+    }
+
+    #[test]
+    fn without_a_load_scale_there_is_no_difference() {
+        let mut sums = Sums::default();
+        sums.add(&stretch(&[3.0], 2), &left(60.0, 3.0), None);
+        assert_eq!(sums.errors().difference_um, None);
+    }
+
+    #[test]
+    fn a_record_of_one_stretch_leaves_what_its_findings_say() {
+        let scene = Scene::behind(2.0e-6);
+        let findings = findings(&scene, &[]);
+        let all = AllRows::of(&findings, &scene.dataset);
+        let (train, validate) = (&findings.train, &findings.validate);
+        for (all, one) in [(&all.train, train), (&all.validate, validate)] {
+            for (all, one) in [(all.declared, &one.declared), (all.extended, &one.extended)] {
+                let same = |a: f64, b: f64| assert!((a - b).abs() <= 1.0e-9 * b, "{a} {b}");
+                same(all.force_percent, one.force_percent);
+                same(all.reversal_rms, one.reversal_rms);
+                assert!(one.reversal_rms > 0.0 && one.force_percent > 0.0);
+                // Nothing was fitted to the difference: all of it is left.
+                same(all.difference_um.unwrap(), 2.0);
+            }
+        }
+        assert!(all.train.declared.force_percent > all.train.extended.force_percent);
+        assert_eq!(all.effort, scene.motion.effort);
+        assert_eq!(all.prediction.declared, validate.declared.prediction);
+        assert_eq!(all.prediction.extended, validate.extended.prediction);
+    }
 
     #[test]
     fn stretches_cover_every_row_once_and_none_is_short() {

@@ -194,6 +194,11 @@ mod tests {
                 UNEXPLAINED,
             ),
             (
+                "the limit itself is not suspicious",
+                heard(Some(inverse(0.85, false))),
+                NOTHING,
+            ),
+            (
                 "just not suspicious is nothing",
                 heard(Some(inverse(0.851, false))),
                 NOTHING,

@@ -141,17 +141,27 @@ fn is_certain(bench: &Bench<'_>, model: &Model) -> bool {
 /// one record only is no effect of the axis.
 pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, model: &mut Model) {
     let error = |model: &Model| other.force_error_percent(&bench.fit(model));
-    prune(model, &|full, without| {
-        error(full) <= VETO_RATIO * error(without)
-    });
+    prune(model, &|full, without| holds(error(full), error(without)));
+}
+
+/// Whether an effect may stay, by the errors on another record with it and without it.
+fn holds(with: f64, without: f64) -> bool {
+    with <= VETO_RATIO * without
 }
 
 /// Drops what the later ones have made superfluous.
 fn remove(bench: &Bench<'_>, model: &mut Model) {
     prune(model, &|full, without| {
-        let gain = Gain::of(&bench.cross_validate(without), &bench.cross_validate(full));
-        gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT
+        is_worth_keeping(&Gain::of(
+            &bench.cross_validate(without),
+            &bench.cross_validate(full),
+        ))
     });
+}
+
+/// Whether a part that was accepted still removes enough.
+fn is_worth_keeping(gain: &Gain) -> bool {
+    gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT
 }
 
 /// Drops the parts that were found and, one after the other, are not worth keeping: `keeps` is
@@ -182,12 +192,17 @@ pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
         &bench.cross_validate(model),
         &bench.cross_validate(&extended),
     );
-    let (share, t) = LOAD_INERTIA;
-    if gain.share >= share && gain.t >= t {
+    if moves_otherwise(&gain) {
         extended
     } else {
         model.clone()
     }
+}
+
+/// Whether the load's own inertia lowers the error enough to come in.
+fn moves_otherwise(gain: &Gain) -> bool {
+    let (share, t) = LOAD_INERTIA;
+    gain.share >= share && gain.t >= t
 }
 
 #[cfg(test)]
@@ -256,16 +271,73 @@ mod tests {
             bench: &bench,
             low: &bench,
         };
-        let mut said = Vec::new();
-        let selection = select(pair, model(&DECLARED), &mut |text| {
-            said.push(text.to_string());
+        let (mut said, mut percents) = (Vec::new(), Vec::new());
+        let selection = select(pair, model(&DECLARED), &mut |step| {
+            said.push(step.to_string());
+            if let Step::Found { percent, round, .. } = step {
+                percents.push((*percent, *round));
+            }
         });
+        let accepted = selection.scored.iter().filter(|scored| scored.accepted);
+        let accepted: Vec<(f64, usize)> = accepted
+            .map(|scored| (100.0 * scored.gain.share, scored.round))
+            .collect();
+        assert_eq!(percents, accepted);
+        assert!((90.0..100.0).contains(&percents[0].0), "{percents:?}");
         assert_eq!(selection.found(), [ViscousAsymmetry]);
         assert!(selection.nameless().is_empty());
         assert!(
             said[0].starts_with("viscous_asymmetry removes "),
             "{said:?}"
         );
+    }
+
+    const fn gain(share: f64, percent: f64, t: f64) -> Gain {
+        Gain {
+            removed: 1.0,
+            share,
+            percent,
+            t,
+        }
+    }
+
+    #[test]
+    fn a_part_stays_from_a_twentieth_and_0_15_percent_of_the_effort_on() {
+        assert!(is_worth_keeping(&gain(0.05, 0.15, 0.0)));
+        assert!(!is_worth_keeping(&gain(0.0499, 9.0, 9.0)));
+        assert!(!is_worth_keeping(&gain(0.5, 0.149, 9.0)));
+    }
+
+    #[test]
+    fn the_loads_inertia_comes_in_from_a_twentieth_and_a_t_of_one_on() {
+        assert!(moves_otherwise(&gain(0.05, 0.0, 1.0)));
+        assert!(!moves_otherwise(&gain(0.0499, 9.0, 9.0)));
+        assert!(!moves_otherwise(&gain(0.5, 9.0, 0.99)));
+    }
+
+    #[test]
+    fn an_effect_may_raise_the_error_on_another_record_by_a_twentieth() {
+        assert!(holds(1.05, 1.0) && !holds(1.051, 1.0));
+        assert!(holds(2.1, 2.0) && !holds(2.11, 2.0));
+    }
+
+    #[test]
+    fn a_delay_gains_no_more_than_it_does_at_the_lower_cutoff() {
+        // What is commanded acts three rows later: the effort is early.
+        let late = axis(|motion, row| usual(motion, (row + 3).min(motion.len() - 1)));
+        let prompt = axis(usual);
+        let (bench, other) = (late.bench(), prompt.bench());
+        let declared = model(&DECLARED);
+        let share = |low: &Bench<'_>| {
+            let output = Effort(Pair { bench: &bench, low });
+            let extended = declared.with(found(Delay, 3.0e-3));
+            let base = bench.cross_validate(&declared);
+            let judged = output.judged(&declared, &base, extended, 2);
+            assert_eq!((judged.scored.round, judged.scored.accepted), (2, false));
+            judged.scored.gain.share
+        };
+        assert!(share(&bench) > 0.9, "{}", share(&bench));
+        assert!(share(&other) < 0.1, "{}", share(&other));
     }
 
     fn candidate(effect: EffectName, share: f64, t: f64, physical: bool) -> Candidate<Model> {

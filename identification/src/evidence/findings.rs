@@ -138,10 +138,71 @@ impl<'a> Findings<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use crate::evidence::inverse_dynamics::tests::{declared, record};
+    use crate::fit::bench::Bench;
     use crate::model::effects::find;
     use crate::model::inverse::{Model, Part};
+
+    /// An axis with a load scale, and its motion.
+    pub(crate) struct Scene {
+        pub dataset: Dataset,
+        pub motion: Kinematics,
+    }
+
+    impl Scene {
+        /// 700 kg, 900 N s/m and 300 N, with a load that stands a constant way behind the motor.
+        pub(crate) fn behind(way_m: f64) -> Self {
+            let mut record = record(None);
+            record.load = Some(record.position.iter().map(|x| x - way_m).collect());
+            let dataset = declared(record);
+            let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+            Self { dataset, motion }
+        }
+    }
+
+    /// A model of parts, fitted to a scene.
+    fn model(scene: &Scene, names: &[EffectName]) -> InverseDynamics {
+        let model = crate::fit::made::model(names);
+        InverseDynamics {
+            fitted: Bench::new(&scene.dataset, &scene.motion).fit(&model),
+            deflection: None,
+        }
+    }
+
+    /// Findings that explain the effort but for a constant; the difference is all left.
+    pub(crate) fn findings<'a>(scene: &'a Scene, in_difference: &[EffectName]) -> Findings<'a> {
+        use EffectName::{Coulomb, Inertia, Offset, Viscous};
+        let mut difference = Difference::default();
+        difference.found = in_difference.to_vec();
+        difference.after_um = 50.0;
+        let stages = Stages {
+            difference: Some(difference),
+            ..stages(&[])
+        };
+        let models = Compared {
+            declared: model(scene, &[Inertia, Coulomb]),
+            extended: model(scene, &[Inertia, Viscous, Coulomb, Offset]),
+        };
+        let Scene { dataset, motion } = scene;
+        Findings::of(dataset, [motion, motion], stages, models)
+    }
+
+    #[test]
+    fn a_difference_is_explained_by_a_gap_that_is_declared_or_found() {
+        let mut scene = Scene::behind(2.0e-6);
+        let explained = |scene: &Scene, found: &[EffectName]| {
+            let findings = findings(scene, found);
+            assert_eq!(findings.found.names(), found);
+            findings.verdict.explained
+        };
+        assert!(!explained(&scene, &[]));
+        assert!(!explained(&scene, &[EffectName::Compliance]));
+        assert!(explained(&scene, &[EffectName::Backlash]));
+        scene.dataset.declared.push(EffectName::Backlash);
+        assert!(explained(&scene, &[]));
+    }
 
     fn stages(effort: &[EffectName]) -> Stages {
         let parts = effort.iter().filter_map(|name| find(*name));

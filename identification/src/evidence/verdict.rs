@@ -165,6 +165,7 @@ mod tests {
 
     use super::*;
     use crate::fit::blocks::Gain;
+    use crate::fit::made::{axis, usual};
     use crate::simulate::made;
 
     fn nothing_left() -> Left<'static> {
@@ -320,6 +321,43 @@ mod tests {
         }
     }
 
+    /// A judgement with a residual that follows a law of the row.
+    fn leaving(rows: usize, law: impl Fn(usize) -> f64) -> Judgement {
+        Judgement {
+            force_percent: 1.0,
+            reversal_rms: 0.0,
+            residual: (0..rows).map(law).collect(),
+            prediction: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_share_of_a_model_is_the_larger_of_features_and_the_best_candidate_of_its_round() {
+        let motion = axis(usual).motion;
+        let noise = |row: usize| (1.7 * (row * row % 1013) as f64).sin();
+        let train = Compared {
+            declared: leaving(motion.len(), noise),
+            extended: leaving(motion.len(), |row| (motion.time_s[row] - 3.0).powi(2)),
+        };
+        let of = |scored: &[Scored]| ResidualStructure::of(&motion, &train, scored);
+        let alone = of(&[]);
+        assert_eq!(alone.over, "time");
+        assert!(alone.share.declared < 0.02 && alone.share.extended > 0.9);
+        // The declared model is judged by the first round, the extended one by the last.
+        let judged = of(&[
+            scored(0, 0.3, true),
+            scored(1, 0.9999, true),
+            scored(2, 0.9995, true),
+        ]);
+        assert_eq!(
+            (judged.share.declared, judged.share.extended),
+            (0.3, 0.9995)
+        );
+        let weak = of(&[scored(0, 0.999, true), scored(1, 0.2, true)]);
+        assert_eq!(weak.share.declared, 0.999);
+        assert_eq!(weak.share.extended, alone.share.extended);
+    }
+
     #[test]
     fn the_best_candidate_of_a_round_is_the_largest_that_can_be_its_effect() {
         let list = [
@@ -344,6 +382,35 @@ mod tests {
         };
         let white = left.is_white();
         assert!(!white.declared && white.extended);
+    }
+
+    #[test]
+    fn a_residual_matters_from_both_limits_on() {
+        let matters = |share: f64, force_percent: f64| {
+            let residual = residual(share);
+            let left = Left {
+                residual,
+                force_percent,
+                ..nothing_left()
+            };
+            left.matters()
+        };
+        assert!(matters(0.15, 10.0) && !matters(0.1499, 10.0));
+        // √0.25 of 0.6 % are 0.3 % of the effort.
+        assert!(matters(0.25, 0.6) && !matters(0.25, 0.599));
+    }
+
+    #[test]
+    fn words_begin_at_a_share_of_a_twentieth() {
+        let words = |share: f64| {
+            let residual = residual(share);
+            let left = Left {
+                residual,
+                ..nothing_left()
+            };
+            left.words(false).len()
+        };
+        assert_eq!((words(0.05), words(0.0499)), (1, 0));
     }
 
     /// A difference counts beyond 3 µm *and* ten counts of the coarser encoder.
