@@ -22,7 +22,7 @@ use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
 use crate::simulate::model::estimates::Estimates;
-use crate::simulate::run::{position_rms, simulate};
+use crate::simulate::run::{Run, position_rms, simulate};
 
 /// Length of the blocks that are fitted and judged in turn, s.
 const BLOCK_S: f64 = 2.0;
@@ -111,11 +111,16 @@ impl<'a> Judge<'a> {
     fn fitted(&self, start: &Simulated) -> Judged {
         let model = fit(start, &self.drive, self.record, &|row| self.is_fitted(row));
         let run = simulate(&model, &self.drive, self.record);
-        let held_out = position_rms(&run, self.record, &|row| !self.is_fitted(row));
-        let all = position_rms(&run, self.record, &|_| true);
+        self.judged(model, &run)
+    }
+
+    /// What a fitted model leaves, from its run along the record.
+    fn judged(&self, model: Simulated, run: &Run) -> Judged {
+        let held_out = position_rms(run, self.record, &|row| !self.is_fitted(row));
+        let all = position_rms(run, self.record, &|_| true);
         let judged = (1..self.record.len() / self.block_rows).step_by(2);
         let on_block = |block: usize| {
-            position_rms(&run, self.record, &|row| row / self.block_rows == block).powi(2)
+            position_rms(run, self.record, &|row| row / self.block_rows == block).powi(2)
         };
         Judged {
             model,
@@ -134,13 +139,28 @@ impl<'a> Judge<'a> {
                 &|row| self.is_fitted(row),
             )
         };
-        let errors = side_by_side(starts, error);
-        let mut ranked: Vec<(f64, &Simulated)> = errors.into_iter().zip(starts).collect();
-        // What could not be simulated is no number, of either sign: it comes last.
-        ranked.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        let best = ranked.into_iter().take(count);
-        let fitted = best.map(|(_, start)| self.fitted(start));
+        let best = nearest(side_by_side(starts, error), starts, count).into_iter();
+        let fitted = best.map(|start| self.fitted(start));
         fitted.min_by(|a, b| a.all.total_cmp(&b.all))
+    }
+}
+
+/// So many items with the least errors, the least first.
+fn nearest<T>(errors: Vec<f64>, items: &[T], count: usize) -> Vec<&T> {
+    let mut ranked: Vec<(f64, &T)> = errors.into_iter().zip(items).collect();
+    // What could not be simulated is no number, of either sign: it comes last.
+    ranked.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let least = ranked.into_iter().take(count);
+    least.map(|(_, item)| item).collect()
+}
+
+/// Rigid friction beside a bristle, on an encoder of a resolution.
+fn scene(rigid: &Judged, bristle: &Judged, resolution: f64) -> Scene {
+    Scene {
+        rigid: rigid.left(),
+        bristle: bristle.tried(bristle.deflection()),
+        gap: None,
+        smallest: FEWEST_COUNTS * resolution,
     }
 }
 
@@ -159,31 +179,18 @@ pub(crate) fn reversals(
     let rigid = judge.fitted(&start(Shape::default())?);
     progress(&Step::Bristle);
     let bristle = judge.best(&bristles(unit, rigid.model.mechanics.mass, start), 1)?;
-    let mut scene = Scene {
-        rigid: rigid.left(),
-        bristle: Tried {
-            left: bristle.left(),
-            size: bristle.deflection(),
-        },
-        gap: None,
-        smallest: FEWEST_COUNTS * dataset.resolution,
-    };
+    let mut scene = scene(&rigid, &bristle, dataset.resolution);
     progress(&Step::Gap);
     let gap = scene
-        .is_worth_a_gap(ROUNDING * dataset.resolution)
+        .is_worth_a_gap(rounding(dataset.resolution))
         .then(|| judge.best(&gaps(unit, start), STARTS))
         .flatten();
-    scene.gap = gap.as_ref().map(|gap| Tried {
-        left: gap.left(),
-        size: gap.width(),
-    });
+    scene.gap = gap.as_ref().map(|gap| gap.tried(gap.width()));
     let mut accepted = scene.decide();
     progress(&Step::BristleAndGap);
     let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
     if let Some(both) = &both {
-        let size = both.width().min(both.deflection());
-        let left = both.left();
-        accepted = scene.with_both(accepted, Tried { left, size });
+        accepted = scene.with_both(accepted, both.tried(both.smaller_size()));
     }
     Some(Reversals {
         drive: judge.drive,
@@ -193,6 +200,11 @@ pub(crate) fn reversals(
         both,
         accepted,
     })
+}
+
+/// Rms of what rounding to counts of a resolution leaves.
+fn rounding(resolution: f64) -> f64 {
+    ROUNDING * resolution
 }
 
 /// Bristles to start from, over a range of deflections.
@@ -243,28 +255,31 @@ impl Judge<'_> {
     ) -> Option<Judged> {
         let gap = gap.filter(|_| accepted.presliding || accepted.backlash || accepted.undecided)?;
         let bristle = bristle.model.mechanics.shape.bristle?;
-        let of = |width: f64, share: f64| {
-            let gap = Gap {
-                width,
-                load_share: 0.45,
-                motor_friction: 0.2,
-                restitution: 0.5,
-            };
-            start(Shape {
-                bristle: Some(Bristle {
-                    deflection: share * bristle.deflection,
-                    ..bristle
-                }),
-                gap: Some(gap),
-            })
-        };
-        let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8)
-            .into_iter()
-            .chain([gap.width()]);
-        let starts = widths.flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
-        let starts = starts.filter_map(|(width, share)| of(width, share));
-        self.best(&starts.collect::<Vec<_>>(), 1)
+        let shapes = bristles_behind_gaps(bristle, gap.width(), unit).into_iter();
+        let starts: Vec<Simulated> = shapes.filter_map(start).collect();
+        self.best(&starts, 1)
     }
+}
+
+/// Bristles behind gaps to start from, about those that were found alone.
+fn bristles_behind_gaps(bristle: Bristle, width: f64, unit: f64) -> Vec<Shape> {
+    let widths = geometric(GAPS.0 * unit, GAPS.1 * unit, 8).into_iter();
+    let pairs = widths
+        .chain([width])
+        .flat_map(|width| [0.4, 1.0].map(|share| (width, share)));
+    let shape = |(width, share): (f64, f64)| Shape {
+        bristle: Some(Bristle {
+            deflection: share * bristle.deflection,
+            ..bristle
+        }),
+        gap: Some(Gap {
+            width,
+            load_share: 0.45,
+            motor_friction: 0.2,
+            restitution: 0.5,
+        }),
+    };
+    pairs.map(shape).collect()
 }
 
 impl Judged {
@@ -279,7 +294,20 @@ impl Judged {
         self.model.mechanics.shape.gap.map_or(0.0, |gap| gap.width)
     }
 
-    /// What the decision needs of it.
+    /// The smaller one of the two.
+    fn smaller_size(&self) -> f64 {
+        self.width().min(self.deflection())
+    }
+
+    /// What the decision needs of a shape of some size.
+    fn tried(&self, size: f64) -> Tried {
+        Tried {
+            left: self.left(),
+            size,
+        }
+    }
+
+    /// What it leaves.
     fn left(&self) -> Left {
         Left {
             held_out: self.held_out,
@@ -345,5 +373,308 @@ impl Reversals {
             (false, true) => self.gap.as_ref().unwrap_or(&self.rigid),
             (false, false) => &self.rigid,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::controller::law::{Form, Law};
+    use crate::simulate::made;
+    use axis_model::EffectName::{Coulomb, Inertia};
+
+    /// A resting axis of so many rows.
+    fn dataset(period_s: f64, rows: usize) -> Dataset {
+        made::dataset(made::record(period_s, vec![0.0; rows]), None)
+    }
+
+    /// 90 kg and 25 N with a shape at its reversals.
+    fn model(shape: Shape) -> Simulated {
+        let parts: &[(_, _, &[f64])] = &[(Inertia, 0.0, &[90.0]), (Coulomb, 0.0, &[25.0])];
+        let fitted = made::fitted(parts);
+        Simulated::new(&dataset(1.0e-3, 10), 1.0e-3, &fitted, shape).unwrap()
+    }
+
+    const fn shape(deflection: f64, width: f64) -> Shape {
+        Shape {
+            bristle: Some(Bristle {
+                deflection,
+                damping: 7.0,
+            }),
+            gap: Some(Gap {
+                width,
+                load_share: 0.5,
+                motor_friction: 0.5,
+                restitution: 0.5,
+            }),
+        }
+    }
+
+    fn judged(shape: Shape, held_out: f64) -> Judged {
+        Judged {
+            model: model(shape),
+            held_out,
+            all: 2.0 * held_out,
+            blocks: Vec::new(),
+        }
+    }
+
+    /// Rigid friction leaves 9, a bristle 5, a gap 4 and both 3.
+    fn reversals() -> Reversals {
+        let bristle = Shape {
+            gap: None,
+            ..shape(3.0e-6, 0.0)
+        };
+        let gap = Shape {
+            bristle: None,
+            ..shape(0.0, 8.0e-6)
+        };
+        Reversals {
+            drive: Drive::Followed,
+            rigid: judged(Shape::default(), 9.0),
+            bristle: judged(bristle, 5.0),
+            gap: Some(judged(gap, 4.0)),
+            both: Some(judged(shape(2.0e-6, 6.0e-6), 3.0)),
+            accepted: Accepted::default(),
+        }
+    }
+
+    fn accept(reversals: &mut Reversals, presliding: bool, backlash: bool) {
+        reversals.accepted = Accepted {
+            presliding,
+            backlash,
+            undecided: false,
+        };
+    }
+
+    #[test]
+    fn a_block_is_two_seconds_or_a_sixth_of_a_short_record() {
+        for (period_s, rows, block_rows) in [
+            (1.0e-3, 24_000, 2000),
+            (0.5e-3, 48_000, 4000),
+            (1.0e-3, 6000, 1000),
+            (1.0e-3, 5, 1),
+        ] {
+            let dataset = dataset(period_s, rows);
+            assert_eq!(Judge::of(&dataset).block_rows, block_rows, "{rows} rows");
+        }
+    }
+
+    #[test]
+    fn every_second_block_is_fitted_and_the_others_are_judged() {
+        let dataset = dataset(1.0e-3, 2500);
+        let judge = Judge {
+            drive: Drive::Followed,
+            record: &dataset.train,
+            block_rows: 400,
+        };
+        let fitted = [0, 399, 400, 799, 800, 2400].map(|row| judge.is_fitted(row));
+        assert_eq!(fitted, [true, true, false, false, true, true]);
+        // Each block is off by a number of its own, the rest of 100 rows by nothing. The first 300
+        // rows settle.
+        let off = [6.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0];
+        let run = Run {
+            motor: (0..2500).map(|row| off[row / 400]).collect(),
+        };
+        let left = judge.judged(model(Shape::default()), &run);
+        let near = |value: f64, wanted: f64| assert!((value - wanted).abs() < 1.0e-12, "{value}");
+        near(left.held_out, (35.0_f64 / 3.0).sqrt());
+        near(left.all, ((3600.0 + 400.0 * 55.0) / 2200.0_f64).sqrt());
+        assert_eq!(left.blocks.len(), 3);
+        for (block, wanted) in left.blocks.iter().zip([1.0, 9.0, 25.0]) {
+            near(*block, wanted);
+        }
+    }
+
+    #[test]
+    fn the_nearest_starts_come_first_and_what_is_no_number_last() {
+        let errors = || vec![3.0, f64::NAN, -f64::NAN, 1.0, 2.0];
+        let items = ["three", "nan", "minus nan", "one", "two"];
+        assert_eq!(nearest(errors(), &items, 2), [&"one", &"two"]);
+        let all = nearest(errors(), &items, 9);
+        assert_eq!(all[..3], [&"one", &"two", &"three"]);
+        assert_eq!(all.len(), 5);
+    }
+
+    #[test]
+    fn bristles_are_tried_from_one_to_sixty_micrometres_on_a_linear_axis() {
+        let tried = bristles(1.0e-3, 90.0, |shape| Some(model(shape)));
+        let shapes: Vec<Shape> = tried.iter().map(|one| one.mechanics.shape).collect();
+        let of = |place: usize| shapes[place].bristle.unwrap();
+        assert!((of(0).deflection / 1.0e-6 - 1.0).abs() < 1.0e-9);
+        assert!((of(6).deflection / 60.0e-6 - 1.0).abs() < 1.0e-9);
+        // Thirty times the mass a second.
+        assert!(
+            shapes
+                .iter()
+                .all(|one| one.bristle.unwrap().damping == 2700.0)
+        );
+        assert!(shapes.len() == 7 && shapes.iter().all(|one| one.gap.is_none()));
+    }
+
+    #[test]
+    fn gaps_are_tried_from_2_to_120_micrometres_with_every_kind_of_impact() {
+        let tried = gaps(1.0e-3, |shape| Some(model(shape)));
+        let gap = |one: &Simulated| one.mechanics.shape.gap.unwrap();
+        let gaps: Vec<Gap> = tried.iter().map(gap).collect();
+        assert_eq!(gaps.len(), 56);
+        assert!((gaps[0].width / 2.0e-6 - 1.0).abs() < 1.0e-9);
+        assert!((gaps[55].width / 120.0e-6 - 1.0).abs() < 1.0e-9);
+        let kinds = gaps[..4]
+            .iter()
+            .map(|gap| (gap.restitution, gap.motor_friction));
+        let kinds: Vec<(f64, f64)> = kinds.collect();
+        assert_eq!(kinds, [(0.1, 0.2), (0.1, 0.7), (0.7, 0.2), (0.7, 0.7)]);
+        assert!(gaps[3].width == gaps[0].width && gaps[4].width > gaps[3].width);
+        assert!(
+            tried
+                .iter()
+                .all(|one| one.mechanics.shape.bristle.is_none())
+        );
+    }
+
+    #[test]
+    fn a_bristle_behind_a_gap_is_tried_about_the_bristle_and_the_gap_alone() {
+        let bristle = Bristle {
+            deflection: 5.0e-6,
+            damping: 7.0,
+        };
+        let shapes = bristles_behind_gaps(bristle, 33.0e-6, 1.0e-3);
+        let sizes: Vec<(f64, f64)> = shapes
+            .iter()
+            .map(|shape| (shape.gap.unwrap().width, shape.bristle.unwrap().deflection))
+            .collect();
+        assert_eq!(sizes.len(), 18);
+        assert_eq!(sizes[16..], [(33.0e-6, 0.4 * 5.0e-6), (33.0e-6, 5.0e-6)]);
+        assert!((sizes[0].0 / 2.0e-6 - 1.0).abs() < 1.0e-9);
+        assert!((sizes[15].0 / 120.0e-6 - 1.0).abs() < 1.0e-9);
+        assert!(
+            shapes
+                .iter()
+                .all(|shape| shape.bristle.unwrap().damping == 7.0)
+        );
+    }
+
+    #[test]
+    fn a_bristle_behind_a_gap_is_tried_only_where_something_acts_and_a_gap_was_tried() {
+        let dataset = dataset(1.0e-3, 10);
+        let judge = Judge::of(&dataset);
+        let asked = std::cell::Cell::new(0);
+        let start = |_: Shape| {
+            asked.set(asked.get() + 1);
+            None
+        };
+        let found = reversals();
+        let starts = |accepted: [bool; 3], gap: Option<&Judged>| {
+            let [presliding, backlash, undecided] = accepted;
+            let accepted = Accepted {
+                presliding,
+                backlash,
+                undecided,
+            };
+            asked.set(0);
+            let both = judge.both(accepted, &found.bristle, gap, 1.0e-3, &start);
+            assert!(both.is_none(), "nothing can be simulated");
+            asked.get()
+        };
+        let gap = found.gap.as_ref();
+        assert_eq!(starts([false; 3], gap), 0);
+        assert_eq!(starts([true, false, false], None), 0);
+        for one in 0..3 {
+            assert_eq!(starts([0, 1, 2].map(|place| place == one), gap), 18);
+        }
+    }
+
+    #[test]
+    fn a_shape_is_visible_from_two_counts_on_and_rounding_leaves_a_count_over_root_twelve() {
+        let found = reversals();
+        let scene = scene(&found.rigid, &found.bristle, 1.5e-6);
+        assert_eq!(scene.smallest, 3.0e-6);
+        assert_eq!((scene.rigid.held_out, scene.rigid.all), (9.0, 18.0));
+        let Tried { left, size } = scene.bristle;
+        assert_eq!((left.held_out, left.all, size), (5.0, 10.0, 3.0e-6));
+        assert!(scene.gap.is_none());
+        assert!((rounding(4.0) - 4.0 / 12.0_f64.sqrt()).abs() < 1.0e-5);
+    }
+
+    #[test]
+    fn a_shape_has_the_sizes_of_its_bristle_and_its_gap() {
+        let sizes = |shape: Shape| {
+            let judged = judged(shape, 1.0);
+            (judged.deflection(), judged.width(), judged.smaller_size())
+        };
+        assert_eq!(sizes(shape(2.0e-6, 6.0e-6)), (2.0e-6, 6.0e-6, 2.0e-6));
+        assert_eq!(sizes(shape(7.0e-6, 6.0e-6)), (7.0e-6, 6.0e-6, 6.0e-6));
+        assert_eq!(sizes(Shape::default()), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn the_best_is_what_was_accepted_as_far_as_it_was_tried() {
+        let mut found = reversals();
+        let mut best = |presliding, backlash| {
+            accept(&mut found, presliding, backlash);
+            (found.best().held_out, found.deflection())
+        };
+        assert_eq!(best(false, false), (9.0, None));
+        assert_eq!(best(true, false), (5.0, Some(3.0e-6)));
+        assert_eq!(best(false, true), (4.0, None));
+        assert_eq!(best(true, true), (3.0, Some(2.0e-6)));
+        (found.gap, found.both) = (None, None);
+        accept(&mut found, false, true);
+        assert_eq!(found.best().held_out, 9.0);
+        accept(&mut found, true, true);
+        assert_eq!(found.best().held_out, 5.0);
+    }
+
+    #[test]
+    fn in_short_a_gap_leaves_less_than_a_bristle_or_not_and_the_controller_is_known_or_not() {
+        let mut found = reversals();
+        found.accepted.undecided = true;
+        let summary = found.summary();
+        assert!(summary.gap_leaves_less && !summary.controller_known);
+        assert!(summary.accepted.undecided);
+        let gap = found.gap.as_mut().unwrap();
+        gap.held_out = 5.0;
+        found.drive = Drive::Known(Law {
+            form: Form::Voltage { gain: 10.0 },
+            position_gain: 4.0,
+            limit: None,
+            on_load: false,
+            misfit: 0.0,
+        });
+        let summary = found.summary();
+        assert!(!summary.gap_leaves_less && summary.controller_known);
+        found.gap = None;
+        assert!(!found.summary().gap_leaves_less);
+    }
+
+    #[test]
+    fn a_doubt_stays_only_where_nothing_was_decided() {
+        for (doubt, presliding, backlash, left) in [
+            (true, false, false, true),
+            (true, true, false, false),
+            (true, false, true, false),
+            (false, false, false, false),
+        ] {
+            let mut found = reversals();
+            found.accepted.undecided = doubt;
+            found.settle(presliding, backlash);
+            let wanted = Accepted {
+                presliding,
+                backlash,
+                undecided: left,
+            };
+            assert_eq!(found.accepted, wanted);
+        }
+    }
+
+    #[test]
+    fn t_is_the_mean_gain_over_rigid_friction_by_its_standard_error() {
+        let mut found = reversals();
+        found.rigid.blocks = vec![5.0, 6.0, 7.0];
+        found.bristle.blocks = vec![4.0, 4.0, 4.0];
+        // Gains 1, 2, 3: mean 2, standard error 1/√3.
+        let t = found.t(&found.bristle);
+        assert!((t - 12.0_f64.sqrt()).abs() < 1.0e-12, "{t}");
     }
 }

@@ -175,6 +175,9 @@ pub(crate) mod tests {
                     "{case}: {}",
                     left.force_percent
                 );
+                // Below 0.01 N of 300 N about reversals, or some newtons.
+                let (rms, right) = (left.reversal_rms, is_right);
+                assert!(if right { rms < 0.01 } else { rms > 3.0 }, "{case}: {rms}");
                 let again = model.force_error_percent(&dataset, &motion);
                 assert_eq!(again, left.force_percent, "{case}");
                 if is_right {
@@ -182,6 +185,17 @@ pub(crate) mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn without_coulomb_friction_nothing_is_left_about_reversals() {
+        let dataset = declared(record(None));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let model = InverseDynamics {
+            fitted: Bench::new(&dataset, &motion).fit(&crate::fit::made::model(&[Inertia])),
+            deflection: None,
+        };
+        assert_eq!(model.on(&dataset, &motion).reversal_rms, 0.0);
     }
 
     #[test]

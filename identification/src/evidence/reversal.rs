@@ -11,7 +11,7 @@ pub(crate) mod stick;
 
 use axis_model::EffectName;
 
-use crate::evidence::thresholds::{BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS};
+use crate::evidence::thresholds::{BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
 use crate::motion::kinematics::Kinematics;
@@ -49,23 +49,34 @@ pub(crate) struct Presliding {
 #[must_use]
 pub(crate) fn presliding(bench: &Bench<'_>, fitted: &Fitted) -> Option<Presliding> {
     let motion = bench.motion;
-    if motion.slow.iter().filter(|slow| **slow).count() < 200 {
+    if motion.slow.iter().filter(|slow| **slow).count() < FEWEST_REVERSAL_ROWS {
         return None;
     }
     let observed = Observed::new(bench, fitted)?;
     let rigid = stick::error(&observed);
     let (deflection, bristle) = bristle::best(&observed, bench.dataset.kind.moving_velocity());
     let t = block_t(&motion.slow, &rigid, &bristle);
-    let (rigid, dahl) = (rms(&rigid, &motion.slow), rms(&bristle, &motion.slow));
-    let accepted =
-        dahl <= BRISTLE_RATIO * rigid && t >= BRISTLE_T && deflection >= resolution(bench.dataset);
-    Some(Presliding {
-        rigid,
-        dahl,
+    let seen = Presliding {
+        rigid: rms(&rigid, &motion.slow),
+        dahl: rms(&bristle, &motion.slow),
         deflection,
         t,
-        accepted,
+        accepted: false,
+    };
+    Some(Presliding {
+        accepted: seen.is_clear(resolution(bench.dataset)),
+        ..seen
     })
+}
+
+impl Presliding {
+    /// Whether a bristle leaves clearly less, at enough reversals, and is not below the smallest
+    /// deflection that shows.
+    fn is_clear(&self, smallest: f64) -> bool {
+        self.dahl <= BRISTLE_RATIO * self.rigid
+            && self.t >= BRISTLE_T
+            && self.deflection >= smallest
+    }
 }
 
 /// Rms of the effort about reversals that a model does not explain: with a bristle of the given
@@ -163,4 +174,116 @@ fn block_t(mask: &[bool], before: &[f64], after: &[f64]) -> f64 {
         }
     }
     crate::fit::blocks::t_of(&gains)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::inverse_dynamics::tests::{DEFLECTION_M, declared, record};
+    use crate::fit::made::{self, USUAL, axis, usual};
+    use EffectName::{Inertia, Offset, Viscous};
+
+    fn fitted(coefficients: &[f64]) -> Fitted {
+        let names = [Inertia, Viscous, EffectName::Coulomb, Offset];
+        Fitted::new(made::model(&names[..coefficients.len()]), coefficients)
+    }
+
+    #[test]
+    fn the_level_is_that_of_coulomb_friction_and_all_other_forces_are_taken_off() {
+        let axis = axis(usual);
+        let bench = axis.bench();
+        let observed = Observed::new(&bench, &fitted(&USUAL)).unwrap();
+        assert!(observed.level.iter().all(|level| *level == 25.0));
+        let motion = &axis.motion;
+        let friction: Vec<f64> = motion.direction.iter().map(|d| 25.0 * d).collect();
+        let friction = motion.low_passed(&friction);
+        for row in (0..motion.len()).filter(|row| motion.is_inside(*row)) {
+            let apart = observed.friction[row] - friction[row];
+            assert!(apart.abs() < 0.05, "row {row}: {apart}");
+        }
+        assert!(Observed::new(&bench, &fitted(&USUAL[..2])).is_none());
+    }
+
+    #[test]
+    fn a_bristle_is_seen_with_its_deflection_and_rigid_friction_is_none() {
+        let fitted = fitted(&[700.0, 900.0, 300.0]);
+        let dataset = declared(record(Some(DEFLECTION_M)));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let bench = Bench::new(&dataset, &motion);
+        let seen = presliding(&bench, &fitted).unwrap();
+        assert!(seen.accepted && seen.t > BRISTLE_T, "{seen:?}");
+        assert!(
+            (seen.deflection / DEFLECTION_M - 1.0).abs() < 0.01,
+            "{seen:?}"
+        );
+        assert!(
+            seen.rigid > 20.0 && seen.dahl < 0.05 * seen.rigid,
+            "{seen:?}"
+        );
+        let left = |deflection| error_rms(&bench, &fitted, deflection).unwrap();
+        assert_eq!(
+            (left(None), left(Some(seen.deflection))),
+            (seen.rigid, seen.dahl)
+        );
+        assert!(left(Some(DEFLECTION_M)) < 1.0e-6 * seen.rigid);
+        let dataset = declared(record(None));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let seen = presliding(&Bench::new(&dataset, &motion), &fitted).unwrap();
+        assert!(!seen.accepted && seen.rigid < seen.dahl, "{seen:?}");
+    }
+
+    #[test]
+    fn two_hundred_samples_about_reversals_are_needed() {
+        let mut axis = axis(usual);
+        let mut speaks = |rows: usize| {
+            axis.motion.slow.fill(false);
+            axis.motion.slow[1000..1000 + rows].fill(true);
+            presliding(&axis.bench(), &fitted(&USUAL)).is_some()
+        };
+        assert!(!speaks(0) && !speaks(199) && speaks(200) && speaks(300));
+    }
+
+    #[test]
+    fn a_bristle_is_clear_at_its_limits_and_not_beyond_any_of_them() {
+        let clear = |dahl, t, deflection| {
+            let seen = Presliding {
+                rigid: 2.0,
+                dahl,
+                deflection,
+                t,
+                accepted: false,
+            };
+            seen.is_clear(3.0e-6)
+        };
+        assert!(clear(1.4, 1.2, 3.0e-6));
+        assert!(!clear(1.41, 9.0, 9.0e-6));
+        assert!(!clear(0.1, 1.19, 9.0e-6));
+        assert!(!clear(0.1, 9.0, 2.9e-6));
+    }
+
+    #[test]
+    fn the_smallest_deflection_is_two_counts_where_friction_acts() {
+        let mut dataset = axis(usual).dataset;
+        (dataset.resolution, dataset.load_resolution) = (1.0e-6, 3.0e-6);
+        assert_eq!(resolution(&dataset), 2.0e-6);
+        dataset.train.load = Some(dataset.train.position.clone());
+        assert_eq!(resolution(&dataset), 6.0e-6);
+    }
+
+    #[test]
+    fn rms_is_over_the_mask_and_zero_where_that_is_empty() {
+        let error = [3.0, 100.0, -4.0];
+        assert_eq!(rms(&error, &[true, false, true]), 12.5_f64.sqrt());
+        assert_eq!(rms(&error, &[false; 3]), 0.0);
+    }
+
+    #[test]
+    fn t_has_one_gain_a_reversal() {
+        let mask = [true, true, false, true, false, true];
+        let before = [2.0, 1.0, 9.0, 3.0, 9.0, 7.0];
+        let after = [1.0, 1.0, 0.0, 1.0, 0.0, 6.0];
+        // 3 + 0, 8 and 13: mean 8, standard error 5/√3.
+        let t = block_t(&mask, &before, &after);
+        assert!((t - 1.6 * 3.0_f64.sqrt()).abs() < 1.0e-12, "{t}");
+    }
 }

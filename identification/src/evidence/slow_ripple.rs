@@ -79,7 +79,7 @@ pub(crate) fn slow_ripple(
     let fastest = SLOW_SHARE * median_speed(moving);
     let slow = |record: &Record| slow_motion(dataset, record, fastest);
     let (train, validate) = (slow(&dataset.train)?, slow(&dataset.validate)?);
-    if train.fitted.iter().filter(|slow| **slow).count() < FEWEST_SLOW_ROWS {
+    if is_short(&train) {
         return None;
     }
     let bench = Bench::new(dataset, &train);
@@ -110,6 +110,11 @@ pub(crate) fn slow_ripple(
 fn dwells(velocity: &[f64], limit: f64, reversals: usize) -> bool {
     let slow = velocity.iter().filter(|v| v.abs() <= limit).count();
     reversals < FEWEST_SLOW_REVERSALS || slow as f64 >= DWELL_ROWS * reversals as f64
+}
+
+/// Whether a motion has too few slow samples to say.
+fn is_short(slow: &Kinematics) -> bool {
+    slow.fitted.iter().filter(|slow| **slow).count() < FEWEST_SLOW_ROWS
 }
 
 /// The effort of slow samples: one integer order per revolution after the other.
@@ -185,9 +190,15 @@ impl SlowEffort<'_> {
                 gain: scored.gain,
             })
         };
-        let is_large =
-            |order: &OrderAtReversals| order.amplitude >= AMPLITUDE_HALF_WIDTHS * order.half_width;
-        accepted.filter_map(order).filter(is_large).collect()
+        let orders = accepted.filter_map(order);
+        orders.filter(OrderAtReversals::is_large).collect()
+    }
+}
+
+impl OrderAtReversals {
+    /// Whether the amplitude is larger than its interval makes of nothing.
+    fn is_large(&self) -> bool {
+        self.amplitude >= AMPLITUDE_HALF_WIDTHS * self.half_width
     }
 }
 
@@ -301,6 +312,97 @@ mod tests {
         assert_eq!(median_speed(motion), 0.3);
     }
 
+    #[test]
+    fn slow_samples_stand_in_for_the_moving_ones_but_for_holes_and_ends() {
+        let mut axis = axis(usual);
+        axis.dataset.train.interpolated[2000..2500].fill(true);
+        let record = &axis.dataset.train;
+        let velocity = |motion: &Kinematics, row: usize| motion.velocity_lp[row].abs();
+        let all = slow_motion(&axis.dataset, record, f64::INFINITY).unwrap();
+        // The limit itself is slow: it is the velocity of a row.
+        let limit = velocity(&all, 3000);
+        let slow = slow_motion(&axis.dataset, record, limit).unwrap();
+        assert_eq!(slow.moving, slow.fitted);
+        assert!(slow.fitted[3000]);
+        for row in 0..slow.len() {
+            let recorded = (200..5800).contains(&row) && !(2000..2500).contains(&row);
+            assert_eq!(all.fitted[row], recorded, "row {row}");
+            let wanted = recorded && velocity(&slow, row) <= limit;
+            assert_eq!(slow.fitted[row], wanted, "row {row}");
+        }
+    }
+
+    #[test]
+    fn fifteen_hundred_slow_samples_are_needed() {
+        let mut motion = axis(usual).motion;
+        let mut short = |rows: usize| {
+            motion.fitted.fill(false);
+            motion.fitted[..rows].fill(true);
+            is_short(&motion)
+        };
+        assert!(short(0) && short(1499) && !short(1500) && !short(3000));
+    }
+
+    #[test]
+    fn an_amplitude_is_large_from_one_and_a_half_half_widths_on() {
+        let is_large = |amplitude| {
+            let order = OrderAtReversals {
+                per_rev: 5,
+                amplitude,
+                half_width: 2.0,
+                gain: Gain {
+                    removed: 1.0,
+                    share: 1.0,
+                    percent: 1.0,
+                    t: 1.0,
+                },
+            };
+            order.is_large()
+        };
+        assert!(is_large(3.0) && is_large(4.0) && !is_large(2.99));
+    }
+
+    /// Whether an order of 4 N is accepted whose sign is another one in the second half.
+    fn is_accepted(second: f64) -> [bool; 2] {
+        let wave = |motion: &Kinematics, row: usize| {
+            let sign = if row < 3000 { 1.0 } else { second };
+            4.0 * sign * (TAU * 500.0 * motion.position_lp[row]).cos()
+        };
+        let axis = axis(|motion, row| usual(motion, row) + wave(motion, row));
+        let bench = axis.bench();
+        let output = SlowEffort {
+            halves: halves(&axis.motion),
+            bench: &bench,
+            revolution: 0.01,
+        };
+        let model = model(&[Inertia, Viscous, Coulomb, Offset]).with(output.part(5));
+        let accepts = |share: f64| {
+            output.accepts(&Candidate {
+                scored: Scored {
+                    effect: model.parts[4].called(),
+                    parameter: model.parts[4].parameter,
+                    gain: Gain {
+                        removed: 1.0,
+                        share,
+                        percent: 1.0,
+                        t: 9.0,
+                    },
+                    physical: true,
+                    accepted: false,
+                    round: 0,
+                },
+                model: model.clone(),
+            })
+        };
+        [0.5, 0.01].map(accepts)
+    }
+
+    #[test]
+    fn an_order_is_accepted_where_it_gains_enough_and_both_halves_agree_about_it() {
+        assert_eq!(is_accepted(1.0), [true, false]);
+        assert_eq!(is_accepted(-1.0), [false, false]);
+    }
+
     /// 10 mm to and fro at 4 Hz for 14 s: at 6 m/s² the axis passes its reversals within 0.3 ms. A
     /// slower swing brings them to other places.
     fn swinging() -> Axis {
@@ -326,7 +428,10 @@ mod tests {
 
     #[test]
     fn an_order_that_shows_about_reversals_is_found_with_its_amplitude() {
-        let found = ripple(&mut swinging(), 4.0, 5.0).expect("ripple");
+        let mut axis = swinging();
+        let found = ripple(&mut axis, 4.0, 5.0).expect("ripple");
+        assert_eq!(found.fastest, 0.25 * median_speed(&axis.motion));
+        assert_eq!(found.cutoff_hz, 30.0);
         let orders: Vec<u32> = found.orders.iter().map(|order| order.per_rev).collect();
         assert!(orders.contains(&5), "{orders:?}");
         let order = found

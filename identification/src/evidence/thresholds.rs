@@ -94,6 +94,9 @@ pub(crate) const APART_COUNTS: f64 = 10.0;
 /// count is what rounding makes of nothing.
 pub(crate) const FEWEST_COUNTS: f64 = 2.0;
 
+/// Fewest samples about reversals: five reversals at 1 kHz with their margins of 20 ms.
+pub(crate) const FEWEST_REVERSAL_ROWS: usize = 200;
+
 /// Rms of Dahl over that of rigid friction about reversals, at most, for a bristle. On 128
 /// simulated records: 0.05 to 0.34 with presliding, 0.88 and more with a gap, 2 and more with
 /// neither.

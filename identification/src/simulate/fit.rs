@@ -284,6 +284,61 @@ mod tests {
         }
     }
 
+    /// Half widths in multiples of the scale, where the record asks every block for another value
+    /// of the parameter at a place: one step of 1e-4 more or less, by block.
+    fn half_widths_of(place: usize, sign: impl Fn(usize) -> f64) -> Vec<f64> {
+        // A period is a block: 60 rows of every fifth. All blocks weigh the same.
+        let sine = |row: i32| 0.02 * (std::f64::consts::TAU * f64::from(row) / 300.0).sin();
+        let path: Vec<f64> = (0..3300).map(sine).collect();
+        let record = Record {
+            reference: Some(path.clone()),
+            ..made::record(1.0e-3, path)
+        };
+        let mut dataset = made::dataset(record, Some(controller()));
+        let drive = Drive::of(&dataset);
+        let truth = model(&dataset, TRUTH);
+        let rows: Vec<usize> = dataset
+            .train
+            .settled(SETTLING_ROWS)
+            .step_by(STRIDE)
+            .collect();
+        let slope = {
+            let course = Course {
+                drive: &drive,
+                record: &dataset.train,
+            };
+            let problem = Problem::new(&truth, course, rows.clone(), 1.0);
+            problem.jacobian_at(&problem.at).column(place).into_owned()
+        };
+        dataset.train.position = simulate(&truth, &drive, &dataset.train).motor;
+        for (at, row) in rows.into_iter().enumerate() {
+            dataset.train.position[row] += 1.0e-4 * sign(at / 60) * slope[at];
+        }
+        let table = truth.parameters();
+        let widths = half_widths(&truth, &drive, &dataset.train).into_iter();
+        widths
+            .zip(table)
+            .map(|(half, row)| half / row.scale)
+            .collect()
+    }
+
+    #[test]
+    fn blocks_that_ask_for_the_same_parameter_leave_no_interval() {
+        let widths = half_widths_of(0, |_| 1.0);
+        assert!(widths.iter().all(|half| *half < 1.0e-7), "{widths:?}");
+    }
+
+    #[test]
+    fn the_interval_is_what_the_jackknife_over_ten_blocks_gives_by_hand() {
+        // Five blocks ask for one step more, five for one less. Without one of them the mean is
+        // ∓1/9 of a step: 1.96·√(9/10 · 10/81) = 0.653 of it.
+        for place in [0, 1] {
+            let widths = half_widths_of(place, |block| if block % 2 == 0 { 1.0 } else { -1.0 });
+            let steps = widths[place] / 1.0e-4;
+            assert!((steps / 0.653 - 1.0).abs() < 0.05, "{place}: {steps}");
+        }
+    }
+
     #[test]
     fn the_error_is_simulated_less_recorded_in_units_of_the_scale() {
         let (mut dataset, drive) = recorded(400);

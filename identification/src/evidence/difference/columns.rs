@@ -167,3 +167,117 @@ impl<'a> Apart<'a> {
         1.0e6 * (sum / f64::max(count, 1.0)).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, usual};
+
+    /// An axis with a difference that follows a law of the position.
+    fn apart_by(law: impl Fn(f64) -> f64) -> Axis {
+        let mut axis = axis(usual);
+        let position = &axis.dataset.train.position;
+        axis.motion.difference = Some(position.iter().map(|x| law(*x)).collect());
+        axis
+    }
+
+    fn apart(axis: &Axis) -> Apart<'_> {
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+        };
+        Apart::on(&axis.motion, path).unwrap()
+    }
+
+    fn fitted(ways: &[(Way, &[f64])]) -> FittedWays {
+        FittedWays(ways.iter().map(|(way, own)| (*way, own.to_vec())).collect())
+    }
+
+    #[test]
+    fn moving_samples_and_those_about_reversals_are_judged() {
+        let mut axis = apart_by(|x| x);
+        let mut judged = |moving, slow| {
+            axis.motion.moving[7] = moving;
+            axis.motion.slow[7] = slow;
+            apart(&axis).mask[7]
+        };
+        assert!(!judged(false, false) && judged(true, false) && judged(false, true));
+        axis.motion.difference = None;
+        let (position, transmitted) = (&[][..], &[][..]);
+        let path = Path {
+            position,
+            transmitted,
+        };
+        assert!(Apart::on(&axis.motion, path).is_none());
+    }
+
+    #[test]
+    fn a_pitch_error_is_a_cosine_and_a_sine_with_a_wave_number() {
+        let axis = axis(usual);
+        let path = Path {
+            position: &[0.0, 0.25, 0.5, 0.75],
+            transmitted: &[],
+        };
+        // Half a period a unit: 0°, 45°, 90°, 135°.
+        let columns = Way::Pitch { per_length: 0.5 }.columns(&axis.motion, path);
+        let half = 0.5_f64.sqrt();
+        let wanted = [[1.0, half, 0.0, -half], [0.0, half, 1.0, half]];
+        for (value, wanted) in columns.iter().flatten().zip(wanted.iter().flatten()) {
+            assert!((value - wanted).abs() < 1.0e-12, "{value} {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_spring_is_wound_up_by_the_transmitted_force_less_the_motors_own() {
+        let axis = apart_by(|x| x);
+        let columns = apart(&axis).columns(Way::WindUp);
+        let acceleration = axis.motion.low_passed(&axis.motion.acceleration);
+        assert_eq!(columns, [axis.motion.effort_lp.clone(), acceleration]);
+        let ones = apart(&axis).columns(Way::Constant);
+        assert_eq!(ones, [vec![1.0; axis.motion.len()]]);
+        let gap = Behind {
+            gap: 2.0e-6,
+            coulomb: 1.0,
+            ..Behind::default()
+        };
+        let lag = gap.follow(&axis.dataset.train.position, 1.0e-3);
+        assert_eq!(apart(&axis).columns(Way::Play(gap)), [lag]);
+    }
+
+    #[test]
+    fn a_fit_gives_each_way_its_own_coefficients() {
+        let pitch = Way::Pitch { per_length: 500.0 };
+        let axis = apart_by(|x| 3.0e-6 + 2.0e-6 * (TAU * 500.0 * x).sin());
+        let apart = apart(&axis);
+        let ways = apart.fit(&[Way::Constant, pitch]);
+        let (last, own) = ways.last().unwrap();
+        assert_eq!(last, pitch);
+        assert!(own[0].abs() < 1.0e-10 && (own[1] - 2.0e-6).abs() < 1.0e-10);
+        assert!((ways.0[0].1[0] - 3.0e-6).abs() < 1.0e-10);
+        assert!(apart.rms_um(&ways) < 1.0e-4);
+        assert_eq!(ways.of(EffectName::PitchError).unwrap().1, own);
+        assert!(ways.of(EffectName::Backlash).is_none());
+        assert_eq!(ways.names().collect::<Vec<_>>(), [EffectName::PitchError]);
+    }
+
+    #[test]
+    fn what_is_left_is_the_difference_less_what_was_fitted_in_micrometres_over_the_mask() {
+        let axis = apart_by(|_| 5.0e-6);
+        let mut apart = apart(&axis);
+        apart.mask.fill(false);
+        apart.mask[..4].fill(true);
+        let ways = fitted(&[(Way::Constant, &[2.0e-6])]);
+        let left = apart.residual(&ways);
+        assert!(left.iter().all(|left| (left - 3.0e-6).abs() < 1.0e-18));
+        assert!((apart.rms_um(&ways) - 3.0).abs() < 1.0e-9);
+        let target: Vec<f64> = (0..axis.motion.len())
+            .map(|row| [3.0e-6, -3.0e-6, 5.0e-6, 5.0e-6, 1.0][row.min(4)])
+            .collect();
+        apart.target = &target;
+        // √((9 + 9 + 25 + 25)/4) µm; the rows of a metre are outside.
+        let rms = apart.rms_um(&FittedWays::default());
+        assert!((rms - 17.0_f64.sqrt()).abs() < 1.0e-9, "{rms}");
+        apart.mask.fill(false);
+        assert_eq!(apart.rms_um(&FittedWays::default()), 0.0);
+    }
+}

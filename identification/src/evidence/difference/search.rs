@@ -1,6 +1,7 @@
 //! Searches for a gap and for a pitch error.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::columns::{Apart, FittedWays, Way};
 use crate::evidence::thresholds::FEWEST_COUNTS;
@@ -51,12 +52,16 @@ pub(crate) fn best_gap(apart: &Apart<'_>, ways: &[Way], count: f64) -> Way {
         share: SHARES[2],
         restitution: RESTITUTIONS[0],
     };
-    let widths = geometric(narrowest, 1.0e-3_f64.max(100.0 * narrowest), WIDTHS);
-    best.gap = smallest(&widths, &|gap| sse(Trial { gap, ..best })).unwrap_or(narrowest);
+    best.gap = smallest(&widths(narrowest), &|gap| sse(Trial { gap, ..best })).unwrap_or(narrowest);
     for step in WIDTH_STEPS {
         best = improved(best, step, narrowest, &sse);
     }
     Way::Play(best.behind(&plain))
+}
+
+/// Widths from the narrowest on.
+fn widths(narrowest: f64) -> Vec<f64> {
+    geometric(narrowest, 1.0e-3_f64.max(100.0 * narrowest), WIDTHS)
 }
 
 /// One parameter after the other.
@@ -120,12 +125,17 @@ pub(crate) fn best_pitch(apart: &Apart<'_>, fitted: &FittedWays) -> Option<Way> 
     let samples: Vec<(f64, f64)> = inside
         .map(|row| (apart.path.position[row], residual[row]))
         .collect();
-    let most = ((HALF_PERIODS_PER_LENGTH * (high - low)) as usize).min(MOST_HALF_PERIODS);
-    let coarse = (FEWEST_HALF_PERIODS..most.max(FEWEST_HALF_PERIODS + 1)).map(|i| step * i as f64);
+    let coarse = half_periods(high - low).map(|i| step * i as f64);
     let best = strongest(&samples, coarse)?;
     let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
     let per_length = strongest(&samples, fine)?;
     Some(Way::Pitch { per_length })
+}
+
+/// Half periods within a travel that are scanned.
+fn half_periods(travel: f64) -> Range<usize> {
+    let most = ((HALF_PERIODS_PER_LENGTH * travel) as usize).min(MOST_HALF_PERIODS);
+    FEWEST_HALF_PERIODS..most.max(FEWEST_HALF_PERIODS + 1)
 }
 
 /// The wave number with the largest amplitude in samples over position.
@@ -139,4 +149,154 @@ fn strongest(samples: &[(f64, f64)], wave_numbers: impl Iterator<Item = f64>) ->
     };
     let all = wave_numbers.map(|k| (amplitude(k), k));
     all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::difference::Path;
+    use crate::fit::made::{Axis, axis, usual};
+
+    fn near(value: f64, wanted: f64, within: f64) {
+        assert!((value - wanted).abs() <= within, "{value}, not {wanted}");
+    }
+
+    /// An axis with a difference, row by row.
+    fn apart_by(difference: Vec<f64>) -> Axis {
+        let mut axis = axis(usual);
+        axis.motion.difference = Some(difference);
+        axis
+    }
+
+    fn apart(axis: &Axis) -> Apart<'_> {
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+        };
+        Apart::on(&axis.motion, path).unwrap()
+    }
+
+    #[test]
+    fn all_of_the_friction_slows_the_share_of_the_mass_behind_the_gap() {
+        let plain = |viscous| Plain {
+            inertia: 90.0,
+            viscous,
+            coulomb: 27.0,
+        };
+        let trial = Trial {
+            gap: 2.0e-6,
+            share: 0.4,
+            restitution: 0.3,
+        };
+        let behind = trial.behind(&plain(180.0));
+        assert_eq!((behind.gap, behind.restitution), (2.0e-6, 0.3));
+        // 36 kg.
+        near(behind.coulomb, 0.75, 1.0e-12);
+        near(behind.viscous, 5.0, 1.0e-12);
+        assert_eq!(trial.behind(&plain(-180.0)).viscous, 0.0);
+    }
+
+    #[test]
+    fn widths_reach_a_millimetre_or_a_hundred_times_the_narrowest() {
+        for (narrowest, widest) in [(2.0e-7, 1.0e-3), (1.0e-4, 1.0e-2)] {
+            let widths = widths(narrowest);
+            assert_eq!((widths.len(), widths[0]), (24, narrowest));
+            near(widths[23] / widest, 1.0, 1.0e-9);
+        }
+    }
+
+    #[test]
+    fn the_lag_of_a_gap_is_taken_off_the_difference_as_it_is() {
+        let behind = |gap: f64| Behind {
+            gap,
+            coulomb: 0.7,
+            viscous: 5.0,
+            restitution: 0.3,
+        };
+        let position = axis(usual).dataset.train.position;
+        let axis = apart_by(behind(20.0e-6).follow(&position, 1.0e-3));
+        let apart = apart(&axis);
+        let left = |gap: f64| left_by(&apart, &[Way::Constant], behind(gap));
+        let all = apart.blocks(&[Way::Constant]).fit().sse;
+        assert!(left(20.0e-6) < 1.0e-9 * all);
+        // Half the width leaves about a quarter of the squares, twice the width all of them.
+        assert!(
+            (0.2..0.4).contains(&(left(10.0e-6) / all)),
+            "{}",
+            left(10.0e-6) / all
+        );
+        assert!(left(40.0e-6) > 0.8 * all);
+    }
+
+    fn left(trial: Trial, [gap, share, restitution]: [f64; 3]) -> f64 {
+        let width = (trial.gap - gap) / 1.0e-6;
+        width.powi(2) + (trial.share - share).powi(2) + (trial.restitution - restitution).powi(2)
+    }
+
+    fn from(gap: f64, wanted: [f64; 3]) -> Trial {
+        let start = Trial {
+            gap,
+            share: 0.4,
+            restitution: 0.0,
+        };
+        improved(start, 0.15, 2.0e-6, &|trial| left(trial, wanted))
+    }
+
+    #[test]
+    fn each_parameter_descends_to_a_thirty_second_of_its_step() {
+        let best = from(15.0e-6, [20.0e-6, 0.37, 0.62]);
+        near(best.gap, 20.0e-6, 0.15 * 15.0e-6 / 32.0);
+        near(best.share, 0.37, 0.05 / 32.0);
+        near(best.restitution, 0.62, 0.1 / 32.0);
+    }
+
+    #[test]
+    fn no_parameter_leaves_its_bounds() {
+        let low = from(15.0e-6, [-1.0, -5.0, -5.0]);
+        assert!((2.0e-6..2.2e-6).contains(&low.gap), "{}", low.gap);
+        near(low.share, 0.01, 0.002);
+        near(low.restitution, 0.0, 1.0e-12);
+        let high = from(15.0e-6, [15.0e-6, 5.0, 5.0]);
+        near(high.share, 0.95, 0.002);
+        near(high.restitution, 0.99, 0.004);
+    }
+
+    #[test]
+    fn a_pitch_is_scanned_from_eight_half_periods_to_half_a_millimetre() {
+        assert_eq!(half_periods(0.5), 8..2000);
+        assert_eq!(half_periods(2.0), 8..4000);
+        assert_eq!(half_periods(1.0e-3), 8..9);
+    }
+
+    #[test]
+    fn the_strongest_wave_is_found_whatever_its_phase() {
+        for phase in [0.0, 0.4, 1.6, 3.0] {
+            let wave = |x: f64| {
+                (
+                    x,
+                    (TAU * 3.0 * x + phase).cos() + 0.5 * (TAU * 5.0 * x).sin(),
+                )
+            };
+            let samples: Vec<(f64, f64)> = (0..100).map(|i| wave(0.01 * f64::from(i))).collect();
+            let found = strongest(&samples, (1..9).map(f64::from));
+            assert_eq!(found, Some(3.0), "{phase}");
+        }
+        assert_eq!(strongest(&[(0.0, 1.0)], std::iter::empty()), None);
+    }
+
+    #[test]
+    fn the_wave_number_is_found_to_a_sixteenth_of_a_half_period() {
+        let position = axis(usual).dataset.train.position;
+        for per_length in [300.0, 503.0, 506.0] {
+            let wave = |x: &f64| 2.0e-6 * (TAU * per_length * x + 0.4).cos();
+            let axis = apart_by(position.iter().map(wave).collect());
+            let (low, high) = axis.motion.span();
+            let Some(Way::Pitch { per_length: found }) =
+                best_pitch(&apart(&axis), &FittedWays::default())
+            else {
+                panic!("a pitch");
+            };
+            near(found, per_length, 0.5 / (high - low) / 12.0);
+        }
+    }
 }

@@ -68,6 +68,38 @@ pub(crate) fn motion(motion: &Kinematics, deflection: f64) -> Kinematics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::made::{axis, usual};
+
+    #[test]
+    fn what_is_left_is_the_friction_less_the_level_times_the_bend() {
+        let mut axis = axis(usual);
+        let motion = &mut axis.motion;
+        let rows = motion.len();
+        for sign in [1.0, -1.0] {
+            motion.friction_position = (0..rows).map(|row| sign * row as f64).collect();
+            let left = error(
+                &Observed {
+                    motion,
+                    level: vec![10.0; rows],
+                    friction: vec![12.0; rows],
+                    resolution: 1.0,
+                },
+                5.0,
+            );
+            let wanted = 12.0 - sign * 10.0;
+            let near = |left: &f64| (left - wanted).abs() < 1.0e-9;
+            assert!(left[1000..5000].iter().all(near), "{}", left[3000]);
+        }
+    }
+
+    #[test]
+    fn a_motion_with_a_bristle_has_its_bend_for_a_direction_and_all_else_as_it_was() {
+        let plain = axis(usual).motion;
+        let bent = motion(&plain, 2.0e-4);
+        assert_eq!(bent.direction, state(&plain.friction_position, 2.0e-4));
+        assert!(bent.direction != plain.direction && bent.direction.len() == plain.len());
+        assert_eq!((bent.velocity, bent.moving), (plain.velocity, plain.moving));
+    }
 
     #[test]
     fn the_bristle_saturates_and_reverses_over_its_deflection() {

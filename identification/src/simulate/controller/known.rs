@@ -45,6 +45,11 @@ impl Products {
         self.cross / f64::max(self.computed, f64::MIN_POSITIVE)
     }
 
+    /// The ratio, where recorded and computed effort belong together.
+    fn ratio_where_related(&self) -> Option<f64> {
+        (self.correlation().abs() > LEAST_CORRELATION).then(|| self.ratio())
+    }
+
     fn correlation(&self) -> f64 {
         let both = (self.computed * self.recorded).sqrt();
         self.cross / f64::max(both, f64::MIN_POSITIVE)
@@ -81,7 +86,7 @@ impl Law {
             return None;
         }
         let products = Products::of(&law.teacher_forced(record, Self::at_first), &record.effort);
-        (products.correlation().abs() > LEAST_CORRELATION).then(|| products.ratio())
+        products.ratio_where_related()
     }
 
     /// Whether what it closes on was recorded.
@@ -366,6 +371,14 @@ mod tests {
         for (w, correlation) in [(0.0, 1.0), (1.0, 0.5_f64.sqrt()), (2.0, 0.2_f64.sqrt())] {
             assert!((products(w).correlation() - correlation).abs() < 1.0e-15);
         }
+        // 1/√(1 + 1.01²) = 0.7036, 1/√(1 + 1.03²) = 0.6966.
+        assert_eq!(products(1.01).ratio_where_related(), Some(1.0));
+        assert_eq!(products(1.03).ratio_where_related(), None);
+        let swapped = Products {
+            cross: -2.0,
+            ..products(0.5)
+        };
+        assert_eq!(swapped.ratio_where_related(), Some(-1.0));
         let sums = Products::of(&[1.0, 2.0], &[3.0, -5.0]);
         assert_eq!(
             (sums.computed, sums.cross, sums.recorded),
