@@ -131,6 +131,11 @@ pub(crate) struct Instant {
     pub time_s: f64,
     /// Time over the duration of the training record.
     pub time_share: f64,
+    /// Effort on the motor, without what acts against it there. Like the resistance, only effects
+    /// that follow the load are told it.
+    pub effort: f64,
+    /// Force against the motor by all effects that do not follow the load, the inertia apart.
+    pub resistance: f64,
 }
 
 /// What an effect does to a simulated axis.
@@ -273,6 +278,11 @@ pub(crate) trait Effect: Sync {
         false
     }
 
+    /// Whether it needs to know the forces of the other effects ([`Instant::effort`]).
+    fn follows_load(&self) -> bool {
+        false
+    }
+
     /// Whether it is a mass in motion: a simulation has it in its state, not among the forces.
     fn is_mass(&self) -> bool {
         false
@@ -354,7 +364,9 @@ mod tests {
         let axis = axis(usual);
         let (motion, dataset) = (&axis.motion, &axis.dataset);
         let (middle, half) = dataset.travel();
-        let force = |effect: &&&dyn Effect| effect.stage() == Stage::Force && !effect.is_mass();
+        let force = |effect: &&&dyn Effect| {
+            effect.stage() == Stage::Force && !effect.is_mass() && !effect.follows_load()
+        };
         for effect in LIBRARY.iter().filter(force) {
             let parameter = parameter(*effect);
             let columns = effect.columns(motion, dataset, parameter);
@@ -366,6 +378,7 @@ mod tests {
                     velocity: motion.velocity_lp[row],
                     time_s: motion.time_s[row],
                     time_share: motion.time_s[row] / 6.0,
+                    ..Instant::default()
                 };
                 let Action { level, force } = effect.action(&at, parameter, &own);
                 let simulated = level * motion.direction[row] + force;
@@ -418,6 +431,7 @@ mod tests {
             velocity: -0.05,
             time_s: 2.0,
             time_share: 0.25,
+            ..Instant::default()
         };
         let Action { level, force } = find(name).unwrap().action(&at, parameter, &[3.0, 4.0]);
         (level, force)

@@ -103,10 +103,11 @@ impl Simulated {
             velocity: now.velocity,
             time_s: now.time_s,
             time_share: now.time_s / self.duration_s,
+            ..Instant::default()
         }
     }
 
-    /// What acts at a moment.
+    /// What acts at a moment: first what follows from the motion, then what follows from that.
     #[must_use]
     pub(crate) fn acting(&self, now: Moment) -> Acting {
         let instant = self.instant(now);
@@ -114,9 +115,22 @@ impl Simulated {
             motor: self.saturation.delivered(now.commanded),
             ..Acting::default()
         };
-        self.forces.iter().fold(start, |mut acting, force| {
+        let by_motion = self.with_forces(start, &instant, false);
+        let loaded = Instant {
+            effort: by_motion.motor,
+            resistance: by_motion.resistance(now.velocity),
+            ..instant
+        };
+        self.with_forces(by_motion, &loaded, true)
+    }
+
+    /// What acts besides, by the forces that follow the load or by those that do not.
+    fn with_forces(&self, start: Acting, at: &Instant, follows_load: bool) -> Acting {
+        let follows = |force: &&Force| force.part.effect.follows_load() == follows_load;
+        let forces = self.forces.iter().filter(follows);
+        forces.fold(start, |mut acting, force| {
             let effect = force.part.effect;
-            let action = effect.action(&instant, force.part.parameter, &force.own);
+            let action = effect.action(at, force.part.parameter, &force.own);
             acting.add(action, effect.acts_on_motor());
             acting
         })
@@ -130,6 +144,15 @@ impl Acting {
             self.motor -= action.force;
         } else {
             self.load += action.force;
+        }
+    }
+
+    /// Force against the motor at a velocity, the inertia apart; at rest it holds the effort.
+    fn resistance(&self, velocity: f64) -> f64 {
+        if velocity == 0.0 {
+            self.motor
+        } else {
+            self.load + self.level * velocity.signum()
         }
     }
 }
@@ -187,6 +210,18 @@ mod tests {
             level: 25.0,
         };
         assert_eq!(acting, wanted);
+    }
+
+    #[test]
+    fn what_resists_is_load_and_friction_by_direction_and_at_rest_the_effort() {
+        let acting = Acting {
+            motor: 60.0,
+            load: 23.0,
+            level: 25.0,
+        };
+        for (velocity, wanted) in [(0.1, 48.0), (-0.1, -2.0), (0.0, 60.0)] {
+            assert_eq!(acting.resistance(velocity), wanted, "{velocity} m/s");
+        }
     }
 
     #[test]
