@@ -154,6 +154,12 @@ vocabulary! {
         quadratic_drag: DRAG, 0.0 => 1.0e7,
     } optional {}
 
+    /// friction that grows with the magnitude of the transmitted force, mu abs(F) against motion
+    load_dependent_friction: LoadDependentFriction, MovingEffort, {
+        /// friction per transmitted force, mu
+        load_dependent_friction: RATIO, 0.0 => 0.9,
+    } optional {}
+
     /// delivered effort that falls behind the commanded one as it grows, u / (1 + k abs(u))
     torque_saturation: TorqueSaturation, MovingEffort, {
         /// k

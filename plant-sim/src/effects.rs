@@ -14,6 +14,7 @@ use axis_model::{Effect, EffectName};
 
 mod delay;
 mod friction_drift;
+mod load_dependent_friction;
 mod offset;
 mod pitch_error;
 mod position_dependent_friction;
@@ -89,6 +90,7 @@ fn simulated(effect: &Effect) -> Option<&dyn Simulated> {
         Effect::PitchError(own) => Some(own),
         Effect::PositionDependentFriction(own) => Some(own),
         Effect::FrictionDrift(own) => Some(own),
+        Effect::LoadDependentFriction(own) => Some(own),
         Effect::TorqueSaturation(own) => Some(own),
         Effect::Delay(own) => Some(own),
         _ => None,

@@ -6,8 +6,8 @@
 use std::f64::consts::TAU;
 
 use axis_model::{
-    Delay, Effect, EffectName, FrictionDrift, PitchError, PositionDependentFriction, TorqueRipple,
-    TorqueSaturation,
+    Delay, Effect, EffectName, FrictionDrift, LoadDependentFriction, PitchError,
+    PositionDependentFriction, TorqueRipple, TorqueSaturation,
 };
 use plant_sim::axis::AxisParameters;
 use plant_sim::friction::{Law, Sliding};
@@ -52,6 +52,8 @@ pub enum Hidden {
     FrictionDrift { gain: f64, time_constant_s: f64 },
     /// Drag that grows with the square of velocity.
     QuadraticDrag { n_s2_per_m2: f64 },
+    /// Friction per force that the screw transmits.
+    LoadDependentFriction { share: f64 },
     /// Share of the effort that is lost at 1 kN.
     TorqueSaturation { share: f64 },
     /// Effort that acts late.
@@ -87,6 +89,7 @@ impl Hidden {
             Self::PositionDependentFriction { .. } => EffectName::PositionDependentFriction,
             Self::FrictionDrift { .. } => EffectName::FrictionDrift,
             Self::QuadraticDrag { .. } => EffectName::QuadraticDrag,
+            Self::LoadDependentFriction { .. } => EffectName::LoadDependentFriction,
             Self::TorqueSaturation { .. } => EffectName::TorqueSaturation,
             Self::Delay { .. } => EffectName::Delay,
             Self::Foreign(_) => return None,
@@ -122,6 +125,7 @@ impl Hidden {
             | Self::PitchError { .. }
             | Self::PositionDependentFriction { .. }
             | Self::FrictionDrift { .. }
+            | Self::LoadDependentFriction { .. }
             | Self::TorqueSaturation { .. }
             | Self::Delay { .. } => {
                 let added = self.further().map(|effect| axis.effects.add(effect));
@@ -164,6 +168,11 @@ impl Hidden {
                 time_constant: time_constant_s,
                 viscous_gain: None,
             }),
+            Self::LoadDependentFriction { share } => {
+                Effect::LoadDependentFriction(LoadDependentFriction {
+                    load_dependent_friction: share,
+                })
+            }
             Self::TorqueSaturation { share } => Effect::TorqueSaturation(TorqueSaturation {
                 torque_saturation: SATURATION_PER_N * share / (1.0 - share),
             }),

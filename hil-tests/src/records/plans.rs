@@ -5,7 +5,7 @@
 
 use super::hidden::Foreign::{CubicDrag, Hum, Spring};
 use super::hidden::Hidden::{
-    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, PitchError,
+    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, LoadDependentFriction, PitchError,
     PositionDependentFriction, Presliding, QuadraticDrag, Stribeck, TorqueRipple, TorqueSaturation,
     ViscousAsymmetry,
 };
@@ -107,6 +107,13 @@ const OUTSIDE: &[Case] = &[
     motor(&[Foreign(Spring { n_per_m: 300.0 }), Foreign(Hum { amplitude_n: 10.0, hz: 1.3 })]),
 ];
 
+#[rustfmt::skip] // As above.
+const FOLLOWING_LOAD: &[Case] = &[
+    motor(&[LoadDependentFriction { share: 0.15 }]),
+    motor(&[LoadDependentFriction { share: 0.12 },
+            Stribeck { ratio: 1.4, velocity_m_per_s: 4.0e-3 }]),
+];
+
 /// All plans, in a fixed order.
 #[must_use]
 pub fn plans() -> Vec<Plan> {
@@ -114,7 +121,7 @@ pub fn plans() -> Vec<Plan> {
         let case = if index % 2 == 0 { scale } else { motor };
         case(&[])
     });
-    let hidden = [ALONE, PAIRS, OUTSIDE].concat();
+    let hidden = [ALONE, PAIRS, OUTSIDE, FOLLOWING_LOAD].concat();
     let cases = empty.chain(hidden).enumerate();
     cases.map(|(index, case)| plan(index, case)).collect()
 }
@@ -134,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_are_65_plans_and_every_seed_is_its_own() {
+    fn there_are_67_plans_and_every_seed_is_its_own() {
         let plans = plans();
         let hides = |count: usize| {
             plans
@@ -142,9 +149,9 @@ mod tests {
                 .filter(|plan| plan.hidden.len() == count)
                 .count()
         };
-        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 32, 13));
+        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 33, 14));
         let seeds: Vec<u64> = plans.iter().map(|plan| plan.seed).collect();
-        assert_eq!(seeds, (1000..1065).collect::<Vec<_>>());
+        assert_eq!(seeds, (1000..1067).collect::<Vec<_>>());
     }
 
     #[test]

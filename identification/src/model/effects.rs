@@ -16,6 +16,7 @@ pub(crate) mod delay;
 pub(crate) mod friction_drift;
 pub(crate) mod hum;
 pub(crate) mod inertia;
+pub(crate) mod load_dependent_friction;
 pub(crate) mod load_inertia;
 pub(crate) mod offset;
 pub(crate) mod position_dependent_friction;
@@ -303,7 +304,7 @@ pub(crate) trait Effect: Sync {
 }
 
 /// Every effect of the inverse model; the first four are the usual declared ones.
-pub(crate) static LIBRARY: [&dyn Effect; 15] = [
+pub(crate) static LIBRARY: [&dyn Effect; 16] = [
     &inertia::Inertia,
     &viscous::Viscous,
     &coulomb::Coulomb,
@@ -314,6 +315,7 @@ pub(crate) static LIBRARY: [&dyn Effect; 15] = [
     &position_dependent_friction::PositionDependentFriction,
     &friction_drift::FrictionDrift,
     &quadratic_drag::QuadraticDrag,
+    &load_dependent_friction::LoadDependentFriction,
     &spring::Spring,
     &hum::Hum,
     &trend::Trend,

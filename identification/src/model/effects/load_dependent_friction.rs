@@ -1,0 +1,295 @@
+//! Friction that grows with the magnitude of the transmitted force, `μ·|Q|·sign(v)`: the efficiency
+//! of a screw. The motor pays for it where it drives and is spared where it brakes.
+//!
+//! ```text
+//! u = m a + F,  F = (M − m) a + Fv v + Fc sign(v) + F0 + μ |F| sign(v)
+//! F = Q (1 + μ σ),  σ = sign(v Q)                         drives (+1) or brakes (−1)
+//! Q = (M' − m') a + Fv' v + Fc' sign(v) + F0'             the primed ones are over 1 − μ²
+//! ```
+//!
+//! m is the part of the moved mass before the contact that rubs: the motor's own. Its share `m'/M'`
+//! is the nonlinear parameter. The friction is written with Q, the force by motion: to the order of
+//! μ² it is the transmitted force F, and with it the effort is linear in μ.
+//!
+//! The effort itself would be a noisy regressor. The column would hold the noise of the target,
+//! with the same sign wherever the motor drives: the fit would explain noise by itself and find the
+//! effect on every axis that hardly brakes. So Q is computed from the motion, with the four
+//! coefficients of the usual model beside this column, fitted to the record once more after each
+//! step of σ. Five numbers from thousands of rows hold no noise of a row.
+//!
+//! What is found is friction only where the friction without load is: an unphysical split of the
+//! usual columns could have any ratio.
+//!
+//! Where the motor never brakes, `Q sign(v)` is |Q| everywhere: the column is a sum of the usual
+//! ones, and the record cannot show the effect.
+
+use axis_model::EffectName;
+use nalgebra::{SMatrix, SVector};
+
+use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
+use crate::record::dataset::Dataset;
+
+/// μ·|Q|·sign(v).
+pub(crate) struct LoadDependentFriction;
+
+/// Shares of the moved mass that are tried as the motor's own.
+const MOTOR_SHARES: [f64; 5] = [0.0, 0.2, 0.4, 0.6, 0.8];
+/// A load without mass would transmit no inertia at all.
+const BOUNDS: (f64, f64) = (0.0, 0.95);
+/// Half the distance of the grid.
+const FIRST_STEP: f64 = 0.1;
+/// Step of the derivative by the share, which may be zero.
+const DERIVATIVE_STEP: f64 = 0.01;
+/// Fits of the coefficients of Q: from μ = 0 each leaves a tenth of the error of the one before.
+const FITS: usize = 4;
+/// As in the vocabulary; from 1 on an axis would lock itself.
+const LARGEST_RATIO: f64 = 0.9;
+
+/// Acceleration, velocity, direction, one.
+type Usual = [f64; 4];
+
+/// What Q is made of at a row.
+fn usual(motion: &Kinematics, acceleration: &[f64], row: usize) -> Usual {
+    [
+        acceleration[row],
+        motion.velocity_lp[row],
+        motion.direction[row],
+        1.0,
+    ]
+}
+
+/// Force by motion, without the share of the inertia that is the motor's own.
+fn force(coefficients: Usual, motor_share: f64, at: Usual) -> f64 {
+    let [mass, viscous, coulomb, offset] = coefficients;
+    (1.0 - motor_share) * mass * at[0] + viscous * at[1] + coulomb * at[2] + offset
+}
+
+/// |Q| sign(v) at the coefficients of a fit.
+fn column(motion: &Kinematics, acceleration: &[f64], coefficients: Usual, share: f64) -> Vec<f64> {
+    let at = |row| usual(motion, acceleration, row);
+    let size = |row| force(coefficients, share, at(row)).abs();
+    let rows = 0..motion.len();
+    rows.map(|row| motion.direction[row] * size(row)).collect()
+}
+
+/// Coefficients of the usual columns beside another, by least squares over the fitted samples.
+fn coefficients(motion: &Kinematics, usual: &[Vec<f64>; 4], beside: &[f64]) -> Usual {
+    let (mut gram, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
+    for row in (0..motion.len()).filter(|row| motion.fitted[*row]) {
+        let [a, v, s, one] = usual.each_ref().map(|column| column[row]);
+        let at = SVector::from([a, v, s, one, beside[row]]);
+        gram += at * at.transpose();
+        right += at * motion.effort_lp[row];
+    }
+    // A column of zeros, or one that repeats others, gets no coefficient.
+    let solution = gram.svd(true, true).solve(&right, 1.0e-12 * gram.norm());
+    let solution = solution.unwrap_or_else(|_| SVector::zeros());
+    [solution[0], solution[1], solution[2], solution[3]]
+}
+
+/// The column that agrees with the coefficients that are fitted beside it.
+fn consistent(motion: &Kinematics, share: f64) -> Vec<f64> {
+    let acceleration = motion.low_passed(&motion.acceleration);
+    let low_passed = [
+        acceleration.clone(),
+        motion.velocity_lp.clone(),
+        motion.low_passed(&motion.direction),
+        vec![1.0; motion.len()],
+    ];
+    let mut own = vec![0.0; motion.len()];
+    for _ in 0..FITS {
+        let fitted = coefficients(motion, &low_passed, &motion.low_passed(&own));
+        own = column(motion, &acceleration, fitted, share);
+    }
+    own
+}
+
+impl Effect for LoadDependentFriction {
+    fn called(&self) -> Called {
+        EffectName::LoadDependentFriction.into()
+    }
+
+    fn equation(&self) -> &'static str {
+        "mu |Q| sign(v), Q = force by motion behind the motor's own inertia"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, motor_share: f64) -> Vec<Vec<f64>> {
+        vec![consistent(motion, motor_share)]
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn is_level(&self) -> bool {
+        true
+    }
+
+    fn follows_load(&self) -> bool {
+        true
+    }
+
+    /// From `u = M a + R + μ s |Q|` and `Q = (1 − r) M a + R`, with the motor's share r and the
+    /// resistance R: `Q = A − (1 − r) μ s |Q|`, `A = (1 − r) u + r R`.
+    fn action(&self, at: &Instant, motor_share: f64, own: &[f64]) -> Action {
+        let behind = (1.0 - motor_share) * at.effort + motor_share * at.resistance;
+        let drives = if at.velocity * behind < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let by_motion = behind.abs() / (1.0 + drives * (1.0 - motor_share) * own[0]);
+        Action::level(own[0] * by_motion)
+    }
+
+    fn start(&self, _: &Dataset) -> f64 {
+        MOTOR_SHARES[2]
+    }
+
+    fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
+        MOTOR_SHARES.to_vec()
+    }
+
+    fn first_step(&self, _: &Kinematics, _: f64) -> f64 {
+        FIRST_STEP
+    }
+
+    fn derivative_step(&self, _: f64) -> f64 {
+        DERIVATIVE_STEP
+    }
+
+    fn bounds(&self, _: &Kinematics) -> (f64, f64) {
+        BOUNDS
+    }
+
+    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
+        let is_friction = fitted.coulomb >= 0.0 && fitted.viscous >= 0.0;
+        let ratio = fitted.own.first();
+        is_friction && ratio.is_some_and(|ratio| *ratio > 0.0 && *ratio < LARGEST_RATIO)
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        vec![naming.coefficient("load_dependent_friction", 0, String::new())]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{USUAL, axis, found, model, usual};
+    use EffectName::{Coulomb, Inertia, Offset, Viscous};
+
+    const RATIO: f64 = 0.15;
+    const MOTOR_SHARE: f64 = 0.4;
+
+    /// The force by motion of the usual axis, 40 % of whose mass is the motor's own.
+    fn by_motion(motion: &Kinematics, row: usize) -> f64 {
+        usual(motion, row) - MOTOR_SHARE * USUAL[0] * motion.acceleration[row]
+    }
+
+    /// The effort of the usual axis with it.
+    fn loaded(motion: &Kinematics, row: usize) -> f64 {
+        let own = RATIO * by_motion(motion, row).abs() * motion.direction[row];
+        usual(motion, row) + own
+    }
+
+    #[test]
+    fn the_column_is_the_force_by_motion_against_the_direction() {
+        let axis = axis(loaded);
+        let columns = LoadDependentFriction.columns(&axis.motion, &axis.dataset, MOTOR_SHARE);
+        let mut brakes = 0;
+        for row in (300..5700).filter(|row| axis.motion.fitted[*row]) {
+            let wanted = by_motion(&axis.motion, row);
+            brakes += usize::from(wanted * axis.motion.direction[row] < 0.0);
+            let wanted = wanted.abs() * axis.motion.direction[row];
+            assert!(
+                (columns[0][row] - wanted).abs() < 0.6,
+                "{row}: {} {wanted}",
+                columns[0][row]
+            );
+        }
+        assert!(brakes > 100, "{brakes}");
+    }
+
+    #[test]
+    fn the_ratio_that_made_an_effort_comes_back_beside_the_usual_coefficients() {
+        let axis = axis(loaded);
+        let part = found(EffectName::LoadDependentFriction, MOTOR_SHARE);
+        let fitted = axis
+            .bench()
+            .fit(&model(&[Inertia, Viscous, Coulomb, Offset]).with(part));
+        let ratio = fitted.of(EffectName::LoadDependentFriction).unwrap()[0];
+        assert!((ratio - RATIO).abs() < 0.003, "{ratio}");
+        let mass = fitted.of(Inertia).unwrap()[0];
+        assert!((mass / USUAL[0] - 1.0).abs() < 0.005, "{mass}");
+    }
+
+    #[test]
+    fn a_simulated_axis_has_the_force_of_the_fit_whether_it_drives_or_brakes() {
+        for (mass_force, resistance, velocity) in [
+            (30.0, 45.0, 0.1),
+            (-200.0, 45.0, 0.1),
+            (-30.0, -45.0, -0.1),
+            (200.0, -45.0, -0.1),
+        ] {
+            let by_motion: f64 = (1.0 - MOTOR_SHARE) * mass_force + resistance;
+            let level = RATIO * by_motion.abs();
+            let at = Instant {
+                velocity,
+                resistance,
+                effort: mass_force + resistance + level * velocity.signum(),
+                ..Instant::default()
+            };
+            let action = LoadDependentFriction.action(&at, MOTOR_SHARE, &[RATIO]);
+            assert!(
+                (action.level - level).abs() < 1.0e-9,
+                "{} {level}",
+                action.level
+            );
+            assert_eq!(action.force, 0.0);
+        }
+    }
+
+    #[test]
+    fn a_ratio_is_above_zero_and_below_self_locking_beside_friction_that_is_none_below_zero() {
+        let physical = |ratio: f64, coulomb: f64, viscous: f64| {
+            LoadDependentFriction.is_physical(&Fitted {
+                parameter: MOTOR_SHARE,
+                own: &[ratio],
+                coulomb,
+                viscous,
+            })
+        };
+        for (ratio, coulomb, viscous, wanted) in [
+            (0.89, 25.0, 200.0, true),
+            (0.01, 25.0, 0.0, true),
+            (0.0, 25.0, 200.0, false),
+            (-0.1, 25.0, 200.0, false),
+            (0.91, 25.0, 200.0, false),
+            (0.2, -1.0, 200.0, false),
+            (0.2, 25.0, -1.0, false),
+        ] {
+            let is = physical(ratio, coulomb, viscous);
+            assert_eq!(is, wanted, "{ratio} {coulomb} {viscous}");
+        }
+    }
+
+    #[test]
+    fn the_ratio_has_the_name_of_the_vocabulary_its_interval_and_no_unit() {
+        let naming = Naming {
+            parameter: MOTOR_SHARE,
+            parameter_half_width: None,
+            coefficients: &[(RATIO, 0.01)],
+            dataset: &axis(usual).dataset,
+        };
+        let named = LoadDependentFriction.parameters(&naming);
+        let wanted = Named {
+            name: EffectName::LoadDependentFriction.parameters()[0].report_name(),
+            value: RATIO,
+            half_width: Some(0.01),
+            unit: String::new(),
+        };
+        assert_eq!(named, [wanted]);
+    }
+}
