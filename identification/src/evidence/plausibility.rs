@@ -43,7 +43,7 @@ pub(crate) fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
         }
     }
     let plain = Plain::fit(motion);
-    if plain.inertia < 0.0 && inertia_share(motion, plain.inertia) > SMALLEST_INERTIA_SHARE {
+    if is_swapped(plain.inertia, inertia_share(motion, plain.inertia)) {
         return refuse(format!(
             "{} falls where the axis speeds up (inertia {:.4} {} s2/{}); swap its sign or that of the positions",
             dataset.effort.column(),
@@ -59,6 +59,11 @@ fn is_thousand(factor: f64) -> bool {
     let factor = factor.abs();
     let inside = |factor: f64| THOUSAND.contains(&factor);
     inside(factor) || inside(1.0 / factor.max(f64::MIN_POSITIVE))
+}
+
+/// Whether an inertia with a share of the effort says that the effort has the other sign.
+fn is_swapped(inertia: f64, share: f64) -> bool {
+    inertia < 0.0 && share > SMALLEST_INERTIA_SHARE
 }
 
 /// Share of the effort's mean square that the inertia force has.
@@ -209,6 +214,30 @@ mod tests {
     }
 
     #[test]
+    fn a_negative_inertia_counts_beyond_a_twentieth_of_the_effort() {
+        assert!(is_swapped(-90.0, 0.051) && !is_swapped(-90.0, 0.05));
+        assert!(!is_swapped(90.0, 0.9) && !is_swapped(0.0, 0.9));
+    }
+
+    #[test]
+    fn both_records_are_asked() {
+        let mut axis = axis(usual);
+        axis.dataset.validate.reference = Some(axis.dataset.validate.position.clone());
+        assert_eq!(refused(&axis), "");
+        let swapped = axis.dataset.validate.position.iter().map(|x| -x).collect();
+        axis.dataset.validate.reference = Some(swapped);
+        let text = refused(&axis);
+        assert!(
+            text.contains("validation record: reference_m moves -1.0000 times"),
+            "{text}"
+        );
+        axis.dataset.validate.reference = None;
+        let far = axis.dataset.validate.position.iter().map(|x| 1.0e4 * x);
+        axis.dataset.validate.position = far.collect();
+        assert!(refused(&axis).contains("validation record: position_m spans"));
+    }
+
+    #[test]
     fn the_share_of_the_inertia_is_one_of_mean_squares() {
         let axis = axis(|motion, row| 90.0 * motion.acceleration[row]);
         assert!((inertia_share(&axis.motion, 90.0) - 1.0).abs() < 0.01);
@@ -349,6 +378,11 @@ mod tests {
             with(-1.0)
         );
         assert!(with(1000.0).contains("check its unit, and that of the gains"));
+        // The limits: a fifth of the other sign, three hundred times.
+        assert!(with(-0.21).contains("has the other sign than the controller"));
+        assert!(!with(-0.19).contains("controller"), "{}", with(-0.19));
+        assert!(with(301.0).contains("check its unit, and that of the gains"));
+        assert!(!with(299.0).contains("controller"), "{}", with(299.0));
         assert!(!with(1.0).contains("controller"), "{}", with(1.0));
     }
 

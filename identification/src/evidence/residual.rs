@@ -134,6 +134,26 @@ mod tests {
     }
 
     #[test]
+    fn knots_stand_at_quantiles_of_moving_samples_the_ends_among_them() {
+        let mut axis = axis(usual);
+        let motion = &mut axis.motion;
+        motion.moving.fill(false);
+        motion.moving[..701].fill(true);
+        // Squares of 0, 1 … 700: a seventh of the samples from knot to knot. Others are outside.
+        let squares: Vec<f64> = (0..motion.len()).map(|row| (row as f64).powi(2)).collect();
+        let hats = hats(&squares, motion, 8);
+        assert_eq!(hats.len(), 8);
+        for (at, hat) in hats.iter().enumerate() {
+            let ones: Vec<usize> = (0..=700).filter(|row| hat[*row] == 1.0).collect();
+            assert_eq!(ones, [100 * at]);
+        }
+        assert_eq!(hats[7][5000], 1.0);
+        // Half way from 100² to 200² are 25 000.
+        assert!((hats[1][158] - (40_000.0 - 24_964.0) / 30_000.0).abs() < 1.0e-12);
+        assert_eq!(self::hats(&vec![3.0; motion.len()], motion, 8).len(), 1);
+    }
+
+    #[test]
     fn values_of_the_other_sign_stand_outside() {
         let forwards = split(&[1.0, -2.0, 0.0], 1.0);
         assert!(forwards[0] == 1.0 && forwards[1].is_nan() && forwards[2].is_nan());

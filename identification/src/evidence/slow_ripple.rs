@@ -270,6 +270,7 @@ mod tests {
     fn halves_agree_within_six_tenths_of_their_mean() {
         // Mean 1: 0.6 apart, along and across.
         assert!(agree([1.299, 0.0], [0.701, 0.0]) && !agree([1.301, 0.0], [0.699, 0.0]));
+        assert!(agree([0.0, 1.299], [0.0, 0.701]) && !agree([0.0, 1.301], [0.0, 0.699]));
         assert!(agree([1.0, 0.299], [1.0, -0.299]) && !agree([1.0, 0.301], [1.0, -0.301]));
         assert!(!agree([1.0, 0.0], [-1.0, 0.0]));
     }
