@@ -116,7 +116,7 @@ fn stretches(rows: usize) -> Vec<Range<usize>> {
 impl Stretch {
     fn of(findings: &Findings<'_>, record: &Record, own: Range<usize>) -> Option<Self> {
         let seen = with_margins(&own, record.len());
-        let own = own.start - seen.start..own.end - seen.start;
+        let own = within(&own, &seen);
         let part = record.part(seen);
         let motion = only(Kinematics::new(findings.dataset, &part)?, &own);
         let judged = findings
@@ -135,6 +135,11 @@ impl Stretch {
 /// A stretch with its margins, as far as there are so many rows.
 fn with_margins(own: &Range<usize>, rows: usize) -> Range<usize> {
     own.start.saturating_sub(MARGIN_ROWS)..(own.end + MARGIN_ROWS).min(rows)
+}
+
+/// Where a range stands within another that holds it.
+fn within(own: &Range<usize>, seen: &Range<usize>) -> Range<usize> {
+    own.start - seen.start..own.end - seen.start
 }
 
 /// The motion with nothing but a range of its rows that counts.
@@ -222,6 +227,12 @@ mod tests {
         assert_eq!(with_margins(&(0..40_000), 100_000), 0..41_000);
         assert_eq!(with_margins(&(40_000..80_000), 100_000), 39_000..81_000);
         assert_eq!(with_margins(&(80_000..100_000), 100_000), 79_000..100_000);
+    }
+
+    #[test]
+    fn within_its_margins_a_stretch_begins_after_the_first_one() {
+        assert_eq!(within(&(40_000..80_000), &(39_000..81_000)), 1000..41_000);
+        assert_eq!(within(&(0..40_000), &(0..41_000)), 0..40_000);
     }
 
     #[test]

@@ -41,8 +41,7 @@ impl ReversalStage {
         };
         let decided = witnesses.decide();
         if let Some(reversals) = &mut free_run {
-            let gap = decided.backlash || load_scale.is_some_and(|scale| scale.gap);
-            reversals.settle(decided.presliding, gap);
+            reversals.settle(decided.presliding, has_gap(decided, load_scale));
         }
         Self {
             inverse,
@@ -68,6 +67,11 @@ impl ReversalStage {
         let free_run = self.free_run_alone().and_then(Reversals::deflection);
         at_reversals::deflection(self.inverse.as_ref(), free_run)
     }
+}
+
+/// Whether there is a gap, whoever saw it.
+fn has_gap(decided: AtReversals, load_scale: Option<LoadScale>) -> bool {
+    decided.backlash || load_scale.is_some_and(|scale| scale.gap)
 }
 
 #[cfg(test)]
@@ -96,6 +100,19 @@ mod tests {
             (deflection / DEFLECTION_M - 1.0).abs() < 0.2,
             "{deflection}"
         );
+    }
+
+    #[test]
+    fn a_gap_is_there_where_the_free_run_or_the_load_scale_saw_it() {
+        let seen = |backlash, load_scale: Option<bool>| {
+            let decided = AtReversals {
+                backlash,
+                ..AtReversals::default()
+            };
+            has_gap(decided, load_scale.map(|gap| LoadScale { gap }))
+        };
+        assert!(seen(true, None) && seen(true, Some(false)) && seen(false, Some(true)));
+        assert!(!seen(false, None) && !seen(false, Some(false)));
     }
 
     #[test]

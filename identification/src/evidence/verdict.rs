@@ -285,6 +285,18 @@ mod tests {
     }
 
     #[test]
+    fn the_word_of_the_report_is_explained_or_unexplained() {
+        let word = |at_reversals| {
+            let left = Left {
+                at_reversals,
+                ..nothing_left()
+            };
+            Verdict::of(&left).word()
+        };
+        assert_eq!([false, true].map(word), ["explained", "unexplained"]);
+    }
+
+    #[test]
     fn what_is_left_is_told_in_the_order_of_the_stages() {
         let left = Left {
             nameless: &[

@@ -109,6 +109,10 @@ mod tests {
         held.push(8.0);
         assert!((held.mean(0.25, 0.5) - 7.0).abs() < 1.0e-12);
         assert!((held.mean(0.75, 0.5) - 7.0).abs() < 1.0e-12);
+        assert_eq!(
+            [-99.0, -0.5, 0.5].map(|rows| held.at(rows)),
+            [7.0, 7.0, 8.0]
+        );
         // As many rows are kept as a delay needs.
         assert_eq!(HeldEfforts::new(0.0, 1.0, 1.5).newest_first.len(), 4);
         assert_eq!(HeldEfforts::new(0.0, 1.0, 2.0).newest_first.len(), 4);

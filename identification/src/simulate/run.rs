@@ -87,13 +87,21 @@ fn over_row(
     for since in steps.middles() {
         let now = Moment {
             time_s: time_s + since,
-            position: axis.motor.x + 0.5 * h * axis.motor.v,
-            velocity: axis.load.v,
             commanded: efforts.mean(since, h),
+            ..halfway(&axis, h)
         };
         axis = axis.after(&model.mechanics, model.acting(now), h);
     }
     axis
+}
+
+/// Where ripple and friction are seen over a sub-step: in its middle, with the load's velocity.
+fn halfway(axis: &Axis, step_s: f64) -> Moment {
+    Moment {
+        position: axis.motor.x + 0.5 * step_s * axis.motor.v,
+        velocity: axis.load.v,
+        ..Moment::default()
+    }
 }
 
 /// Rms of simulated − recorded motor position over rows of a mask, in the unit of the position.
@@ -125,6 +133,32 @@ mod tests {
         }
         let middles: Vec<f64> = SubSteps::of(5.0e-4).middles().collect();
         assert_eq!(middles, [1.25e-4, 3.75e-4]);
+    }
+
+    #[test]
+    fn forces_are_those_of_the_motors_place_in_the_middle_of_a_sub_step_and_the_loads_velocity() {
+        let mut axis = Axis::at(1.0, 4.0);
+        axis.load.v = 3.0;
+        let wanted = Moment {
+            position: 2.0,
+            velocity: 3.0,
+            ..Moment::default()
+        };
+        assert_eq!(halfway(&axis, 0.5), wanted);
+    }
+
+    #[test]
+    fn an_effort_moves_a_mass_by_half_its_acceleration_times_the_time_squared() {
+        let parts: &[(_, _, &[f64])] = &[(axis_model::EffectName::Inertia, 0.0, &[2.0])];
+        let dataset = made::dataset(made::record(1.0e-3, vec![0.0; 10]), None);
+        let shape = crate::simulate::axis::Shape::default();
+        let model = Simulated::new(&dataset, 1.0e-3, &made::fitted(parts), shape).unwrap();
+        let efforts = HeldEfforts::new(8.0, 1.0e-3, 0.0);
+        let from = (0.0, SubSteps::of(1.0e-3));
+        let axis = over_row(Axis::at(0.0, 1.0), &model, &efforts, from);
+        // 8 N on 2 kg over 1 ms, from 1 m/s.
+        assert!((axis.motor.v - 1.004).abs() < 1.0e-12, "{axis:?}");
+        assert!((axis.motor.x - 1.002e-3).abs() < 1.0e-15, "{axis:?}");
     }
 
     #[test]

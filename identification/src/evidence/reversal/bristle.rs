@@ -31,10 +31,14 @@ pub(crate) fn state(position: &[f64], deflection: f64) -> Vec<f64> {
 #[must_use]
 pub(crate) fn best(observed: &Observed<'_>, unit: f64) -> (f64, Vec<f64>) {
     let left = |deflection: f64| rms(&error(observed, deflection), &observed.motion.slow);
-    let grid = crate::model::effects::geometric(SMALLEST * unit, LARGEST * unit, 24);
-    let start = crate::fit::search::smallest(&grid, &left).unwrap_or(unit);
+    let start = crate::fit::search::smallest(&deflections(unit), &left).unwrap_or(unit);
     let deflection = golden(start / 1.4, start * 1.4, &left);
     (deflection, error(observed, deflection))
+}
+
+/// Deflections to start from.
+fn deflections(unit: f64) -> Vec<f64> {
+    crate::model::effects::geometric(SMALLEST * unit, LARGEST * unit, 24)
 }
 
 /// What a bristle does not explain.
@@ -90,6 +94,14 @@ mod tests {
             let near = |left: &f64| (left - wanted).abs() < 1.0e-9;
             assert!(left[1000..5000].iter().all(near), "{}", left[3000]);
         }
+    }
+
+    #[test]
+    fn deflections_are_tried_from_0_3_to_300_micrometres_on_a_linear_axis() {
+        let tried = deflections(1.0e-3);
+        assert_eq!(tried.len(), 24);
+        assert!((tried[0] / 0.3e-6 - 1.0).abs() < 1.0e-9);
+        assert!((tried[23] / 300.0e-6 - 1.0).abs() < 1.0e-9);
     }
 
     #[test]
