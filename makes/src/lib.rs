@@ -12,7 +12,7 @@
 //! | [`sensing`] | encoders, the log of the effort, time stamps |
 //! | [`rig`] | all of it put together and run |
 //! | [`make`] | the makes: hidden, empty, declared, another day |
-//! | [`make::held_back`], [`outside::held_back`] | those written apart, to be run once at the end |
+//! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |

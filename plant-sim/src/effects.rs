@@ -2,7 +2,7 @@
 //!
 //! The parameters are those of the vocabulary ([`axis_model`]). A file of this folder says what an
 //! effect *does*: it implements [`Simulated`] for the parameters. Adding one is adding its file and
-//! its line in [`simulated`].
+//! its line in `simulated`.
 //!
 //! ```text
 //! commanded ─ delivered_n ─ delay_s ─▶ motor ─ motor_n ─▶ screw ─▶ table ─ table_n

@@ -4,9 +4,9 @@
 //! impossible values are errors that name key and line. An axis may say `like = "X"` and leave out
 //! everything else.
 //!
-//! - [`source`]: where a key stands, and the error that says it; [`forms`]: the tables as written,
-//!   each quantity with its range; [`actual`]: what an axis really has, from the vocabulary of
-//!   effects; [`together`]: one axis, and what has to go together across its tables.
+//! - `source`: where a key stands, and the error that says it; `forms`: the tables as written,
+//!   each quantity with its range; `actual`: what an axis really has, from the vocabulary of
+//!   effects; `together`: one axis, and what has to go together across its tables.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
 //! Disturbances outside the list on machines of their own, held back as the makes of
-//! [`crate::make::held_back`] are.
+//! [`mod@crate::make::held_back`] are.
 //!
 //! | machine | what no name of the list says |
 //! |---|---|
