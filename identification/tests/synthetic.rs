@@ -13,7 +13,6 @@ struct Made {
     asymmetry: f64,
     stribeck: f64,
     ripple: f64,
-    load: f64,
     delay_s: f64,
     seed: u32,
 }
@@ -22,7 +21,6 @@ const NOTHING: Made = Made {
     asymmetry: 0.0,
     stribeck: 0.0,
     ripple: 0.0,
-    load: 0.0,
     delay_s: 0.0,
     seed: 1,
 };
@@ -67,12 +65,8 @@ fn write(folder: &Path, name: &str, made: &Made, scale: f64) {
         // Effort recorded now acts `delay_s` later, so it is the force of that time.
         let (xe, ve, ae) = motion(t + made.delay_s, scale);
         let level = 260.0 + made.stribeck * (-(ve / 0.006).powi(2)).exp();
-        // 420 kg of 700 kg are the motor's own; behind them, friction takes a share of the force.
-        let resistance = 900.0 * ve + made.asymmetry * ve.abs() + level * ve.signum() - 25.0;
-        let without = 280.0 * ae + resistance;
-        let transmitted = without / (1.0 - made.load * (without * ve).signum());
-        let force = 420.0 * ae
-            + transmitted
+        let force = 700.0 * ae + 900.0 * ve + made.asymmetry * ve.abs() + level * ve.signum()
+            - 25.0
             + made.ripple * (TAU * 600.0 * xe + 0.7).sin()
             + 4.0 * noise(&mut state);
         let counts = (x / 7.6e-8).floor() * 7.6e-8;
@@ -150,13 +144,6 @@ fn each_effect_is_found_alone() {
             "torque_ripple",
             Made {
                 ripple: 15.0,
-                ..NOTHING
-            },
-        ),
-        (
-            "load_dependent_friction",
-            Made {
-                load: 0.15,
                 ..NOTHING
             },
         ),
