@@ -241,6 +241,20 @@ pub struct Room {
 }
 
 impl Room {
+    /// About the middle, with the pace (velocity, acceleration).
+    #[must_use]
+    pub const fn about(half: f64, (velocity, acceleration): (f64, f64), duration_s: f64) -> Self {
+        Self {
+            low: -half,
+            high: half,
+            pace: Pace {
+                velocity,
+                acceleration,
+            },
+            duration_s,
+        }
+    }
+
     fn place(&self, draw: &mut Draw) -> f64 {
         draw.between(self.low, self.high)
     }

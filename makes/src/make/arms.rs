@@ -11,7 +11,7 @@ use crate::make::{Make, Presence, rig};
 use crate::mechanics::friction::Scale;
 use crate::mechanics::inertia::Inertia;
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{Kind, Rig};
 use crate::truth::Effect;
 
@@ -34,18 +34,6 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-fn room(half_rad: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half_rad,
-        high: half_rad,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}
-
 /// A crank drive under a velocity loop alone, without a recorded setpoint: the slide's mass goes
 /// into the crank's inertia with sin², twice a turn.
 fn crank_press(draw: &mut Draw, presence: Presence) -> Rig {
@@ -65,7 +53,7 @@ fn crank_press(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("position_dependent_inertia", share * inertia, "kg m2");
     rig.moved(
         draw,
-        room(9.0, (8.0, 25.0), 26.0),
+        Room::about(9.0, (8.0, 25.0), 26.0),
         [Room::points, Room::waves],
         12.0,
     );
@@ -100,7 +88,7 @@ fn scara_arm(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("friction_drift_gain", surplus, "");
     rig.moved(
         draw,
-        room(2.4, (4.0, 20.0), 28.0),
+        Room::about(2.4, (4.0, 20.0), 28.0),
         [Room::points, Room::workshop],
         14.0,
     );
@@ -124,7 +112,7 @@ fn skewed_rotor(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_constant_ripple_order", 6.0, "1/rev");
     rig.moved(
         draw,
-        room(5.0, (15.0, 150.0), 25.0),
+        Room::about(5.0, (15.0, 150.0), 25.0),
         [Room::waves, Room::points],
         12.0,
     );

@@ -10,7 +10,7 @@ use crate::mechanics::friction::Scale;
 use crate::mechanics::inertia::Inertia;
 use crate::mechanics::joint::{Joint, Stiffness};
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{Kind, Rig};
 use crate::sensing::{Encoder, Rounding};
 use crate::truth::Effect;
@@ -49,18 +49,6 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-fn room(half_m: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half_m,
-        high: half_m,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}
-
 /// A laser cutter's carriage on a belt of 2 m, with a linear scale on the carriage. The stiffness
 /// varies by a tenth over the travel; a model with one stiffness has to live with that.
 fn belt_gantry(draw: &mut Draw, presence: Presence) -> Rig {
@@ -85,7 +73,7 @@ fn belt_gantry(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("compliance_stiffness", belt.at(0.0), "N/m");
     rig.moved(
         draw,
-        room(0.3, (0.8, 6.0), 15.0),
+        Room::about(0.3, (0.8, 6.0), 15.0),
         [Room::points, Room::circles],
         8.0,
     );
@@ -113,7 +101,7 @@ fn gripper_belt(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("payload", part, "kg");
     rig.moved(
         draw,
-        room(0.25, (1.0, 8.0), 25.0),
+        Room::about(0.25, (1.0, 8.0), 25.0),
         [Room::points, Room::workshop],
         14.0,
     );
@@ -142,7 +130,7 @@ fn rack_portal(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("compliance_stiffness", stiffness, "N/m");
     rig.moved(
         draw,
-        room(0.6, (0.5, 1.2), 50.0),
+        Room::about(0.6, (0.5, 1.2), 50.0),
         [Room::workshop, Room::points],
         24.0,
     );
@@ -173,7 +161,7 @@ fn crane_trolley(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("viscous_asymmetry", asymmetry * viscous, "N s/m");
     rig.moved(
         draw,
-        room(1.0, (0.6, 0.8), 60.0),
+        Room::about(1.0, (0.6, 0.8), 60.0),
         [Room::points, Room::jogs],
         35.0,
     );
@@ -192,7 +180,7 @@ fn tunnel_traverse(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("quadratic_drag", quadratic, "N s2/m2");
     rig.moved(
         draw,
-        room(0.8, (1.6, 8.0), 24.0),
+        Room::about(0.8, (1.6, 8.0), 24.0),
         [Room::workshop, Room::points],
         12.0,
     );
@@ -219,7 +207,7 @@ fn skewed_gantry(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("viscous_asymmetry", -asymmetry * viscous, "N s/m");
     rig.moved(
         draw,
-        room(0.4, (0.7, 3.0), 28.0),
+        Room::about(0.4, (0.7, 3.0), 28.0),
         [Room::circles, Room::workshop],
         14.0,
     );

@@ -12,7 +12,7 @@ use crate::make::{Make, Presence, rig};
 use crate::mechanics::field::Field;
 use crate::mechanics::friction::{Law, Stribeck};
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{EffortColumn, Kind, Rig};
 use crate::sensing::{Encoder, Rounding, Wave};
 use crate::truth::Effect;
@@ -61,18 +61,6 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-fn room(half: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half,
-        high: half,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}
-
 /// A linear motor with iron core at 8 kHz: cogging over a magnet pitch of 24 mm, light ball
 /// guides, a scale whose interpolation errs by 30 nm within each period of 20 µm.
 fn iron_core_stage(draw: &mut Draw, presence: Presence) -> Rig {
@@ -98,7 +86,7 @@ fn iron_core_stage(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_ripple_period", 0.024, "m");
     rig.moved(
         draw,
-        room(0.12, (0.6, 8.0), 10.0),
+        Room::about(0.12, (0.6, 8.0), 10.0),
         [Room::workshop, Room::waves],
         5.0,
     );
@@ -124,7 +112,7 @@ fn nano_stage(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("presliding_deflection", presence.size(deflection), "m");
     rig.moved(
         draw,
-        room(0.01, (0.03, 0.6), 15.0),
+        Room::about(0.01, (0.03, 0.6), 15.0),
         [Room::jogs, Room::circles],
         8.0,
     );
@@ -147,7 +135,7 @@ fn roller_stage(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("presliding_deflection", presence.size(deflection), "rad");
     rig.moved(
         draw,
-        room(1.5, (3.0, 12.0), 25.0),
+        Room::about(1.5, (3.0, 12.0), 25.0),
         [Room::circles, Room::points],
         12.0,
     );
@@ -184,7 +172,7 @@ fn damped_stage(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("stribeck_excess", presence.size(excess * coulomb), "N");
     rig.moved(
         draw,
-        room(0.06, (0.12, 1.5), 15.0),
+        Room::about(0.06, (0.12, 1.5), 15.0),
         [Room::workshop, Room::circles],
         8.0,
     );
@@ -209,7 +197,7 @@ fn sealed_cylinder(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("presliding_deflection", presence.size(deflection), "m");
     rig.moved(
         draw,
-        room(0.05, (0.1, 1.0), 24.0),
+        Room::about(0.05, (0.1, 1.0), 24.0),
         [Room::waves, Room::jogs],
         12.0,
     );
@@ -232,7 +220,7 @@ fn voice_coil(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_saturation", droop, "1/N");
     rig.moved(
         draw,
-        room(0.012, (0.6, 40.0), 15.0),
+        Room::about(0.012, (0.6, 40.0), 15.0),
         [Room::waves, Room::points],
         7.0,
     );
@@ -255,7 +243,7 @@ fn torque_motor(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_saturation", droop * 23.0, "1/A");
     rig.moved(
         draw,
-        room(2.5, (4.0, 16.0), 26.0),
+        Room::about(2.5, (4.0, 16.0), 26.0),
         [Room::points, Room::workshop],
         12.0,
     );
@@ -280,7 +268,7 @@ fn uneven_magnets(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_constant_ripple_period", 0.06, "m");
     rig.moved(
         draw,
-        room(0.2, (0.9, 15.0), 15.0),
+        Room::about(0.2, (0.9, 15.0), 15.0),
         [Room::points, Room::waves],
         7.0,
     );

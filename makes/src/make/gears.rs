@@ -12,7 +12,7 @@ use crate::mechanics::field::Field;
 use crate::mechanics::friction::Scale;
 use crate::mechanics::joint::Joint;
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{Kind, Rig};
 use crate::sensing::{Encoder, Rounding, Wave};
 use crate::truth::Effect;
@@ -41,18 +41,6 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-fn room(half_rad: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half_rad,
-        high: half_rad,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}
-
 /// A dividing table on a worm, with an encoder on either side: play of some tenths of a millirad.
 /// Most friction is at the table.
 fn worm_table(draw: &mut Draw, presence: Presence) -> Rig {
@@ -78,7 +66,7 @@ fn worm_table(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("compliance_stiffness", stiffness, "N m/rad");
     rig.moved(
         draw,
-        room(2.0, (2.5, 8.0), 26.0),
+        Room::about(2.0, (2.5, 8.0), 26.0),
         [Room::workshop, Room::circles],
         12.0,
     );
@@ -102,7 +90,7 @@ fn worm_hoist(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("load_dependent_friction", share * coulomb, "");
     rig.moved(
         draw,
-        room(6.0, (9.0, 60.0), 25.0),
+        Room::about(6.0, (9.0, 60.0), 25.0),
         [Room::points, Room::waves],
         12.0,
     );
@@ -135,7 +123,7 @@ fn eccentric_table(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("pitch_error_period", TAU, "rad");
     rig.moved(
         draw,
-        room(7.0, (6.0, 15.0), 25.0),
+        Room::about(7.0, (6.0, 15.0), 25.0),
         [Room::waves, Room::points],
         12.0,
     );
@@ -170,7 +158,7 @@ fn slotted_servo(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_ripple_order", 12.0, "1/rev");
     rig.moved(
         draw,
-        room(4.0, (12.0, 80.0), 26.0),
+        Room::about(4.0, (12.0, 80.0), 26.0),
         [Room::workshop, Room::jogs],
         12.0,
     );

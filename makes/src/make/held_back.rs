@@ -12,21 +12,7 @@ pub mod tools;
 pub mod travels;
 
 use crate::make::Make;
-use crate::motion::{Pace, Room};
 
 /// The families.
 pub(super) const FAMILIES: [&[Make]; 4] =
     [stages::MAKES, tools::MAKES, joints::MAKES, travels::MAKES];
-
-/// A room around zero: half its width, velocity and acceleration, s.
-fn room(half: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half,
-        high: half,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}

@@ -9,7 +9,7 @@ use crate::drive::CurrentLoop;
 use crate::make::{Make, Presence, rig};
 use crate::mechanics::friction::Scale;
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{Kind, Rig};
 use crate::truth::Effect;
 
@@ -32,18 +32,6 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-fn room(half_m: f64, pace: (f64, f64), duration_s: f64) -> Room {
-    Room {
-        low: -half_m,
-        high: half_m,
-        pace: Pace {
-            velocity: pace.0,
-            acceleration: pace.1,
-        },
-        duration_s,
-    }
-}
-
 /// A drive that measures its current and sends it with the next frame of a bus: one millisecond
 /// late, beside positions that are latched.
 fn fieldbus_log(draw: &mut Draw, presence: Presence) -> Rig {
@@ -59,7 +47,7 @@ fn fieldbus_log(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("logged_late", late_s, "s");
     rig.moved(
         draw,
-        room(0.15, (0.6, 10.0), 24.0),
+        Room::about(0.15, (0.6, 10.0), 24.0),
         [Room::points, Room::waves],
         12.0,
     );
@@ -86,7 +74,7 @@ fn plc_log(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("friction_drift_gain", surplus, "");
     rig.moved(
         draw,
-        room(0.3, (0.6, 4.0), 60.0),
+        Room::about(0.3, (0.6, 4.0), 60.0),
         [Room::workshop, Room::points],
         30.0,
     );
@@ -105,7 +93,7 @@ fn network_drive(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("delay", delay_s, "s");
     rig.moved(
         draw,
-        room(0.15, (0.5, 8.0), 45.0),
+        Room::about(0.15, (0.5, 8.0), 45.0),
         [Room::points, Room::circles],
         20.0,
     );

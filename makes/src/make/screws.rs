@@ -12,7 +12,7 @@ use crate::make::{Make, Presence, rig};
 use crate::mechanics::friction::{Law, Scale, Stribeck, Surface};
 use crate::mechanics::joint::Joint;
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{EffortColumn, Kind, Rig};
 use crate::sensing::{Encoder, Rounding, Wave};
 use crate::truth::Effect;
@@ -61,18 +61,8 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
-const PACE: Pace = Pace {
-    velocity: 0.25,
-    acceleration: 2.5,
-};
-
 fn room(half_m: f64, duration_s: f64) -> Room {
-    Room {
-        low: -half_m,
-        high: half_m,
-        pace: PACE,
-        duration_s,
-    }
+    Room::about(half_m, (0.25, 2.5), duration_s)
 }
 
 fn falling(excess: f64, velocity: f64, exponent: f64, coulomb: f64) -> Law {
@@ -269,13 +259,7 @@ fn trapezoidal_nut(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("load_dependent_friction", share * coulomb, "");
     // While friction is more than inertia the drive never turns over, and friction that grows
     // with load is then the same force as more of everything: this axis is brisk.
-    let brisk = Room {
-        pace: Pace {
-            acceleration: 5.0,
-            ..PACE
-        },
-        ..room(0.15, 26.0)
-    };
+    let brisk = Room::about(0.15, (0.25, 5.0), 26.0);
     rig.moved(draw, brisk, [Room::jogs, Room::workshop], 12.0);
     rig
 }

@@ -9,7 +9,7 @@ use crate::make::{Make, Presence, rig};
 use crate::mechanics::field::{Drag, Field};
 use crate::mechanics::friction::{Law, Scale, Stribeck};
 use crate::mechanics::train::Train;
-use crate::motion::{Pace, Room};
+use crate::motion::Room;
 use crate::rig::{Kind, Rig};
 use crate::truth::Effect;
 
@@ -41,15 +41,7 @@ pub const MAKES: &[Make] = &[
 const GRAVITY_M_S2: f64 = 9.806_65;
 
 fn room(half_m: f64, duration_s: f64) -> Room {
-    Room {
-        low: -half_m,
-        high: half_m,
-        pace: Pace {
-            velocity: 0.3,
-            acceleration: 2.0,
-        },
-        duration_s,
-    }
+    Room::about(half_m, (0.3, 2.0), duration_s)
 }
 
 fn hanging(mass: f64, coulomb: f64, viscous: f64, carried: f64) -> Train {

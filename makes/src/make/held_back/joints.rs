@@ -6,7 +6,6 @@
 
 use std::f64::consts::TAU;
 
-use super::room;
 use crate::control::Controller;
 use crate::control::pi::{Pi, Shape};
 use crate::draw::Draw;
@@ -95,7 +94,7 @@ fn strain_wave_joint(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("pitch_error_period", wave.period, "rad");
     rig.moved(
         draw,
-        room(1.3, (1.2, 8.0), 24.0),
+        Room::about(1.3, (1.2, 8.0), 24.0),
         [Room::points, Room::waves],
         12.0,
     );
@@ -121,7 +120,7 @@ fn eccentric_turret(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_ripple_order", 1.0, "1/rev");
     rig.moved(
         draw,
-        room(7.0, (4.0, 12.0), 50.0),
+        Room::about(7.0, (4.0, 12.0), 50.0),
         [Room::workshop, Room::points],
         25.0,
     );
@@ -153,7 +152,7 @@ fn telescope_mount(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("compliance_stiffness", stiffness, "N m/rad");
     rig.moved(
         draw,
-        room(1.0, (0.6, 1.0), 30.0),
+        Room::about(1.0, (0.6, 1.0), 30.0),
         [Room::jogs, Room::points],
         15.0,
     );
@@ -179,7 +178,7 @@ fn five_bar_crank(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("position_dependent_inertia", share * inertia, "kg m2");
     rig.moved(
         draw,
-        room(1.0, (8.0, 120.0), 16.0),
+        Room::about(1.0, (8.0, 120.0), 16.0),
         [Room::points, Room::jogs],
         8.0,
     );
@@ -204,7 +203,7 @@ fn bowden_elbow(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("position_dependent_friction_linear", 2.0 * slope, "1/rad");
     rig.moved(
         draw,
-        room(1.2, (3.0, 20.0), 26.0),
+        Room::about(1.2, (3.0, 20.0), 26.0),
         [Room::waves, Room::workshop],
         13.0,
     );
@@ -229,7 +228,7 @@ fn rudder_fin(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("logged_late", late_s, "s");
     rig.moved(
         draw,
-        room(1.2, (4.0, 40.0), 60.0),
+        Room::about(1.2, (4.0, 40.0), 60.0),
         [Room::points, Room::workshop],
         25.0,
     );

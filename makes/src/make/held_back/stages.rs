@@ -5,7 +5,6 @@
 
 use std::f64::consts::TAU;
 
-use super::room;
 use crate::control::Controller;
 use crate::control::pi::{Pi, Shape};
 use crate::draw::Draw;
@@ -68,7 +67,7 @@ fn galvanometer(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("presliding_deflection", presence.size(deflection), "rad");
     rig.moved(
         draw,
-        room(0.3, (8.0, 800.0), 9.0),
+        Room::about(0.3, (8.0, 800.0), 9.0),
         [Room::waves, Room::points],
         4.0,
     );
@@ -89,7 +88,7 @@ fn hydrostatic_slide(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_saturation", droop, "1/N");
     rig.moved(
         draw,
-        room(0.25, (0.4, 4.0), 26.0),
+        Room::about(0.25, (0.4, 4.0), 26.0),
         [Room::jogs, Room::workshop],
         12.0,
     );
@@ -121,7 +120,7 @@ fn piezo_hybrid(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("delay", delay_s, "s");
     rig.moved(
         draw,
-        room(0.02, (0.1, 3.0), 9.0),
+        Room::about(0.02, (0.1, 3.0), 9.0),
         [Room::jogs, Room::waves],
         5.0,
     );
@@ -150,7 +149,7 @@ fn air_bearing_table(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_ripple_order", 18.0, "1/rev");
     rig.moved(
         draw,
-        room(3.0, (2.5, 4.0), 28.0),
+        Room::about(3.0, (2.5, 4.0), 28.0),
         [Room::waves, Room::workshop],
         14.0,
     );
@@ -183,7 +182,7 @@ fn camera_gimbal(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("torque_constant_ripple_order", 7.0, "1/rev");
     rig.moved(
         draw,
-        room(1.2, (6.0, 60.0), 24.0),
+        Room::about(1.2, (6.0, 60.0), 24.0),
         [Room::waves, Room::points],
         12.0,
     );

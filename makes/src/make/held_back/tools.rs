@@ -5,7 +5,6 @@
 
 use std::f64::consts::TAU;
 
-use super::room;
 use crate::control::Controller;
 use crate::control::pi::{Pi, Shape};
 use crate::draw::Draw;
@@ -60,7 +59,7 @@ fn wire_saw_feed(draw: &mut Draw, presence: Presence) -> Rig {
         surplus: presence.size(surplus),
         time_constant_s,
     });
-    let rapid = room(0.06, (0.06, 0.6), 60.0);
+    let rapid = Room::about(0.06, (0.06, 0.6), 60.0);
     let most = coulomb * (1.0 + surplus) + weight + viscous * 0.06 + mass * 0.6;
     let loops = Pi::of(mass, 3.0, 18.0, Shape::BackCalculation(0.95 * most));
     let mut rig = rig(Kind::Linear, train, Controller::pi(loops, 2.0e-3), 2.0e-8);
@@ -90,7 +89,7 @@ fn preloaded_pinions(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("load_dependent_friction", share * coulomb, "");
     rig.moved(
         draw,
-        room(0.6, (1.4, 5.0), 26.0),
+        Room::about(0.6, (1.4, 5.0), 26.0),
         [Room::jogs, Room::points],
         12.0,
     );
@@ -114,7 +113,7 @@ fn printer_lift(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("stribeck_excess", excess * coulomb / 39.0, "A");
     rig.moved(
         draw,
-        room(0.08, (0.1, 1.0), 32.0),
+        Room::about(0.08, (0.1, 1.0), 32.0),
         [Room::workshop, Room::jogs],
         16.0,
     );
@@ -150,7 +149,7 @@ fn cross_slide(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("stribeck_excess", excess * coulomb, "N");
     rig.moved(
         draw,
-        room(0.09, (0.15, 1.5), 40.0),
+        Room::about(0.09, (0.15, 1.5), 40.0),
         [Room::workshop, Room::circles],
         18.0,
     );

@@ -1,6 +1,5 @@
 //! Doors and shuttles: what carries people and goods, slow to sample and cheap to build.
 
-use super::room;
 use crate::control::Controller;
 use crate::control::pi::{Pi, Shape};
 use crate::draw::Draw;
@@ -49,7 +48,7 @@ fn platform_door(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("viscous_asymmetry", asymmetry * viscous, "N s/m");
     rig.moved(
         draw,
-        room(0.5, (0.8, 1.2), 70.0),
+        Room::about(0.5, (0.8, 1.2), 70.0),
         [Room::points, Room::workshop],
         35.0,
     );
@@ -77,7 +76,7 @@ fn tray_shuttle(draw: &mut Draw, presence: Presence) -> Rig {
     rig.know("payload", tray, "kg");
     rig.moved(
         draw,
-        room(0.8, (1.4, 5.0), 40.0),
+        Room::about(0.8, (1.4, 5.0), 40.0),
         [Room::points, Room::jogs],
         18.0,
     );
