@@ -19,6 +19,7 @@ pub(crate) mod inertia;
 pub(crate) mod load_dependent_friction;
 pub(crate) mod load_inertia;
 pub(crate) mod offset;
+pub(crate) mod polynomial;
 pub(crate) mod position_dependent_friction;
 pub(crate) mod quadratic_drag;
 pub(crate) mod spring;

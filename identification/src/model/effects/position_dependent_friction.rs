@@ -3,32 +3,12 @@
 
 use axis_model::EffectName;
 
-use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting, polynomial};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// sign(v)·(a u + b u²).
 pub(crate) struct PositionDependentFriction;
-
-/// `a u + b u²`, as far as there are coefficients.
-#[must_use]
-pub(crate) fn polynomial(own: &[f64], u: f64) -> f64 {
-    own.iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| u * (coefficient + sum))
-}
-
-/// Position scaled to the travel of the training record, so that a validation record uses the same
-/// scale.
-#[must_use]
-pub(crate) fn scaled(motion: &Kinematics, dataset: &Dataset) -> Vec<f64> {
-    let (middle, half) = dataset.travel();
-    motion
-        .position_lp
-        .iter()
-        .map(|x| (x - middle) / half)
-        .collect()
-}
 
 impl Effect for PositionDependentFriction {
     fn called(&self) -> Called {
@@ -40,22 +20,13 @@ impl Effect for PositionDependentFriction {
     }
 
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
-        let u = scaled(motion, dataset);
-        let power = |n: i32| {
-            u.iter()
-                .zip(&motion.direction)
-                .map(|(u, d)| d * u.powi(n))
-                .collect()
-        };
-        if terms > 1.5 {
-            vec![power(1), power(2)]
-        } else {
-            vec![power(1)]
-        }
+        let directions = motion.direction.iter().copied();
+        let pairs = polynomial::over_travel(motion, dataset).zip(directions);
+        polynomial::columns(pairs, terms)
     }
 
     fn width(&self, terms: f64) -> usize {
-        if terms > 1.5 { 2 } else { 1 }
+        polynomial::width(terms)
     }
 
     fn is_level(&self) -> bool {
@@ -67,7 +38,7 @@ impl Effect for PositionDependentFriction {
     }
 
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::level(polynomial(own, at.scaled))
+        Action::level(polynomial::value(own, at.scaled))
     }
 
     fn start(&self, _: &Dataset) -> f64 {
@@ -75,7 +46,7 @@ impl Effect for PositionDependentFriction {
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
-        vec![1.0, 2.0]
+        polynomial::TERMS.to_vec()
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

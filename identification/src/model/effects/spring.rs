@@ -1,8 +1,7 @@
 //! A force that depends on position alone: no effect of the list, but it must not be absorbed by
 //! one.
 
-use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
-use crate::model::effects::position_dependent_friction::{polynomial, scaled};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting, polynomial};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -19,17 +18,12 @@ impl Effect for Spring {
     }
 
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
-        let u = scaled(motion, dataset);
-        let power = |n: i32| u.iter().map(|u| u.powi(n)).collect();
-        if terms > 1.5 {
-            vec![power(1), power(2)]
-        } else {
-            vec![power(1)]
-        }
+        let u = polynomial::over_travel(motion, dataset);
+        polynomial::columns(u.map(|u| (u, 1.0)), terms)
     }
 
     fn width(&self, terms: f64) -> usize {
-        if terms > 1.5 { 2 } else { 1 }
+        polynomial::width(terms)
     }
 
     fn against(&self) -> Against {
@@ -37,11 +31,11 @@ impl Effect for Spring {
     }
 
     fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::force(polynomial(own, at.scaled))
+        Action::force(polynomial::value(own, at.scaled))
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
-        vec![1.0, 2.0]
+        polynomial::TERMS.to_vec()
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

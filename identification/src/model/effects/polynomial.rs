@@ -1,0 +1,48 @@
+//! What grows with a scaled quantity u and its square: `a u + b u²`.
+//!
+//! The nonlinear parameter of such an effect is a choice: 1 for the linear term alone, 2 for both.
+
+use crate::motion::kinematics::Kinematics;
+use crate::record::dataset::Dataset;
+
+/// The choices of an effect.
+pub(crate) const TERMS: [f64; 2] = [1.0, 2.0];
+
+/// Number of columns at a choice.
+#[must_use]
+pub(crate) fn width(terms: f64) -> usize {
+    if terms > 1.5 { 2 } else { 1 }
+}
+
+/// `weight·u`, and `weight·u²` where both terms are chosen; pairs of u and weight.
+pub(crate) fn columns(
+    pairs: impl Iterator<Item = (f64, f64)> + Clone,
+    terms: f64,
+) -> Vec<Vec<f64>> {
+    let power = |n: i32| {
+        pairs
+            .clone()
+            .map(|(u, weight)| weight * u.powi(n))
+            .collect()
+    };
+    [1, 2].into_iter().take(width(terms)).map(power).collect()
+}
+
+/// `a u + b u²`, as far as there are coefficients.
+#[must_use]
+pub(crate) fn value(own: &[f64], u: f64) -> f64 {
+    own.iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| u * (coefficient + sum))
+}
+
+/// Position scaled to −1…1 over the travel of the training record, so that a validation record uses
+/// the same scale.
+pub(crate) fn over_travel<'a>(
+    motion: &'a Kinematics,
+    dataset: &Dataset,
+) -> impl Iterator<Item = f64> + Clone + 'a {
+    let (middle, half) = dataset.travel();
+    let positions = motion.position_lp.iter();
+    positions.map(move |x| (x - middle) / half)
+}
