@@ -9,6 +9,7 @@ use crate::evidence::all_rows::AllRows;
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
+use crate::motion::kinematics::Kinematics;
 use crate::motion::{excitation, filter};
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::note;
@@ -72,14 +73,18 @@ fn travel(dataset: &Dataset) -> Travel {
 fn report(findings: &Findings<'_>) -> Report {
     let dataset = findings.dataset;
     let found = &findings.found;
+    let whole = dataset.whole();
+    let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
     Report {
         dataset: dataset.name.clone(),
         declared: words(&dataset.declared),
         candidates: ranking::candidates(findings),
         train: errors::on_training(findings),
         validate: errors::on_validation(findings),
-        whole: errors::on_whole(findings),
-        protocols: protocols::table(findings),
+        whole: whole
+            .as_ref()
+            .map(|motion| errors::refitted(findings, motion)),
+        protocols: protocols::table(findings, whole.as_ref()),
         residual: residual(findings),
         free_run: None,
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),

@@ -45,7 +45,7 @@ impl Output for Effort<'_> {
     fn candidates(&self, model: &Model, round: usize) -> Vec<Candidate<Model>> {
         let bench = self.0.bench;
         let base = bench.cross_validate(model);
-        let residual = bench.residual(&bench.fit(model));
+        let residual = bench.residual(&Fitted::new(model.clone(), &base.coefficients));
         let setting = Setting {
             dataset: bench.dataset,
             residual: &residual,

@@ -40,6 +40,8 @@ const GAPS: (f64, f64, u32) = (2.0e-3, 0.12, 14);
 const RESTITUTIONS: [f64; 2] = [0.1, 0.7];
 /// Shares of the friction on the motor side that are tried.
 const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
+/// Share of the moved mass beyond a gap to start from: motors are matched to their loads.
+const LOAD_SHARE: f64 = 0.45;
 /// So many of the best gaps are fitted.
 const STARTS: usize = 3;
 
@@ -231,7 +233,7 @@ fn gaps(unit: f64, start: impl Fn(Shape) -> Option<Simulated>) -> Vec<Simulated>
     let shapes = widths.into_iter().flat_map(|width| {
         kinds.iter().map(move |&(restitution, motor_friction)| Gap {
             width,
-            load_share: 0.45,
+            load_share: LOAD_SHARE,
             motor_friction,
             restitution,
         })
@@ -274,7 +276,7 @@ fn bristles_behind_gaps(bristle: Bristle, width: f64, unit: f64) -> Vec<Shape> {
         }),
         gap: Some(Gap {
             width,
-            load_share: 0.45,
+            load_share: LOAD_SHARE,
             motor_friction: 0.2,
             restitution: 0.5,
         }),

@@ -44,16 +44,10 @@ pub(crate) fn over_all_rows(errors: &Compared<all_rows::Errors>) -> Errors {
 
 /// Both structures fitted to the whole file, where validation is its last part: the protocol of the
 /// published figures.
-pub(crate) fn on_whole(findings: &Findings<'_>) -> Option<Errors> {
+pub(crate) fn refitted(findings: &Findings<'_>, whole: &Kinematics) -> Errors {
     let dataset = findings.dataset;
-    let motion = Kinematics::new(dataset, &dataset.whole()?)?;
-    let refitted = findings
-        .models
-        .each(|model| model.refitted(dataset, &motion));
-    Some(errors(
-        &refitted.each(|model| model.on(dataset, &motion)),
-        None,
-    ))
+    let refitted = findings.models.each(|model| model.refitted(dataset, whole));
+    errors(&refitted.each(|model| model.on(dataset, whole)), None)
 }
 
 /// Errors with the defined low-pass, where the fit used another: training and validation record.

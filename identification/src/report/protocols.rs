@@ -25,13 +25,10 @@ pub struct Protocol {
 /// cut-off.
 const DECIMATION: usize = 5;
 
-/// The table of a dataset.
-pub(crate) fn table(findings: &Findings<'_>) -> Vec<Protocol> {
+/// The table of a dataset; where the whole file is no record of its own, the training record is.
+pub(crate) fn table(findings: &Findings<'_>, whole: Option<&Kinematics>) -> Vec<Protocol> {
     let (dataset, motion) = (findings.dataset, findings.motion);
-    let whole = dataset
-        .whole()
-        .and_then(|record| Kinematics::new(dataset, &record));
-    let whole = whole.as_ref().unwrap_or(motion);
+    let whole = whole.unwrap_or(motion);
     let (all, thinned) = (with_samples(whole, 1), with_samples(whole, DECIMATION));
     let fitted_to_training = |definition, motion: &Kinematics| {
         let percent = findings

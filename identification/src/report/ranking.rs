@@ -47,7 +47,9 @@ fn ranked(mut list: Vec<Candidate>) -> Vec<Candidate> {
 
 /// The best round of each effect.
 fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
-    let mut best: Vec<Candidate> = Vec::new();
+    let (dataset, mut best) = (findings.dataset, Vec::<Candidate>::new());
+    let declared = findings.models.declared.fitted.model();
+    let benches = [findings.motion, findings.validation].map(|motion| Bench::new(dataset, motion));
     for scored in &findings.stages.effort.scored {
         let known = best
             .iter_mut()
@@ -55,18 +57,20 @@ fn on_effort(findings: &Findings<'_>) -> Vec<Candidate> {
         match known {
             Some(known) if known.share >= scored.gain.share => {}
             Some(known) => (known.share, known.evidence) = (scored.gain.share, scored.gain.t),
-            None => best.push(on_effort_alone(findings, scored)),
+            None => best.push(on_effort_alone(&benches, declared, scored)),
         }
     }
     best
 }
 
-/// A candidate with the validation error of the declared model and this effect alone.
-fn on_effort_alone(findings: &Findings<'_>, scored: &Scored) -> Candidate {
-    let bench = Bench::new(findings.dataset, findings.motion);
-    let model = with(&bench, findings.models.declared.fitted.model(), scored);
-    let fitted = bench.fit(&model);
-    let validation = Bench::new(findings.dataset, findings.validation);
+/// A candidate with the error of the declared model and this effect alone, fitted to the training
+/// record, on the validation record.
+fn on_effort_alone(
+    [train, validation]: &[Bench<'_>; 2],
+    declared: &Model,
+    scored: &Scored,
+) -> Candidate {
+    let fitted = train.fit(&with(train, declared, scored));
     Candidate {
         effect: scored.effect.as_str().into(),
         validation_error_percent: Some(validation.force_error_percent(&fitted)),
