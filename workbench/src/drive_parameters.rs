@@ -477,46 +477,31 @@ mod tests {
         );
     }
 
-    #[test]
-    fn a_value_beyond_the_range_of_its_object_names_its_key() {
-        let mut machine = Machine::reference();
-        machine.axes[0].gains.velocity_bandwidth_hz = 1.0e6;
-        let error = parameters(
-            &machine.axes[0],
-            machine.period_s,
-            &AxisCompensation::default(),
-        )
-        .unwrap_err();
+    fn assert_cannot_hold(axis: &MachineAxis, period_s: f64, key: &str) {
+        let error = parameters(axis, period_s, &AxisCompensation::default()).unwrap_err();
+        let error = error.to_string();
         assert!(
-            error
-                .to_string()
-                .starts_with("velocity_bandwidth_hz: the drive cannot hold"),
+            error.starts_with(&format!("{key}: the drive cannot hold")),
             "{error}"
         );
     }
 
     #[test]
+    fn a_value_beyond_the_range_of_its_object_names_its_key() {
+        let mut machine = Machine::reference();
+        machine.axes[0].gains.velocity_bandwidth_hz = 1.0e6;
+        assert_cannot_hold(&machine.axes[0], machine.period_s, "velocity_bandwidth_hz");
+    }
+
+    #[test]
     fn a_value_beyond_the_machine_units_names_its_key() {
-        let machine = Machine::reference();
         // 0.5 m/s are 10⁶ counts in 20 ms: more than the drive's velocities hold.
-        let mut axis = machine.axes[0].clone();
+        let mut axis = Machine::reference().axes[0].clone();
         axis.gains.position_gain_per_s = 10.0;
-        let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .starts_with("velocity_m_per_s: the drive cannot hold"),
-            "{error}"
-        );
+        assert_cannot_hold(&axis, 0.02, "velocity_m_per_s");
         axis.limits.velocity_m_per_s = 0.1;
         axis.gains.position_gain_per_s = 100.0;
-        let error = parameters(&axis, 0.02, &AxisCompensation::default()).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .starts_with("position_gain_per_s: the drive cannot hold"),
-            "{error}"
-        );
+        assert_cannot_hold(&axis, 0.02, "position_gain_per_s");
     }
 
     #[test]
