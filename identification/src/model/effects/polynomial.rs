@@ -15,16 +15,9 @@ pub(crate) fn width(terms: f64) -> usize {
 }
 
 /// `weight·u`, and `weight·u²` where both terms are chosen; pairs of u and weight.
-pub(crate) fn columns(
-    pairs: impl Iterator<Item = (f64, f64)> + Clone,
-    terms: f64,
-) -> Vec<Vec<f64>> {
-    let power = |n: i32| {
-        pairs
-            .clone()
-            .map(|(u, weight)| weight * u.powi(n))
-            .collect()
-    };
+pub(crate) fn columns(pairs: impl Iterator<Item = (f64, f64)>, terms: f64) -> Vec<Vec<f64>> {
+    let pairs: Vec<(f64, f64)> = pairs.collect();
+    let power = |n: i32| pairs.iter().map(|(u, weight)| weight * u.powi(n)).collect();
     [1, 2].into_iter().take(width(terms)).map(power).collect()
 }
 
@@ -41,7 +34,7 @@ pub(crate) fn value(own: &[f64], u: f64) -> f64 {
 pub(crate) fn over_travel<'a>(
     motion: &'a Kinematics,
     dataset: &Dataset,
-) -> impl Iterator<Item = f64> + Clone + 'a {
+) -> impl Iterator<Item = f64> + 'a {
     let (middle, half) = dataset.travel();
     let positions = motion.position_lp.iter();
     positions.map(move |x| (x - middle) / half)
