@@ -10,10 +10,11 @@ use axis_model::EffectName;
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
+use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::RippleAtReversals;
-use crate::evidence::verdict::{Left, ResidualStructure, Verdict, moves_apart};
+use crate::evidence::verdict::{self, Reason, Verdict};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -71,6 +72,23 @@ impl Stages {
         list.extend(self.ripple.is_some().then_some(EffectName::TorqueRipple));
         list
     }
+
+    /// What they saw that no effect explains.
+    fn reasons(&self, dataset: &Dataset, has_gap: bool) -> Vec<Reason> {
+        let nameless = self.effort.nameless().into_iter();
+        let mut reasons: Vec<Reason> = nameless
+            .map(|called| Reason::unexplained(format!("a {called}")))
+            .collect();
+        let strange = self.reversals.decided.unexplained;
+        reasons.extend(strange.then(|| {
+            Reason::unexplained(
+                "structure at reversals that is neither stick nor a bristle nor a gap",
+            )
+        }));
+        let difference = self.difference.as_ref();
+        reasons.extend(difference.and_then(|one| verdict::of_difference(dataset, one, has_gap)));
+        reasons
+    }
 }
 
 /// Everything that was found out.
@@ -109,19 +127,10 @@ impl<'a> Findings<'a> {
         let validate = models.each(|model| model.on(dataset, validation));
         let found = Found::of(&stages, &dataset.declared);
         let residual = ResidualStructure::of(motion, &train, &stages.effort.scored);
-        let declares_gap = dataset.declares(EffectName::Backlash);
-        let left = Left {
-            nameless: &stages.effort.nameless(),
-            residual,
-            force_percent: train.extended.force_percent,
-            at_reversals: stages.reversals.decided.unexplained,
-            apart: stages
-                .difference
-                .as_ref()
-                .is_some_and(|difference| moves_apart(dataset, difference)),
-            has_gap: declares_gap || found.has(EffectName::Backlash),
-        };
-        let verdict = Verdict::of(&left);
+        let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
+        let mut reasons = stages.reasons(dataset, has_gap);
+        reasons.extend(residual.reason(train.extended.force_percent, has_gap));
+        let verdict = Verdict::of(reasons);
         Self {
             dataset,
             motion,

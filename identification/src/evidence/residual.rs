@@ -5,8 +5,75 @@
 //! linear) explain on held-out blocks, and by the share of the best single candidate; the larger of
 //! the two counts. General features alone miss ripple and delay, and over-fit into negative shares.
 
+use crate::evidence::inverse_dynamics::{Compared, Judgement};
+use crate::evidence::selection::Scored;
+use crate::evidence::thresholds::{UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE};
+use crate::evidence::verdict::Reason;
 use crate::fit::blocks::Blocks;
 use crate::motion::kinematics::Kinematics;
+
+/// Structure in the residual of moving samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ResidualStructure {
+    /// Share of the residual's variance that features or a candidate explain on held-out blocks.
+    pub share: Compared<f64>,
+    /// What the extended model's residual goes with most.
+    pub over: &'static str,
+}
+
+impl ResidualStructure {
+    /// The share of a model is the larger of the features' and of the best physical candidate's: of
+    /// the first round for the declared model, of the last round for the extended one.
+    pub(crate) fn of(motion: &Kinematics, train: &Compared<Judgement>, scored: &[Scored]) -> Self {
+        let structures = train.each(|judged| structures(motion, &judged.residual));
+        let last = scored.iter().map(|scored| scored.round).max().unwrap_or(0);
+        let share = |list: &[Structure], round: usize| {
+            let features = list.first().map_or(0.0, |structure| structure.share);
+            features.max(best_of_round(scored, round))
+        };
+        Self {
+            share: Compared {
+                declared: share(&structures.declared, 0),
+                extended: share(&structures.extended, last),
+            },
+            over: structures
+                .extended
+                .first()
+                .map_or("", |structure| structure.over),
+        }
+    }
+
+    /// What it says of an extended model with such a force error, percent; a gap excuses it, since
+    /// impacts leave structure in the force that no column of an inverse model can have.
+    pub(crate) fn reason(&self, force_percent: f64, has_gap: bool) -> Option<Reason> {
+        let share = self.share.extended;
+        let percent_left = force_percent * share.sqrt();
+        let counts = share >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
+        let words = format!(
+            "structure over {} ({:.0} % of the residual)",
+            self.over,
+            100.0 * share
+        );
+        let is_seen = share >= WHITE_SHARE && !self.over.is_empty();
+        if counts {
+            Some(Reason::unexplained(words))
+        } else {
+            is_seen.then(|| Reason::told(words))
+        }
+    }
+
+    /// Whether too little is left to speak of.
+    pub(crate) fn is_white(&self) -> Compared<bool> {
+        self.share.each(|share| *share < WHITE_SHARE)
+    }
+}
+
+fn best_of_round(scored: &[Scored], round: usize) -> f64 {
+    let of_round = scored
+        .iter()
+        .filter(|scored| scored.round == round && scored.physical);
+    of_round.map(|scored| scored.gain.share).fold(0.0, f64::max)
+}
 
 /// Features of one kind.
 #[derive(Clone, Debug)]
@@ -103,7 +170,10 @@ fn share(motion: &Kinematics, residual: &[f64], columns: &[Vec<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use axis_model::EffectName;
+
     use super::*;
+    use crate::fit::blocks::Gain;
     use crate::fit::made::{axis, usual};
 
     #[test]
@@ -208,5 +278,118 @@ mod tests {
         assert_eq!(count(&axis), 0);
         axis.motion.moving[moving[99]] = true;
         assert_eq!(count(&axis), 8);
+    }
+
+    fn scored(round: usize, share: f64, physical: bool) -> Scored {
+        Scored {
+            effect: EffectName::Delay.into(),
+            parameter: 1.0e-3,
+            gain: Gain {
+                removed: 1.0,
+                share,
+                percent: 1.0,
+                t: 5.0,
+            },
+            physical,
+            accepted: false,
+            round,
+        }
+    }
+
+    /// A judgement with a residual that follows a law of the row.
+    fn leaving(rows: usize, law: impl Fn(usize) -> f64) -> Judgement {
+        Judgement {
+            force_percent: 1.0,
+            reversal_rms: 0.0,
+            residual: (0..rows).map(law).collect(),
+            prediction: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_share_of_a_model_is_the_larger_of_features_and_the_best_candidate_of_its_round() {
+        let motion = axis(usual).motion;
+        let noise = |row: usize| (1.7 * (row * row % 1013) as f64).sin();
+        let train = Compared {
+            declared: leaving(motion.len(), noise),
+            extended: leaving(motion.len(), |row| (motion.time_s[row] - 3.0).powi(2)),
+        };
+        let of = |scored: &[Scored]| ResidualStructure::of(&motion, &train, scored);
+        let alone = of(&[]);
+        assert_eq!(alone.over, "time");
+        assert!(alone.share.declared < 0.02 && alone.share.extended > 0.9);
+        // The declared model is judged by the first round, the extended one by the last.
+        let judged = of(&[
+            scored(0, 0.3, true),
+            scored(1, 0.9999, true),
+            scored(2, 0.9995, true),
+        ]);
+        assert_eq!(
+            (judged.share.declared, judged.share.extended),
+            (0.3, 0.9995)
+        );
+        let weak = of(&[scored(0, 0.999, true), scored(1, 0.2, true)]);
+        assert_eq!(weak.share.declared, 0.999);
+        assert_eq!(weak.share.extended, alone.share.extended);
+    }
+
+    #[test]
+    fn the_best_candidate_of_a_round_is_the_largest_that_can_be_its_effect() {
+        let list = [
+            scored(0, 0.4, true),
+            scored(0, 0.7, true),
+            scored(0, 0.9, false),
+            scored(1, 0.2, true),
+            scored(2, -0.1, true),
+        ];
+        let best = [0, 1, 2, 3].map(|round| best_of_round(&list, round));
+        assert_eq!(best, [0.7, 0.2, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_residual_is_white_below_the_share_of_the_smallest_accepted_effect() {
+        let left = ResidualStructure {
+            share: Compared {
+                declared: 0.05,
+                extended: 0.0499,
+            },
+            over: "time",
+        };
+        let white = left.is_white();
+        assert!(!white.declared && white.extended);
+    }
+
+    fn structure(share: f64) -> ResidualStructure {
+        ResidualStructure {
+            share: Compared {
+                declared: 0.6,
+                extended: share,
+            },
+            over: "position",
+        }
+    }
+
+    #[test]
+    fn a_residual_counts_from_both_limits_on_and_a_gap_excuses_it() {
+        let counts = |share: f64, force_percent: f64, has_gap: bool| {
+            let reason = structure(share).reason(force_percent, has_gap);
+            reason.is_some_and(|reason| reason.counts)
+        };
+        assert!(counts(0.15, 10.0, false) && !counts(0.1499, 10.0, false));
+        // √0.25 of 0.6 % are 0.3 % of the effort.
+        assert!(counts(0.25, 0.6, false) && !counts(0.25, 0.599, false));
+        assert!(!counts(0.25, 10.0, true));
+    }
+
+    #[test]
+    fn a_structure_is_told_from_a_share_of_a_twentieth_on() {
+        let words = |share: f64| {
+            structure(share)
+                .reason(1.0, false)
+                .map(|reason| reason.words)
+        };
+        let wanted = "structure over position (5 % of the residual)";
+        assert_eq!(words(0.05).as_deref(), Some(wanted));
+        assert_eq!(words(0.0499), None);
     }
 }
