@@ -37,4 +37,5 @@ pub use identify::{declared_coulomb, identify};
 pub use progress::Step;
 pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};
+pub use report::figures;
 pub use report::forms::{EffectCurve, Errors, FreeRunErrors, Identification, Report};

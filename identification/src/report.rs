@@ -9,8 +9,8 @@ use crate::evidence::all_rows::AllRows;
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
+use crate::motion::filter;
 use crate::motion::kinematics::Kinematics;
-use crate::motion::{excitation, filter};
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::note;
 use crate::report::effects::Travel;
@@ -21,12 +21,14 @@ use crate::report::forms::{
 pub(crate) mod curves;
 pub(crate) mod effects;
 pub(crate) mod errors;
+pub mod figures;
 pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod parameters;
 pub(crate) mod pictures;
 pub(crate) mod protocols;
 pub(crate) mod ranking;
+pub(crate) mod remarks;
 
 /// The report with its curves; errors and predictions are of all rows where an excerpt was fitted.
 pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>) -> Identification {
@@ -92,7 +94,7 @@ fn report(findings: &Findings<'_>) -> Report {
         as_defined: errors::as_defined(findings),
         parameters: parameters::parameters(findings),
         verdict: findings.verdict.word().into(),
-        warnings: excitation::warnings(dataset, findings.motion, found.names()),
+        warnings: remarks::remarks(findings),
         found: words(found.names()),
     }
 }

@@ -87,7 +87,8 @@ impl Witnesses {
         } else {
             self.accepts_bristle()
         };
-        let strange = self.is_suspicious() || seen.accepted.undecided;
+        let torn = seen.accepted.undecided && seen.something_left;
+        let strange = self.is_suspicious() || torn;
         AtReversals {
             presliding,
             backlash,
@@ -96,6 +97,7 @@ impl Witnesses {
     }
 
     /// Bristle and gap leave about the same in the free run: both witnesses must point one way.
+    /// Where they do not, it is unexplained if rigid friction leaves something at all.
     fn by_tie(&self, seen: Summary) -> AtReversals {
         let ratio = self
             .inverse
@@ -105,7 +107,7 @@ impl Witnesses {
         AtReversals {
             presliding,
             backlash,
-            unexplained: !presliding && !backlash,
+            unexplained: !presliding && !backlash && seen.something_left,
         }
     }
 }
@@ -166,6 +168,7 @@ mod tests {
                 undecided,
             },
             gap_leaves_less: false,
+            something_left: true,
         }
     }
 
@@ -379,6 +382,21 @@ mod tests {
                 heard(Some(0.8), true),
                 UNEXPLAINED,
             ),
+        ]);
+    }
+
+    #[test]
+    fn a_tie_without_anything_left_explains_nothing_and_is_not_unexplained() {
+        let heard = |controller_known| Witnesses {
+            free_run: Some(Summary {
+                something_left: false,
+                ..free_run(controller_known, [false, false, true])
+            }),
+            ..Witnesses::default()
+        };
+        check(vec![
+            ("in a free run", heard(true), NOTHING),
+            ("in a followed run", heard(false), NOTHING),
         ]);
     }
 

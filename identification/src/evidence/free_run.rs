@@ -5,11 +5,16 @@
 //! not the peak. Each shape is fitted to every second block of the training record and judged on
 //! the others; a shape is accepted where it leaves clearly less than rigid friction *and* than its
 //! rival.
+//!
+//! A shape must win by its shape, not by more starts. So before one is accepted the others start
+//! once more, from the masses and forces that its fit ended at: rigid friction from the gap's with
+//! the gap at zero, and so on. A simulation that runs away (an error beyond the travel, or no
+//! number) is no evidence for anything: its rms is nothing to compare with.
 
 pub(crate) mod decision;
 
 use crate::evidence::free_run::decision::{Accepted, Left, Scene, Tried};
-use crate::evidence::thresholds::FEWEST_COUNTS;
+use crate::evidence::thresholds::{FEWEST_COUNTS, VISIBLE_ROUNDINGS};
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
@@ -17,12 +22,13 @@ use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::simulate::axis::{Gap, Shape};
+use crate::simulate::controller::known::Controller;
 use crate::simulate::drive::Drive;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
 use crate::simulate::model::estimates::Estimates;
-use crate::simulate::run::{Run, position_rms, simulate};
+use crate::simulate::run::{Run, position_rms, simulate, strays};
 
 /// Length of the blocks that are fitted and judged in turn, s.
 const BLOCK_S: f64 = 2.0;
@@ -54,6 +60,8 @@ pub(crate) struct Judged {
     pub held_out: f64,
     /// Rms on the whole training record.
     pub all: f64,
+    /// Whether the simulation left the travel of the axis: both rms say nothing then.
+    pub ran_away: bool,
     /// Mean square on each block that was not fitted.
     blocks: Vec<f64>,
 }
@@ -61,6 +69,8 @@ pub(crate) struct Judged {
 /// What the free run says about reversals.
 #[derive(Clone)]
 pub(crate) struct Reversals {
+    /// What is known of the controller.
+    pub controller: Controller,
     /// Who drove the simulation.
     pub drive: Drive,
     /// Rigid friction.
@@ -73,6 +83,10 @@ pub(crate) struct Reversals {
     pub both: Option<Judged>,
     /// What was accepted.
     pub accepted: Accepted,
+    /// What the free run alone accepted, before other witnesses were heard.
+    pub alone: Accepted,
+    /// Whether rigid friction leaves more than the rounding of the encoder.
+    pub something_left: bool,
 }
 
 /// What a free run says in short.
@@ -84,25 +98,30 @@ pub(crate) struct Summary {
     pub accepted: Accepted,
     /// Whether a gap leaves less than a bristle on blocks that were not fitted.
     pub gap_leaves_less: bool,
+    /// Whether rigid friction leaves more than the rounding of the encoder.
+    pub something_left: bool,
 }
 
 struct Judge<'a> {
     drive: Drive,
     record: &'a Record,
     block_rows: usize,
+    /// From end to end of the travel.
+    travel: f64,
 }
 
 impl<'a> Judge<'a> {
     /// The judge of a training record, driven by its controller where that is known.
-    fn of(dataset: &'a Dataset) -> Self {
+    fn of(dataset: &'a Dataset, controller: Controller) -> Self {
         let record = &dataset.train;
         let block_rows = ((BLOCK_S / record.period_s) as usize)
             .min(record.len() / FEWEST_BLOCKS)
             .max(1);
         Self {
-            drive: Drive::of(dataset),
+            drive: Drive::of(controller),
             record,
             block_rows,
+            travel: 2.0 * dataset.travel().1,
         }
     }
 
@@ -128,6 +147,7 @@ impl<'a> Judge<'a> {
             model,
             held_out,
             all,
+            ran_away: strays(run, self.record, self.travel),
             blocks: judged.map(on_block).collect(),
         }
     }
@@ -143,7 +163,18 @@ impl<'a> Judge<'a> {
         };
         let best = nearest(side_by_side(starts, error), starts, count).into_iter();
         let fitted = best.map(|start| self.fitted(start));
-        fitted.min_by(|a, b| a.all.total_cmp(&b.all))
+        fitted.reduce(Judged::better)
+    }
+
+    /// A shape, started once more from the masses and forces of other fits; the best is kept.
+    fn restarted(&self, judged: Judged, others: &[&Judged]) -> Judged {
+        let shape = judged.model.mechanics.shape;
+        let from = others.iter().map(|other| {
+            let mut start = other.model.clone();
+            start.mechanics.shape = shape;
+            self.fitted(&start)
+        });
+        from.fold(judged, Judged::better)
     }
 }
 
@@ -156,16 +187,6 @@ fn nearest<T>(errors: Vec<f64>, items: &[T], count: usize) -> Vec<&T> {
     least.map(|(_, item)| item).collect()
 }
 
-/// Rigid friction beside a bristle, on an encoder of a resolution.
-fn scene(rigid: &Judged, bristle: &Judged, resolution: f64) -> Scene {
-    Scene {
-        rigid: rigid.left(),
-        bristle: bristle.tried(bristle.deflection()),
-        gap: None,
-        smallest: FEWEST_COUNTS * resolution,
-    }
-}
-
 /// Judges the reversals of a training record with an inverse model to start from; `None` where that
 /// has no mass or friction.
 #[must_use]
@@ -174,34 +195,105 @@ pub(crate) fn reversals(
     fitted: &Fitted,
     progress: &mut dyn FnMut(&Step),
 ) -> Option<Reversals> {
-    let judge = Judge::of(dataset);
+    let controller = Controller::of(dataset);
+    let judge = Judge::of(dataset, controller);
     let unit = dataset.kind.moving_velocity();
     let start = |shape: Shape| Simulated::new(dataset, judge.record.period_s, fitted, shape);
-    progress(&Step::Rigid);
-    let rigid = judge.fitted(&start(Shape::default())?);
-    progress(&Step::Bristle);
-    let bristle = judge.best(&bristles(unit, rigid.model.mechanics.mass, start), 1)?;
-    let mut scene = scene(&rigid, &bristle, dataset.resolution);
-    progress(&Step::Gap);
-    let gap = scene
-        .is_worth_a_gap(rounding(dataset.resolution))
-        .then(|| judge.best(&gaps(unit, start), STARTS))
-        .flatten();
-    scene.gap = gap.as_ref().map(|gap| gap.tried(gap.width()));
-    let mut accepted = scene.decide();
-    progress(&Step::BristleAndGap);
-    let both = judge.both(accepted, &bristle, gap.as_ref(), unit, &start);
-    if let Some(both) = &both {
-        accepted = scene.with_both(accepted, both.tried(both.smaller_size()));
+    let mut shapes = judge.shapes(dataset, &start, progress)?;
+    let mut accepted = shapes.scene(dataset.resolution).decide();
+    if accepted != Accepted::default() {
+        shapes = shapes.restarted(&judge);
+        accepted = shapes.scene(dataset.resolution).decide();
     }
-    Some(Reversals {
-        drive: judge.drive,
+    progress(&Step::BristleAndGap);
+    let Shapes {
         rigid,
         bristle,
         gap,
+    } = &shapes;
+    let both = judge.both(accepted, bristle, gap.as_ref(), unit, &start);
+    if let Some(both) = &both {
+        let size = both.smaller_size();
+        let scene = shapes.scene(dataset.resolution);
+        accepted = scene.with_both(accepted, both.tried(size));
+    }
+    let something_left = rigid.all > VISIBLE_ROUNDINGS * rounding(dataset.resolution);
+    Some(Reversals {
+        controller,
+        drive: judge.drive,
+        rigid: shapes.rigid,
+        bristle: shapes.bristle,
+        gap: shapes.gap,
         both,
         accepted,
+        alone: accepted,
+        something_left,
     })
+}
+
+/// What was tried at reversals beside each other.
+struct Shapes {
+    rigid: Judged,
+    bristle: Judged,
+    gap: Option<Judged>,
+}
+
+impl Judge<'_> {
+    /// Each shape from its own starts; a gap only where it is worth a look.
+    fn shapes(
+        &self,
+        dataset: &Dataset,
+        start: &impl Fn(Shape) -> Option<Simulated>,
+        progress: &mut dyn FnMut(&Step),
+    ) -> Option<Shapes> {
+        let unit = dataset.kind.moving_velocity();
+        progress(&Step::Rigid);
+        let rigid = self.fitted(&start(Shape::default())?);
+        progress(&Step::Bristle);
+        let bristle = self.best(&bristles(unit, rigid.model.mechanics.mass, start), 1)?;
+        let mut shapes = Shapes {
+            rigid,
+            bristle,
+            gap: None,
+        };
+        progress(&Step::Gap);
+        let scene = shapes.scene(dataset.resolution);
+        if scene.is_worth_a_gap(rounding(dataset.resolution)) {
+            shapes.gap = self.best(&gaps(unit, start), STARTS);
+        }
+        Some(shapes)
+    }
+}
+
+impl Shapes {
+    /// Each beside the others, on an encoder of a resolution.
+    fn scene(&self, resolution: f64) -> Scene {
+        Scene {
+            rigid: self.rigid.left(),
+            bristle: self.bristle.tried(self.bristle.deflection()),
+            gap: self.gap.as_ref().map(|gap| gap.tried(gap.width())),
+            smallest: FEWEST_COUNTS * resolution,
+        }
+    }
+
+    /// Each shape started once more from what the others ended at.
+    fn restarted(self, judge: &Judge<'_>) -> Self {
+        let Self {
+            rigid,
+            bristle,
+            gap,
+        } = self;
+        let from_gap: Vec<&Judged> = gap.iter().collect();
+        let from_both: Vec<&Judged> = from_gap.iter().copied().chain([&bristle]).collect();
+        let rigid = judge.restarted(rigid, &from_both);
+        let again = judge.restarted(bristle.clone(), &from_gap);
+        let gap = gap.map(|gap| judge.restarted(gap, &[&bristle]));
+        Self {
+            rigid,
+            bristle: again,
+            gap,
+        }
+    }
 }
 
 /// Rms of what rounding to counts of a resolution leaves.
@@ -309,12 +401,21 @@ impl Judged {
         }
     }
 
-    /// What it leaves.
+    /// What it leaves; no number where it ran away.
     fn left(&self) -> Left {
+        let told = |rms: f64| if self.ran_away { f64::NAN } else { rms };
         Left {
-            held_out: self.held_out,
-            all: self.all,
+            held_out: told(self.held_out),
+            all: told(self.all),
         }
+    }
+
+    /// The one that leaves less of the whole record; one that ran away leaves most.
+    fn better(self, other: Self) -> Self {
+        let left = |judged: &Self| (judged.ran_away, judged.all.abs());
+        let ((away, one), (other_away, two)) = (left(&self), left(&other));
+        let keeps = away.cmp(&other_away).then(one.total_cmp(&two)).is_le();
+        if keeps { self } else { other }
     }
 }
 
@@ -322,12 +423,20 @@ impl Reversals {
     /// What it says in short.
     #[must_use]
     pub(crate) fn summary(&self) -> Summary {
-        let less = |gap: &Judged| gap.held_out < self.bristle.held_out;
+        let less = |gap: &Judged| gap.left().held_out < self.bristle.left().held_out;
         Summary {
             controller_known: matches!(self.drive, Drive::Known(_)),
             accepted: self.accepted,
             gap_leaves_less: self.gap.as_ref().is_some_and(less),
+            something_left: self.something_left,
         }
+    }
+
+    /// Whether it can be a witness: rigid friction did not run away, so that there is something to
+    /// compare with, and the controller of the dataset is not refuted by its own record.
+    #[must_use]
+    pub(crate) const fn is_evidence(&self) -> bool {
+        !self.rigid.ran_away && !matches!(self.controller, Controller::Refuted(_))
     }
 
     /// Deflection of the bristle that was accepted.
@@ -417,6 +526,7 @@ mod tests {
             model: model(shape),
             held_out,
             all: 2.0 * held_out,
+            ran_away: false,
             blocks: Vec::new(),
         }
     }
@@ -432,12 +542,15 @@ mod tests {
             ..shape(0.0, 8.0e-6)
         };
         Reversals {
+            controller: Controller::NotDescribed,
             drive: Drive::Followed,
             rigid: judged(Shape::default(), 9.0),
             bristle: judged(bristle, 5.0),
             gap: Some(judged(gap, 4.0)),
             both: Some(judged(shape(2.0e-6, 6.0e-6), 3.0)),
             accepted: Accepted::default(),
+            alone: Accepted::default(),
+            something_left: true,
         }
     }
 
@@ -458,7 +571,11 @@ mod tests {
             (1.0e-3, 5, 1),
         ] {
             let dataset = dataset(period_s, rows);
-            assert_eq!(Judge::of(&dataset).block_rows, block_rows, "{rows} rows");
+            assert_eq!(
+                Judge::of(&dataset, Controller::NotDescribed).block_rows,
+                block_rows,
+                "{rows} rows"
+            );
         }
     }
 
@@ -469,6 +586,7 @@ mod tests {
             drive: Drive::Followed,
             record: &dataset.train,
             block_rows: 400,
+            travel: 1.0,
         };
         let fitted = [0, 399, 400, 799, 800, 2400].map(|row| judge.is_fitted(row));
         assert_eq!(fitted, [true, true, false, false, true, true]);
@@ -560,7 +678,7 @@ mod tests {
     #[test]
     fn a_bristle_behind_a_gap_is_tried_only_where_something_acts_and_a_gap_was_tried() {
         let dataset = dataset(1.0e-3, 10);
-        let judge = Judge::of(&dataset);
+        let judge = Judge::of(&dataset, Controller::NotDescribed);
         let asked = std::cell::Cell::new(0);
         let start = |_: Shape| {
             asked.set(asked.get() + 1);
@@ -590,13 +708,112 @@ mod tests {
     #[test]
     fn a_shape_is_visible_from_two_counts_on_and_rounding_leaves_a_count_over_root_twelve() {
         let found = reversals();
-        let scene = scene(&found.rigid, &found.bristle, 1.5e-6);
+        let shapes = Shapes {
+            rigid: found.rigid,
+            bristle: found.bristle,
+            gap: None,
+        };
+        let scene = shapes.scene(1.5e-6);
         assert_eq!(scene.smallest, 3.0e-6);
         assert_eq!((scene.rigid.held_out, scene.rigid.all), (9.0, 18.0));
         let Tried { left, size } = scene.bristle;
         assert_eq!((left.held_out, left.all, size), (5.0, 10.0, 3.0e-6));
         assert!(scene.gap.is_none());
         assert!((rounding(4.0) - 4.0 / 12.0_f64.sqrt()).abs() < 1.0e-5);
+    }
+
+    #[test]
+    fn what_ran_away_is_no_evidence_for_or_against_anything() {
+        let away = |judged: Judged| Judged {
+            ran_away: true,
+            ..judged
+        };
+        let decided = |change: fn(&mut Shapes, &dyn Fn(Judged) -> Judged)| {
+            let found = reversals();
+            let mut shapes = Shapes {
+                rigid: found.rigid,
+                bristle: found.bristle,
+                gap: found.gap,
+            };
+            change(&mut shapes, &away);
+            let scene = shapes.scene(1.0e-6);
+            let Accepted {
+                presliding,
+                backlash,
+                undecided,
+            } = scene.decide();
+            (presliding, backlash, undecided)
+        };
+        let tie = (false, false, true);
+        assert_eq!(decided(|_, _| ()), tie, "4 and 5 are a tie");
+        let rigid = decided(|shapes, away| shapes.rigid = away(shapes.rigid.clone()));
+        assert_eq!(rigid, (false, false, false), "nothing to compare with");
+        let bristle = decided(|shapes, away| shapes.bristle = away(shapes.bristle.clone()));
+        assert_eq!(bristle, tie, "a gap without a rival has not won");
+        let gap = decided(|shapes, away| shapes.gap = shapes.gap.take().map(away));
+        assert_eq!(gap, tie, "nor has a bristle");
+    }
+
+    #[test]
+    fn the_better_fit_leaves_less_and_one_that_ran_away_is_never_better() {
+        let fit = |left: f64, ran_away| Judged {
+            ran_away,
+            ..judged(Shape::default(), left)
+        };
+        let kept = |one: Judged, two: Judged| one.better(two).held_out;
+        assert_eq!(kept(fit(2.0, false), fit(1.0, false)), 1.0);
+        assert_eq!(kept(fit(1.0, false), fit(2.0, false)), 1.0);
+        assert_eq!(kept(fit(1.0, true), fit(2.0, false)), 2.0);
+        assert_eq!(kept(fit(2.0, false), fit(-f64::NAN, true)), 2.0);
+        assert_eq!(kept(fit(1.0e70, true), fit(1.0e42, true)), 1.0e42);
+    }
+
+    #[test]
+    fn a_free_run_is_a_witness_unless_rigid_friction_ran_away_or_the_controller_is_refuted() {
+        let mut found = reversals();
+        for controller in [Controller::NotDescribed, Controller::Hidden(0.2)] {
+            found.controller = controller;
+            assert!(found.is_evidence(), "{controller:?}");
+        }
+        found.controller = Controller::Refuted(0.2);
+        assert!(!found.is_evidence());
+        found.controller = Controller::NotDescribed;
+        found.rigid.ran_away = true;
+        assert!(!found.is_evidence());
+    }
+
+    /// A shape that was left in the wrong valley gets out of it from where another one ended.
+    #[test]
+    fn rigid_friction_starts_once_more_where_a_gap_ended_with_the_gap_at_zero() {
+        let law = Law {
+            form: Form::Voltage { gain: 14_000.0 },
+            position_gain: 40.0,
+            limit: None,
+            on_load: false,
+            misfit: 0.0,
+        };
+        let path = made::two_sines(4000);
+        let record = Record {
+            reference: Some(path.clone()),
+            ..made::record(1.0e-3, path)
+        };
+        let (mut dataset, truth) = (made::dataset(record, None), model(Shape::default()));
+        let run = simulate(&truth, &Drive::Known(law), &dataset.train);
+        dataset.train.position = run.motor;
+        let judge = Judge::of(&dataset, Controller::Known(law));
+        let of = |model: Simulated| {
+            let run = simulate(&model, &judge.drive, judge.record);
+            judge.judged(model, &run)
+        };
+        let mut heavy = truth.clone();
+        heavy.mechanics.mass *= 20.0;
+        let lost = of(heavy);
+        let mut ended = truth;
+        ended.mechanics.shape.gap = shape(0.0, 8.0e-6).gap;
+        let gap = of(ended);
+        let (before, again) = (lost.all, judge.restarted(lost, &[&gap]));
+        assert!(again.all < 0.01 * before, "{before} {}", again.all);
+        assert_eq!(again.model.mechanics.shape, Shape::default());
     }
 
     #[test]

@@ -34,9 +34,10 @@ impl ReversalStage {
         let load_scale = difference.map(|found| LoadScale {
             gap: found.gap.is_some(),
         });
+        let believed = free_run.as_ref().filter(|run| run.is_evidence());
         let witnesses = Witnesses {
             inverse,
-            free_run: free_run.as_ref().map(Reversals::summary),
+            free_run: believed.map(Reversals::summary),
             load_scale,
         };
         let decided = witnesses.decide();
@@ -53,18 +54,20 @@ impl ReversalStage {
 
     /// The free run, where it speaks of reversals: with a load scale the difference does.
     pub(crate) fn free_run_alone(&self) -> Option<&Reversals> {
-        self.free_run.as_ref().filter(|_| !self.has_load_scale)
+        let free_run = self.free_run.as_ref();
+        free_run.filter(|run| !self.has_load_scale && run.is_evidence())
     }
 
     /// The free run, where its shape is the one that was accepted.
     pub(crate) fn accepted_shape(&self) -> Option<&Reversals> {
-        self.free_run_alone()
-            .filter(|reversals| reversals.accepted.presliding || reversals.accepted.backlash)
+        let has_shape = |run: &&Reversals| run.accepted.presliding || run.accepted.backlash;
+        let run = self.free_run_alone().filter(has_shape)?;
+        (!run.best().ran_away).then_some(run)
     }
 
     /// Deflection of the bristle, if there is one.
     pub(crate) fn deflection(&self) -> Option<f64> {
-        let free_run = self.free_run_alone().and_then(Reversals::deflection);
+        let free_run = self.accepted_shape().and_then(Reversals::deflection);
         at_reversals::deflection(self.inverse.as_ref(), free_run)
     }
 }

@@ -5,9 +5,9 @@
 //! `u = u_rec + m ω² (q_rec − q) + 2 ζ m ω (v_rec − v)`, with ω = 60 rad/s and ζ = 0.7. That is
 //! good enough to compare structures, but no free run, and not reported as one.
 
-use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::simulate::axis::Axis;
+use crate::simulate::controller::known::Controller;
 use crate::simulate::controller::law::{Law, Measured, Memory};
 use crate::simulate::controller::timing::Setpoints;
 
@@ -35,10 +35,10 @@ pub(crate) struct Driving<'a> {
 }
 
 impl Drive {
-    /// The drive of a dataset.
+    /// The drive of an axis, by what is known of its controller.
     #[must_use]
-    pub(crate) fn of(dataset: &Dataset) -> Self {
-        Law::of(dataset).map_or(Self::Followed, Self::Known)
+    pub(crate) fn of(controller: Controller) -> Self {
+        controller.law().map_or(Self::Followed, Self::Known)
     }
 
     /// The drive at the start of a record, for an axis of a mass.

@@ -180,6 +180,7 @@ mod tests {
     use crate::record::dataset::Dataset;
     use crate::record::form::ControllerForm;
     use crate::simulate::axis::{Gap, Shape};
+    use crate::simulate::controller::known::Controller;
     use crate::simulate::made;
     use axis_model::EffectName::{Coulomb, Inertia, Offset, Viscous};
 
@@ -225,7 +226,7 @@ mod tests {
     /// A record of the true model.
     fn recorded(rows: u32) -> (Dataset, Drive) {
         let mut dataset = dataset(rows);
-        let drive = Drive::of(&dataset);
+        let drive = Drive::of(Controller::of(&dataset));
         assert!(matches!(drive, Drive::Known(_)));
         dataset.train.position = simulate(&model(&dataset, TRUTH), &drive, &dataset.train).motor;
         (dataset, drive)
@@ -295,7 +296,7 @@ mod tests {
             ..made::record(1.0e-3, path)
         };
         let mut dataset = made::dataset(record, Some(controller()));
-        let drive = Drive::of(&dataset);
+        let drive = Drive::of(Controller::of(&dataset));
         let truth = model(&dataset, TRUTH);
         let rows: Vec<usize> = dataset
             .train

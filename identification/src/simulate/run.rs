@@ -119,9 +119,31 @@ pub(crate) fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> b
     (sum / f64::max(count, 1.0)).sqrt()
 }
 
+/// Whether a simulation strays from its record by more than a distance, or leaves the numbers.
+#[must_use]
+pub(crate) fn strays(run: &Run, record: &Record, distance: f64) -> bool {
+    let near = |row: usize| (run.motor[row] - record.position[row]).abs() <= distance;
+    !record.settled(SETTLING_ROWS).all(near)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_simulation_strays_where_one_settled_row_is_too_far_off_or_no_number() {
+        let record = crate::simulate::made::record(1.0e-3, vec![1.0; 1000]);
+        let strays_with = |row: usize, at: f64| {
+            let mut motor = vec![1.1; 1000];
+            motor[row] = at;
+            strays(&Run { motor }, &record, 0.5)
+        };
+        for (at, wanted) in [(1.49, false), (1.51, true), (0.49, true), (f64::NAN, true)] {
+            assert_eq!(strays_with(600, at), wanted, "{at}");
+            assert!(!strays_with(10, at), "it has not settled");
+        }
+        assert!(strays_with(999, f64::NEG_INFINITY));
+    }
     use crate::simulate::made;
 
     #[test]

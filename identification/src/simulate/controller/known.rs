@@ -16,7 +16,7 @@ use crate::simulate::controller::timing::{Setpoints, TIMINGS, Timing};
 
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise
 /// of the record.
-const LARGEST_MISFIT: f64 = 0.10;
+pub(crate) const LARGEST_MISFIT: f64 = 0.10;
 /// Rows at each end of a piece that say nothing: the setpoint beyond them is not known.
 const EDGE_ROWS: usize = 3;
 /// Correlation from which recorded and computed effort belong together.
@@ -56,6 +56,20 @@ impl Products {
     }
 }
 
+/// What is known of the controller of a dataset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Controller {
+    /// The law gives the recorded effort.
+    Known(Law),
+    /// No law is described in full, or there are no setpoints or forces to hold it against.
+    NotDescribed,
+    /// What the law leaves, as a share of the recorded effort (rms), goes from row to row like
+    /// noise of the record: neither known nor refuted.
+    Hidden(f64),
+    /// The law leaves a share of the recorded effort (rms) that no noise makes.
+    Refuted(f64),
+}
+
 /// The law that a dataset describes in forces, where its training record has setpoints.
 fn described(dataset: &Dataset) -> Option<Law> {
     let in_forces = dataset.effort == Effort::Force;
@@ -65,17 +79,6 @@ fn described(dataset: &Dataset) -> Option<Law> {
 }
 
 impl Law {
-    /// The law of a dataset, where it is described and fits its training record.
-    #[must_use]
-    pub(crate) fn of(dataset: &Dataset) -> Option<Self> {
-        let record = &dataset.train;
-        let law = described(dataset)?.in_efforts(record);
-        if !law.is_checkable(record) {
-            return Some(law);
-        }
-        Some(law.timed(record)).filter(|law| law.misfit <= LARGEST_MISFIT)
-    }
-
     /// Recorded over computed effort where the law is described in forces and the load it closes
     /// on, if any, was recorded; `None` where they have nothing to do with each other.
     #[must_use]
@@ -160,15 +163,63 @@ impl Law {
     }
 
     fn misfit_on(&self, record: &Record) -> f64 {
+        self.misfits_on(record).whole
+    }
+
+    fn misfits_on(&self, record: &Record) -> Misfits {
         let computed = self.teacher_forced(record, Self::start);
         let inside =
             |piece: Range<usize>| piece.start + EDGE_ROWS..piece.end.saturating_sub(EDGE_ROWS);
         let rows = record.pieces().into_iter().flat_map(inside);
-        let pairs = rows.map(|row| (computed[row], record.effort[row]));
-        let (error, all) = pairs.fold((0.0, 0.0), |(error, all), (c, e)| {
-            (error + (c - e).powi(2), all + e * e)
-        });
-        (error / f64::max(all, f64::MIN_POSITIVE)).sqrt()
+        let rows: Vec<usize> = rows.collect();
+        let error = |row: usize| computed[row] - record.effort[row];
+        let sum = |of: &dyn Fn(usize) -> f64| rows.iter().map(|row| of(*row)).sum::<f64>();
+        let all = sum(&|row| record.effort[row].powi(2)).max(f64::MIN_POSITIVE);
+        let share = |square: f64| (square.max(0.0) / all).sqrt();
+        Misfits {
+            whole: share(sum(&|row| error(row).powi(2))),
+            lasting: share(sum(&|row| error(row) * error(row - 1))),
+        }
+    }
+}
+
+/// What a law leaves of the recorded effort, rms, as shares of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Misfits {
+    /// All of it.
+    whole: f64,
+    /// What goes on from one row to the next, by the product of neighbours: white noise of the
+    /// record has none of that.
+    lasting: f64,
+}
+
+impl Controller {
+    /// What the training record says of the law that a dataset describes.
+    #[must_use]
+    pub(crate) fn of(dataset: &Dataset) -> Self {
+        let record = &dataset.train;
+        let Some(law) = described(dataset).map(|law| law.in_efforts(record)) else {
+            return Self::NotDescribed;
+        };
+        if !law.is_checkable(record) {
+            return Self::Known(law);
+        }
+        let law = law.timed(record);
+        let lasting = law.misfits_on(record).lasting;
+        match law.misfit <= LARGEST_MISFIT {
+            true => Self::Known(law),
+            false if lasting <= LARGEST_MISFIT => Self::Hidden(law.misfit),
+            false => Self::Refuted(law.misfit),
+        }
+    }
+
+    /// The law, where it is known.
+    #[must_use]
+    pub(crate) const fn law(self) -> Option<Law> {
+        match self {
+            Self::Known(law) => Some(law),
+            Self::NotDescribed | Self::Hidden(_) | Self::Refuted(_) => None,
+        }
     }
 }
 
@@ -238,7 +289,7 @@ mod tests {
             (Timing::Ahead, 2.5, -1.5),
         ] {
             let dataset = recorded_with(|newest, older| now * newest + before * older);
-            let law = Law::of(&dataset).unwrap();
+            let law = Controller::of(&dataset).law().unwrap();
             assert!(law.misfit < 1.0e-9, "{timing:?}: {}", law.misfit);
             assert!(matches!(law.form, Form::Force { timing: found, .. } if found == timing));
         }
@@ -251,7 +302,7 @@ mod tests {
             ..controller()
         };
         for (factor, known) in [(0.91, true), (0.90, false), (1.11, true), (1.12, false)] {
-            let law = Law::of(&recorded(&form, factor));
+            let law = Controller::of(&recorded(&form, factor)).law();
             assert_eq!(law.is_some(), known, "{factor} times");
             let misfit = law.map_or(0.0, |law| law.misfit);
             let wanted = if known {
@@ -270,13 +321,36 @@ mod tests {
         for row in [0, 1, 2, last - 2, last - 1, last] {
             dataset.train.effort[row] += 1.0e3;
         }
-        assert!(Law::of(&dataset).unwrap().misfit < 1.0e-9);
+        assert!(Controller::of(&dataset).law().unwrap().misfit < 1.0e-9);
         for row in [3, last - 3] {
             let mut dataset = dataset.clone();
             dataset.train.effort[row] += 1.0e3;
-            let law = Law::of(&dataset);
+            let law = Controller::of(&dataset).law();
             assert!(law.is_none_or(|law| law.misfit > 1.0e-3), "row {row}");
         }
+    }
+
+    #[test]
+    fn what_a_law_leaves_refutes_it_unless_it_goes_from_row_to_row_like_noise() {
+        let off_by = |share: f64, wave: fn(usize) -> f64| {
+            let mut dataset = recorded(&controller(), 1.0);
+            let efforts = &mut dataset.train.effort;
+            let inside = &efforts[10..1990];
+            let square = inside.iter().map(|effort| effort * effort).sum::<f64>();
+            let size = share * (square / 1980.0).sqrt();
+            let off = efforts.iter_mut().enumerate();
+            off.for_each(|(row, effort)| *effort += size * wave(row));
+            Controller::of(&dataset)
+        };
+        let (slow, noise) = (
+            |row: usize| (0.01 * row as f64).sin(),
+            |row: usize| (1.7 * (row * row % 1013) as f64).sin(),
+        );
+        // A wave of 1 has an rms of 0.71.
+        assert!(matches!(off_by(0.13, slow), Controller::Known(law) if law.misfit > 0.08));
+        assert!(matches!(off_by(0.15, slow), Controller::Refuted(share) if share < 0.12));
+        assert!(matches!(off_by(0.15, noise), Controller::Hidden(share) if share > 0.1));
+        assert!(matches!(off_by(0.8, noise), Controller::Hidden(share) if share > 0.4));
     }
 
     #[test]
@@ -302,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_voltage_is_scaled_to_the_recorded_effort() {
-        let law = Law::of(&recorded(&voltage(7.0), 3.0)).unwrap();
+        let law = Controller::of(&recorded(&voltage(7.0), 3.0)).law().unwrap();
         assert!(matches!(law.form, Form::Voltage { gain } if (gain - 21.0).abs() < 1.0e-9));
         assert!(law.misfit < 1.0e-9);
     }
@@ -314,25 +388,32 @@ mod tests {
             ..controller()
         };
         let mut dataset = recorded(&controller(), 5.0);
-        assert_eq!(Law::of(&dataset), None);
+        assert_eq!(Controller::of(&dataset).law(), None);
         dataset.controller = Some(form);
-        assert_eq!(Law::of(&dataset).map(|law| law.misfit), Some(0.0));
+        assert_eq!(
+            Controller::of(&dataset).law().map(|law| law.misfit),
+            Some(0.0)
+        );
         assert_eq!(Law::effort_over_computed(&dataset), None);
         dataset.train.load = Some(dataset.train.position.clone());
-        assert_eq!(Law::of(&dataset), None, "now it can be checked");
+        assert_eq!(
+            Controller::of(&dataset).law(),
+            None,
+            "now it can be checked"
+        );
         assert!(Law::effort_over_computed(&dataset).is_some());
     }
 
     #[test]
     fn without_setpoints_forces_or_a_description_there_is_no_law() {
         let whole = recorded(&controller(), 1.0);
-        assert!(Law::of(&whole).is_some());
+        assert!(Controller::of(&whole).law().is_some());
         let (mut silent, mut in_amperes, mut blind) = (whole.clone(), whole.clone(), whole);
         silent.controller = None;
         in_amperes.effort = Effort::Current;
         blind.train.reference = None;
         for dataset in [silent, in_amperes, blind] {
-            assert_eq!(Law::of(&dataset), None);
+            assert_eq!(Controller::of(&dataset).law(), None);
             assert_eq!(Law::effort_over_computed(&dataset), None);
         }
     }

@@ -1,0 +1,158 @@
+//! Remarks: what stands behind a decision, and what the record or its description cannot give.
+
+use crate::evidence::findings::Findings;
+use crate::evidence::free_run::{Judged, Reversals};
+use crate::evidence::reversal::Presliding;
+use crate::evidence::reversal_stage::ReversalStage;
+use crate::motion::excitation;
+use crate::record::units::AxisKind;
+use crate::report::figures;
+use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
+
+/// All remarks, the strongest first.
+pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
+    let (dataset, stage) = (findings.dataset, &findings.stages.reversals);
+    let free_run = stage.free_run.as_ref();
+    let mut list: Vec<String> = free_run
+        .and_then(|run| about(run.controller))
+        .into_iter()
+        .collect();
+    list.extend(
+        free_run
+            .filter(|run| run.rigid.ran_away)
+            .map(|_| RAN_AWAY.to_owned()),
+    );
+    let length = match dataset.kind {
+        AxisKind::Linear => "µm",
+        AxisKind::Rotary => "µrad",
+    };
+    let said = Said {
+        stage,
+        effort: dataset.effort.unit(),
+        length,
+    };
+    list.extend(said.sentence());
+    let found = findings.found.names();
+    list.extend(excitation::warnings(dataset, findings.motion, found));
+    list
+}
+
+const RAN_AWAY: &str = "the simulated axis ran away (an error beyond its travel): the loop of the \
+                        identified model is not stable, and no free run was used as evidence";
+
+/// What is to be said of a controller that was described.
+fn about(controller: Controller) -> Option<String> {
+    let percent = |share: f64| figures::error(100.0 * share);
+    match controller {
+        Controller::Known(_) | Controller::NotDescribed => None,
+        Controller::Hidden(share) => Some(format!(
+            "the [controller] of dataset.toml leaves {} % of the recorded effort, most of it noise from row to row: it counts as not known",
+            percent(share)
+        )),
+        Controller::Refuted(share) => Some(format!(
+            "the [controller] of dataset.toml does not give the recorded effort: it leaves {} % of it, and {} % is the most that noise excuses; check its gains and their units, position_sensor, the reference column (the setpoint that the loop followed) and whether the loop runs faster than the record; no free run was used as evidence",
+            percent(share),
+            100.0 * LARGEST_MISFIT
+        )),
+    }
+}
+
+/// Whether a free run is believed about a bristle, and saw one: a simulation that follows the
+/// record is tied to it too closely.
+fn shows_a_bristle(run: &Reversals) -> bool {
+    matches!(run.controller, Controller::Known(_)) && run.alone.presliding
+}
+
+/// What the witnesses said of reversals, in units.
+struct Said<'a> {
+    stage: &'a ReversalStage,
+    effort: &'static str,
+    length: &'static str,
+}
+
+impl Said<'_> {
+    /// Why what acts at reversals was decided so; `None` where nothing acts and nobody was in
+    /// doubt.
+    fn sentence(&self) -> Option<String> {
+        let decided = self.stage.decided;
+        let run = self.stage.free_run_alone();
+        let torn = run.filter(|run| run.alone.undecided);
+        match (decided.presliding, decided.backlash, torn) {
+            (true, false, Some(run)) => Some(format!(
+                "presliding: {}; {} breaks the tie",
+                self.tie(run),
+                self.on_effort()?
+            )),
+            (false, true, Some(run)) => Some(format!(
+                "backlash: {}; {} breaks the tie, for the gap leaves less",
+                self.tie(run),
+                self.on_effort()?
+            )),
+            (false, false, Some(run)) => Some(self.undecided(run)),
+            (true, false, None) if !run.is_some_and(shows_a_bristle) => {
+                Some(format!("presliding: {}", self.on_effort()?))
+            }
+            (false, false, None) => None,
+            _ => run.map(|run| self.by_free_run(run)),
+        }
+    }
+
+    fn undecided(&self, run: &Reversals) -> String {
+        let end = if self.stage.decided.unexplained {
+            "something acts at reversals, and the record does not say which: record the load's position too"
+        } else {
+            "rigid friction leaves hardly more than the rounding of the encoder, so nothing is named"
+        };
+        format!("reversals: {}; {end}", self.tie(run))
+    }
+
+    /// The figures of a bristle and a gap that leave about the same.
+    fn tie(&self, run: &Reversals) -> String {
+        format!(
+            "the simulated position cannot tell a bristle from a gap ({})",
+            self.figures(run)
+        )
+    }
+
+    fn by_free_run(&self, run: &Reversals) -> String {
+        let name = match (run.accepted.presliding, run.accepted.backlash) {
+            (true, true) => "presliding and backlash",
+            (true, false) => "presliding",
+            _ => "backlash",
+        };
+        format!("{name}: by the simulated position ({})", self.figures(run))
+    }
+
+    fn figures(&self, run: &Reversals) -> String {
+        let left = |name: &str, judged: &Judged| {
+            let rms = if judged.ran_away {
+                f64::NAN
+            } else {
+                judged.held_out
+            };
+            format!("{name} {}", figures::error(1.0e6 * rms))
+        };
+        let gap = run.gap.iter().map(|gap| left("a gap", gap));
+        let both = run.both.iter().map(|both| left("both", both));
+        let first = [
+            left("rigid friction", &run.rigid),
+            left("a bristle", &run.bristle),
+        ];
+        let all: Vec<String> = first.into_iter().chain(gap).chain(both).collect();
+        format!(
+            "{} {} rms on blocks that were not fitted",
+            all.join(", "),
+            self.length
+        )
+    }
+
+    fn on_effort(&self) -> Option<String> {
+        let Presliding { rigid, dahl, .. } = self.stage.inverse?;
+        Some(format!(
+            "the effort about reversals (rigid friction leaves {}, a bristle {} {} rms)",
+            figures::error(rigid),
+            figures::error(dahl),
+            self.effort
+        ))
+    }
+}
