@@ -14,6 +14,7 @@
 
 pub(crate) mod all_rows;
 pub(crate) mod at_reversals;
+pub(crate) mod causes;
 pub(crate) mod difference;
 pub(crate) mod effort;
 pub(crate) mod findings;

@@ -8,6 +8,7 @@
 use axis_model::EffectName;
 
 use crate::evidence::at_reversals::AtReversals;
+use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
 use crate::evidence::residual::ResidualStructure;
@@ -130,6 +131,8 @@ impl<'a> Findings<'a> {
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
         let mut reasons = stages.reasons(dataset, has_gap);
         reasons.extend(residual.reason(train.extended.force_percent, has_gap));
+        let causes = causes::of(dataset, found.names());
+        reasons.extend(causes.into_iter().map(Reason::unexplained));
         let verdict = Verdict::of(reasons);
         Self {
             dataset,
