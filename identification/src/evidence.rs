@@ -14,9 +14,9 @@
 
 pub(crate) mod all_rows;
 pub(crate) mod at_reversals;
-pub(crate) mod causes;
 pub(crate) mod difference;
 pub(crate) mod effort;
+pub(crate) mod features;
 pub(crate) mod findings;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;

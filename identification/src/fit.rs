@@ -8,4 +8,5 @@ pub(crate) mod made;
 pub(crate) mod plain;
 pub(crate) mod search;
 pub(crate) mod side_by_side;
+pub(crate) mod span;
 pub(crate) mod tuning;

@@ -45,7 +45,6 @@ fn identify_excerpt(
     size: ExcerptSize,
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
-    plausibility::check_rows(dataset)?;
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
@@ -108,7 +107,7 @@ fn on_effort(
 ) -> Selection {
     let mut selected = effort::select(pair, declared.clone(), progress);
     let other = Bench::new(pair.bench.dataset, validate);
-    effort::veto(pair.bench, &other, &mut selected.model);
+    effort::veto(pair.bench, &other, &mut selected);
     selected
 }
 

@@ -14,6 +14,7 @@ pub(crate) mod excerpt;
 pub(crate) mod extent;
 pub(crate) mod form;
 pub(crate) mod reading;
+pub(crate) mod rounding;
 pub(crate) mod samples;
 pub(crate) mod source;
 pub(crate) mod table;

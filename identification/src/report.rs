@@ -104,7 +104,7 @@ fn words(names: &[EffectName]) -> Vec<String> {
 }
 
 fn residual(findings: &Findings<'_>) -> ResidualReport {
-    let (structure, white) = (findings.residual, findings.residual.is_white());
+    let (structure, white) = (&findings.residual, findings.residual.is_white());
     ResidualReport {
         white_before: white.declared,
         white_after: white.extended,

@@ -7,9 +7,9 @@
 
 use axis_model::EffectName;
 
-use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, is_enough};
+use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, Vetoed, is_enough};
 use crate::evidence::thresholds::{
-    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, VETO_RATIO,
+    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, VETO_PART, VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
@@ -20,6 +20,7 @@ use crate::model::effects::load_inertia::LoadInertia;
 use crate::model::effects::{self, Effect, LIBRARY, Setting};
 use crate::model::inverse::{Model, Origin, Part};
 use crate::progress::Step;
+use crate::record::rounding;
 
 /// The effort of moving samples, at both cut-offs.
 struct Effort<'a>(Pair<'a>);
@@ -68,6 +69,7 @@ impl Output for Effort<'_> {
         scored.physical
             && is_large
             && is_enough(&scored.gain)
+            && self.is_beyond_rounding(&scored.gain)
             && (scored.gain.t >= CERTAIN_T || is_certain(self.0.bench, &candidate.model))
     }
 
@@ -78,6 +80,16 @@ impl Output for Effort<'_> {
 }
 
 impl Effort<'_> {
+    /// Whether a gain is more than the rounding of the effort can imitate.
+    fn is_beyond_rounding(&self, gain: &Gain) -> bool {
+        let Bench {
+            dataset, motion, ..
+        } = self.0.bench;
+        let rows = motion.fitted.iter().filter(|inside| **inside).count() as f64;
+        let rounding = rounding::rms(rounding::step(&dataset.train.effort));
+        gain.removed >= rows * rounding.powi(2)
+    }
+
     /// Judges a model with one part more than another.
     fn judged(&self, model: &Model, base: &Fit, extended: Model, round: usize) -> Candidate<Model> {
         let fit = self.0.bench.cross_validate(&extended);
@@ -137,16 +149,46 @@ fn is_certain(bench: &Bench<'_>, model: &Model) -> bool {
     estimates.last().is_some_and(Estimate::is_certain)
 }
 
-/// Drops effects that make the error on another record larger by more than a little: what holds on
-/// one record only is no effect of the axis.
-pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, model: &mut Model) {
-    let error = |model: &Model| other.force_error_percent(&bench.fit(model));
-    prune(model, &|full, without| holds(error(full), error(without)));
+/// Drops what another record contradicts: what holds on one record only is no effect of the axis.
+///
+/// Only the structure is asked. Coefficients are those of one half of the other record, judged on
+/// its other half, and the other way round: friction of another day is no contradiction. An effect
+/// goes where it makes that error larger by more than a little, and where it should have shown, by
+/// the size that it has on the first record, but does not.
+pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, selection: &mut Selection) {
+    let before = selection.model.clone();
+    prune(&mut selection.model, &|full, without| {
+        let left = [full, without].map(|model| other.left_on_halves(model));
+        holds(left) && shows(left, other.adds(&bench.fit(full), without))
+    });
+    let stays = |part: &&Part| {
+        selection
+            .model
+            .parts
+            .iter()
+            .any(|other| other.is_same(part))
+    };
+    let gone = before.parts.iter().filter(|part| !stays(part));
+    let vetoed = gone.map(|part| Vetoed {
+        effect: part.called(),
+        gain: Gain::of(
+            &bench.cross_validate(&before.without(part)),
+            &bench.cross_validate(&before),
+        ),
+    });
+    selection.vetoed = vetoed.collect();
 }
 
-/// Whether an effect may stay, by the errors on another record with it and without it.
-fn holds(with: f64, without: f64) -> bool {
-    with <= VETO_RATIO * without
+/// Whether an effect may stay, by what is left of another record (sums of squares) with it and
+/// without it.
+fn holds([with, without]: [f64; 2]) -> bool {
+    with.sqrt() <= VETO_RATIO * without.sqrt()
+}
+
+/// Whether an effect shows on another record as far as it should: its size on the first record
+/// would remove `expected` there.
+fn shows([with, without]: [f64; 2], expected: f64) -> bool {
+    expected < EFFORT_SHARE * without || without - with >= VETO_PART * expected
 }
 
 /// Drops what the later ones have made superfluous.
@@ -256,11 +298,21 @@ mod tests {
         let (axis, same, other) = (asymmetric(), asymmetric(), self::axis(usual));
         let full = model(&DECLARED).with(found(ViscousAsymmetry, 0.0));
         let left_after = |other: &Axis| {
-            let mut model = full.clone();
-            veto(&axis.bench(), &other.bench(), &mut model);
-            model.found().len()
+            let mut selection = Selection {
+                model: full.clone(),
+                ..Selection::default()
+            };
+            veto(&axis.bench(), &other.bench(), &mut selection);
+            assert_eq!(selection.vetoed.len(), 1 - selection.found().len());
+            let gains = selection.vetoed.iter().map(|vetoed| vetoed.gain.share);
+            assert!(gains.into_iter().all(|share| share > 0.9));
+            selection.found().len()
         };
         assert_eq!((left_after(&same), left_after(&other)), (1, 0));
+        // Half of it, beside other friction, is another day of the same effect.
+        let other_day =
+            self::axis(|motion, row| 1.2 * usual(motion, row) + 30.0 * motion.velocity[row].abs());
+        assert_eq!(left_after(&other_day), 1);
     }
 
     #[test]
@@ -316,9 +368,16 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_may_raise_the_error_on_another_record_by_a_twentieth() {
+    fn an_effect_may_make_the_error_on_another_record_larger_by_a_twentieth() {
+        let holds = |with: f64, without: f64| holds([with.powi(2), without.powi(2)]);
         assert!(holds(1.05, 1.0) && !holds(1.051, 1.0));
         assert!(holds(2.1, 2.0) && !holds(2.11, 2.0));
+    }
+
+    #[test]
+    fn an_effect_shows_on_another_record_with_a_third_of_its_size_or_where_it_could_not_show() {
+        assert!(shows([90.0, 100.0], 100.0) && !shows([90.1, 100.0], 100.0));
+        assert!(shows([100.0, 100.0], 4.9) && !shows([100.0, 100.0], 5.0));
     }
 
     #[test]

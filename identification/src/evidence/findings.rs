@@ -8,10 +8,9 @@
 use axis_model::EffectName;
 
 use crate::evidence::at_reversals::AtReversals;
-use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
-use crate::evidence::residual::ResidualStructure;
+use crate::evidence::residual::{self, ResidualStructure};
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::RippleAtReversals;
@@ -80,6 +79,7 @@ impl Stages {
         let mut reasons: Vec<Reason> = nameless
             .map(|called| Reason::unexplained(format!("a {called}")))
             .collect();
+        reasons.extend(self.effort.vetoed.iter().map(residual::of_a_veto));
         let strange = self.reversals.decided.unexplained;
         reasons.extend(strange.then(|| {
             Reason::unexplained(
@@ -127,12 +127,11 @@ impl<'a> Findings<'a> {
         let train = models.each(|model| model.on(dataset, motion));
         let validate = models.each(|model| model.on(dataset, validation));
         let found = Found::of(&stages, &dataset.declared);
-        let residual = ResidualStructure::of(motion, &train, &stages.effort.scored);
+        let scored = &stages.effort.scored;
+        let residual = ResidualStructure::of(dataset, motion, &models, scored);
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
         let mut reasons = stages.reasons(dataset, has_gap);
-        reasons.extend(residual.reason(train.extended.force_percent, has_gap));
-        let causes = causes::of(dataset, found.names());
-        reasons.extend(causes.into_iter().map(Reason::unexplained));
+        reasons.extend(residual.reasons(has_gap));
         let verdict = Verdict::of(reasons);
         Self {
             dataset,

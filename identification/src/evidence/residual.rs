@@ -1,65 +1,224 @@
-//! How much structure is left in a residual.
+//! How much structure is left in a residual, and what it goes with.
 //!
 //! Rows are correlated, so no row-wise whiteness test is honest. Judged instead by the share of the
-//! residual's variance that general features (velocity by direction, position, time: piecewise
-//! linear) explain on held-out blocks, and by the share of the best single candidate; the larger of
-//! the two counts. General features alone miss ripple and delay, and over-fit into negative shares.
+//! residual's variance that [`features`](crate::evidence::features) of motion explain on held-out
+//! blocks, one family at a time: all at once they over-fit on clean records into negative shares.
+//! What the model itself spans, and a small shift in time of either sign, is taken from residual
+//! and features first. So a feature is judged by what it adds, and a record whose effort is an
+//! eighth of a millisecond early is not called an effect.
+//!
+//! Three things count. Structure is `unexplained` where it is a large share of the residual and
+//! large beside the effort of motion (the effort without its mean: gravity is not motion). Whatever
+//! is left is `unexplained` where it is more than noise can be: much of that effort, and slower
+//! than the low-pass makes noise. And so is a candidate of the library that would remove much and
+//! was not certain enough for a name.
 
-use crate::evidence::inverse_dynamics::{Compared, Judgement};
-use crate::evidence::selection::Scored;
-use crate::evidence::thresholds::{UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE};
+use crate::evidence::features::{FAMILIES, Family, Scene, rate};
+use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
+use crate::evidence::selection::{Scored, Vetoed, is_certain};
+use crate::evidence::thresholds::{
+    LEFT_PERCENT, NOISE_SLOWNESS, SHIFT_S, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE,
+};
 use crate::evidence::verdict::Reason;
-use crate::fit::blocks::Blocks;
+use crate::fit::bench::Bench;
+use crate::fit::blocks::{Blocks, Gain};
+use crate::fit::fitted::Fitted;
+use crate::fit::side_by_side::side_by_side;
+use crate::fit::span::Span;
 use crate::motion::kinematics::Kinematics;
+use crate::record::dataset::Dataset;
+use crate::record::rounding;
 
-/// Structure in the residual of moving samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ResidualStructure {
-    /// Share of the residual's variance that features or a candidate explain on held-out blocks.
-    pub share: Compared<f64>,
-    /// What the extended model's residual goes with most.
-    pub over: &'static str,
+/// Structure over features of one family.
+#[derive(Clone, Copy)]
+pub(crate) struct Structure {
+    /// The family.
+    pub family: &'static Family,
+    /// What it removes from the residual on held-out blocks.
+    pub gain: Gain,
 }
 
-impl ResidualStructure {
-    /// The share of a model is the larger of the features' and of the best physical candidate's: of
-    /// the first round for the declared model, of the last round for the extended one.
-    pub(crate) fn of(motion: &Kinematics, train: &Compared<Judgement>, scored: &[Scored]) -> Self {
-        let structures = train.each(|judged| structures(motion, &judged.residual));
-        let last = scored.iter().map(|scored| scored.round).max().unwrap_or(0);
-        let share = |list: &[Structure], round: usize| {
-            let features = list.first().map_or(0.0, |structure| structure.share);
-            features.max(best_of_round(scored, round))
+/// What a model leaves of a record.
+#[derive(Clone)]
+pub(crate) struct Remainder {
+    /// Structure by family, the largest share first.
+    pub structures: Vec<Structure>,
+    /// Time by which the effort is later than the model has it, s; negative where it is earlier.
+    pub late_s: f64,
+    /// What that shift removes from the residual on held-out blocks.
+    pub shift: Gain,
+    /// Rms of the residual, percent of the effort without its mean.
+    pub percent: f64,
+    /// Rms of what the rounding of the effort may leave, percent of the same.
+    pub rounding_percent: f64,
+    /// Correlation time of the residual over that of low-passed white noise.
+    pub slowness: f64,
+}
+
+impl Remainder {
+    /// What a fitted model leaves on its bench.
+    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Self {
+        let motion = bench.motion;
+        let (force, residual) = (bench.predict_lp(fitted), bench.residual(fitted));
+        let mut span = Span::of(bench.design(fitted.model()).into_columns(), &motion.fitted);
+        let rate = rate(motion, &force);
+        let shift = one(motion, &span.outside(&residual), &[&span.outside(&rate)]);
+        span.add(&rate);
+        let rest = span.outside(&residual);
+        let scene = Scene::of(bench, &force);
+        let judged = |family: &&'static Family| {
+            let gain = in_family(motion, &span, &rest, &scene.columns(family));
+            Structure { family, gain }
         };
+        let families: Vec<&'static Family> = FAMILIES.iter().collect();
+        let mut structures = side_by_side(&families, judged);
+        structures.sort_by(|a, b| b.gain.share.total_cmp(&a.gain.share));
+        let moved = about_mean(&motion.effort_lp, &motion.fitted).max(f64::MIN_POSITIVE);
+        let rounding = rounding::rms(rounding::step(&bench.dataset.train.effort));
         Self {
-            share: Compared {
-                declared: share(&structures.declared, 0),
-                extended: share(&structures.extended, last),
-            },
-            over: structures
-                .extended
-                .first()
-                .map_or("", |structure| structure.over),
+            structures,
+            late_s: -shift.1,
+            shift: shift.0,
+            percent: 100.0 * rms(&residual, &motion.fitted) / moved,
+            rounding_percent: 100.0 * rounding / moved,
+            slowness: correlation_rows(&residual, &motion.fitted) / noise_rows(motion),
         }
     }
 
-    /// What it says of an extended model with such a force error, percent; a gap excuses it, since
-    /// impacts leave structure in the force that no column of an inverse model can have.
-    pub(crate) fn reason(&self, force_percent: f64, has_gap: bool) -> Option<Reason> {
-        let share = self.share.extended;
-        let percent_left = force_percent * share.sqrt();
-        let counts = share >= UNEXPLAINED_SHARE && percent_left >= UNEXPLAINED_PERCENT && !has_gap;
+    /// The largest share of the residual that a family or the shift explains; none is negative.
+    fn share(&self) -> f64 {
+        let first = self.structures.first().map_or(0.0, |one| one.gain.share);
+        first.max(self.shift.share).max(0.0)
+    }
+
+    /// Whether a gain on the residual is a large share of it, large beside the motion and beside
+    /// the rounding of the effort, and certain.
+    fn matters(&self, gain: &Gain) -> bool {
+        let percent = self.percent * gain.share.max(0.0).sqrt();
+        gain.share >= UNEXPLAINED_SHARE
+            && percent >= UNEXPLAINED_PERCENT.max(self.rounding_percent)
+            && is_certain(gain)
+    }
+
+    fn reasons(&self, has_gap: bool) -> Vec<Reason> {
+        let seen = self.structures.iter();
+        let seen = seen.filter(|one| one.gain.share >= WHITE_SHARE && is_certain(&one.gain));
+        let counts =
+            |one: &Structure| self.matters(&one.gain) && !(has_gap && one.family.is_like_an_impact);
+        let mut reasons: Vec<Reason> = self.of_the_shift().into_iter().collect();
+        // The largest that counts, else the largest that is seen.
+        let first = seen
+            .clone()
+            .find(|one| counts(one))
+            .or_else(|| seen.clone().next());
+        reasons.extend(first.map(|one| one.reason(counts(one))));
+        reasons.extend(self.of_what_is_left());
+        reasons
+    }
+
+    fn of_the_shift(&self) -> Option<Reason> {
+        let is_seen = self.shift.share >= WHITE_SHARE && is_certain(&self.shift);
+        let side = if self.late_s > 0.0 { "late" } else { "early" };
         let words = format!(
-            "structure over {} ({:.0} % of the residual)",
-            self.over,
-            100.0 * share
+            "effort that is {:.2} ms {side} against the motion ({:.0} % of the residual)",
+            1.0e3 * self.late_s.abs(),
+            100.0 * self.shift.share
         );
-        let is_seen = share >= WHITE_SHARE && !self.over.is_empty();
+        is_seen.then(|| {
+            if self.late_s.abs() >= SHIFT_S && self.matters(&self.shift) {
+                Reason::unexplained(words + ": check how the columns were recorded")
+            } else {
+                Reason::told(words)
+            }
+        })
+    }
+
+    fn of_what_is_left(&self) -> Option<Reason> {
+        let words = format!("{:.0} % of the effort of motion is left", self.percent);
+        (self.percent > LEFT_PERCENT).then(|| {
+            if self.slowness > NOISE_SLOWNESS {
+                let times = self.slowness;
+                Reason::unexplained(format!(
+                    "{words}, {times:.1} times as slow as noise would be"
+                ))
+            } else {
+                Reason::told(format!("{words}, as fast as noise"))
+            }
+        })
+    }
+}
+
+impl Structure {
+    fn reason(&self, counts: bool) -> Reason {
+        let Family {
+            over, looks_like, ..
+        } = self.family;
+        let percent = 100.0 * self.gain.share;
+        let words = format!("structure over {over} ({percent:.0} % of the residual)");
         if counts {
-            Some(Reason::unexplained(words))
+            Reason::unexplained(format!("{words}: {looks_like}"))
         } else {
-            is_seen.then(|| Reason::told(words))
+            Reason::told(words)
         }
+    }
+}
+
+/// Structure in the residual of moving samples.
+#[derive(Clone)]
+pub(crate) struct ResidualStructure {
+    /// What the models leave.
+    pub left: Compared<Remainder>,
+    /// The best candidate that was not accepted, of the last round.
+    candidate: Option<Scored>,
+    /// Share of the residual that features or a candidate explain.
+    pub share: Compared<f64>,
+}
+
+impl ResidualStructure {
+    /// What the declared and the extended model leave of the training record.
+    pub(crate) fn of(
+        dataset: &Dataset,
+        motion: &Kinematics,
+        models: &Compared<InverseDynamics>,
+        scored: &[Scored],
+    ) -> Self {
+        let left = models.each(|model| {
+            let seen = model.motion(motion);
+            Remainder::of(&Bench::new(dataset, &seen), &model.fitted)
+        });
+        let last = scored.iter().map(|scored| scored.round).max().unwrap_or(0);
+        let share = |remainder: &Remainder, round: usize| {
+            let best = best_of_round(scored, round);
+            remainder
+                .share()
+                .max(best.map_or(0.0, |best| best.gain.share))
+        };
+        Self {
+            share: Compared {
+                declared: share(&left.declared, 0),
+                extended: share(&left.extended, last),
+            },
+            candidate: best_of_round(scored, last)
+                .filter(|one| !one.accepted)
+                .cloned(),
+            left,
+        }
+    }
+
+    /// What it says of the extended model. A gap excuses what looks like an impact.
+    pub(crate) fn reasons(&self, has_gap: bool) -> Vec<Reason> {
+        let left = &self.left.extended;
+        let mut reasons = left.reasons(has_gap);
+        let candidate = self.candidate.as_ref();
+        let counts = candidate.filter(|one| left.matters(&one.gain) && !has_gap);
+        reasons.extend(counts.map(|one| {
+            let percent = 100.0 * one.gain.share;
+            let effect = one.effect.as_str();
+            Reason::unexplained(format!(
+                "what {effect} would explain ({percent:.0} % of the residual)"
+            ))
+        }));
+        reasons
     }
 
     /// Whether too little is left to speak of.
@@ -68,216 +227,275 @@ impl ResidualStructure {
     }
 }
 
-fn best_of_round(scored: &[Scored], round: usize) -> f64 {
+/// What a veto says: an effect that one record shows and another contradicts.
+pub(crate) fn of_a_veto(vetoed: &Vetoed) -> Reason {
+    let percent = 100.0 * vetoed.gain.share;
+    let words = format!(
+        "{} on the training record ({percent:.0} % of the residual), which the validation record contradicts",
+        vetoed.effect.as_str()
+    );
+    if vetoed.gain.share >= UNEXPLAINED_SHARE && vetoed.gain.percent >= UNEXPLAINED_PERCENT {
+        Reason::unexplained(words + ": record both again in one state of the axis")
+    } else {
+        Reason::told(words)
+    }
+}
+
+/// The candidate of a round that removes most, of those that can be their effect: what the others
+/// would explain goes with features, or with a shift.
+fn best_of_round(scored: &[Scored], round: usize) -> Option<&Scored> {
     let of_round = scored
         .iter()
-        .filter(|scored| scored.round == round && scored.physical);
-    of_round.map(|scored| scored.gain.share).fold(0.0, f64::max)
+        .filter(|one| one.round == round && one.physical);
+    of_round.max_by(|a, b| a.gain.share.total_cmp(&b.gain.share))
 }
 
-/// Features of one kind.
-#[derive(Clone, Debug)]
-pub(crate) struct Structure {
-    /// Over what.
-    pub over: &'static str,
-    /// Share of the residual's variance on held-out blocks, floored at zero.
-    pub share: f64,
-}
-
-/// Shares by kind of feature, largest first.
-#[must_use]
-pub(crate) fn structures(motion: &Kinematics, residual: &[f64]) -> Vec<Structure> {
-    let forwards = split(&motion.velocity_lp, 1.0);
-    let backwards = split(&motion.velocity_lp, -1.0);
-    let kinds: [(&'static str, Vec<Vec<f64>>); 3] = [
-        (
-            "velocity by direction",
-            [hats(&forwards, motion, 8), hats(&backwards, motion, 8)].concat(),
-        ),
-        ("position", hats(&motion.position_lp, motion, 12)),
-        ("time", hats(&motion.time_s, motion, 8)),
-    ];
-    let mut shares: Vec<Structure> = kinds
-        .into_iter()
-        .map(|(over, columns)| Structure {
-            over,
-            share: share(motion, residual, &columns),
-        })
-        .collect();
-    shares.sort_by(|a, b| b.share.total_cmp(&a.share));
-    shares
-}
-
-fn split(values: &[f64], sign: f64) -> Vec<f64> {
-    values
-        .iter()
-        .map(|v| if v * sign > 0.0 { *v } else { f64::NAN })
-        .collect()
-}
-
-/// Piecewise linear features with knots at quantiles of the moving samples; `NaN` stands outside.
-fn hats(values: &[f64], motion: &Kinematics, count: usize) -> Vec<Vec<f64>> {
-    let moving = values
-        .iter()
-        .zip(&motion.moving)
-        .filter(|(v, moving)| **moving && v.is_finite());
-    let mut sorted: Vec<f64> = moving.map(|(v, _)| *v).collect();
-    sorted.sort_by(f64::total_cmp);
-    if sorted.len() < 100 {
-        return Vec::new();
+/// Gain of a family over what the model leaves.
+fn in_family(motion: &Kinematics, span: &Span<'_>, rest: &[f64], columns: &[Vec<f64>]) -> Gain {
+    let (mut wider, known) = (span.clone(), span.dimension());
+    for column in columns {
+        wider.add(column);
     }
-    let mut knots: Vec<f64> = (0..count)
-        .map(|i| sorted[i * (sorted.len() - 1) / (count - 1)])
-        .collect();
-    knots.dedup_by(|a, b| (*a - *b).abs() <= 1.0e-12);
-    (0..knots.len())
-        .map(|at| values.iter().map(|v| hat(&knots, at, *v)).collect())
-        .collect()
+    one(motion, rest, &wider.beyond(known)).0
 }
 
-fn hat(knots: &[f64], at: usize, value: f64) -> f64 {
-    if !value.is_finite() {
-        return 0.0;
-    }
-    let rise = at.checked_sub(1).map_or(
-        if value <= knots[at] {
-            1.0
-        } else {
-            f64::INFINITY
-        },
-        |left| (value - knots[left]) / (knots[at] - knots[left]),
-    );
-    let fall = knots.get(at + 1).map_or(
-        if value >= knots[at] {
-            1.0
-        } else {
-            f64::INFINITY
-        },
-        |right| (right - value) / (right - knots[at]),
-    );
-    rise.min(fall).clamp(0.0, 1.0)
+/// Gain of columns over nothing on held-out blocks, and the first coefficient.
+fn one(motion: &Kinematics, rest: &[f64], columns: &[&[f64]]) -> (Gain, f64) {
+    let blocks = Blocks::new(columns, rest, &motion.fitted, motion.period_s);
+    let nothing = blocks.nothing();
+    let fit = if columns.is_empty() {
+        nothing.clone()
+    } else {
+        blocks.cross_validate()
+    };
+    let first = fit.coefficients.first().copied().unwrap_or(0.0);
+    (Gain::of(&nothing, &fit), first)
 }
 
-fn share(motion: &Kinematics, residual: &[f64], columns: &[Vec<f64>]) -> f64 {
-    if columns.is_empty() {
-        return 0.0;
+fn rms(signal: &[f64], mask: &[bool]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for (value, _) in signal.iter().zip(mask).filter(|(_, inside)| **inside) {
+        sum += value * value;
+        count += 1.0;
     }
-    let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    let fit = Blocks::new(&views, residual, &motion.moving, motion.period_s).cross_validate();
-    let left: f64 = fit.held_out.iter().sum();
-    (1.0 - left / fit.total.max(f64::MIN_POSITIVE)).max(0.0)
+    (sum / count.max(1.0)).sqrt()
 }
+
+/// Rms about the mean.
+fn about_mean(signal: &[f64], mask: &[bool]) -> f64 {
+    let inside = || signal.iter().zip(mask).filter(|(_, inside)| **inside);
+    let mean = inside().map(|(value, _)| value).sum::<f64>() / inside().count().max(1) as f64;
+    let apart: Vec<f64> = signal.iter().map(|value| value - mean).collect();
+    rms(&apart, mask)
+}
+
+/// Correlation time in rows: the sum of the autocorrelation up to its first zero.
+fn correlation_rows(signal: &[f64], mask: &[bool]) -> f64 {
+    let at = |lag: usize| {
+        let pairs = (0..signal.len() - lag).filter(|row| mask[*row] && mask[row + lag]);
+        let products = pairs.map(|row| (signal[row] * signal[row + lag], 1.0));
+        let (sum, count) = products.fold((0.0, 0.0), |(s, n), (p, one)| (s + p, n + one));
+        sum / f64::max(count, 1.0)
+    };
+    let whole = at(0).max(f64::MIN_POSITIVE);
+    let longest = signal.len() / 20;
+    let ratios = (0..longest).map(|lag| at(lag) / whole);
+    ratios
+        .take_while(|ratio| *ratio > 0.0)
+        .sum::<f64>()
+        .max(1.0)
+}
+
+/// The same of white noise behind the low-pass of a record.
+fn noise_rows(motion: &Kinematics) -> f64 {
+    let mut impulse = vec![0.0; IMPULSE_ROWS];
+    impulse[IMPULSE_ROWS / 2] = 1.0;
+    let response = motion.filter.apply(&impulse);
+    correlation_rows(&response, &vec![true; IMPULSE_ROWS])
+}
+
+/// Rows in which the impulse of a low-pass of a tenth of the sample rate, or of 20 Hz at 1 kHz, has
+/// died away.
+const IMPULSE_ROWS: usize = 4001;
 
 #[cfg(test)]
 mod tests {
     use axis_model::EffectName;
 
     use super::*;
-    use crate::fit::blocks::Gain;
-    use crate::fit::made::{axis, usual};
+    use crate::fit::made::{Axis, axis, model, usual};
+    use EffectName::{Coulomb, Inertia, Offset, Viscous};
 
-    #[test]
-    fn a_hat_is_one_at_its_knot_zero_at_its_neighbours_and_flat_beyond_the_ends() {
-        let knots = [1.0, 2.0, 4.0];
-        for (at, value, wanted) in [
-            (1, 2.0, 1.0),
-            (1, 1.5, 0.5),
-            (1, 3.0, 0.5),
-            (1, 1.0, 0.0),
-            (1, 4.5, 0.0),
-            (0, 0.0, 1.0),
-            (0, 1.25, 0.75),
-            (2, 9.0, 1.0),
-            (2, 3.5, 0.75),
-            (0, f64::NAN, 0.0),
-        ] {
-            assert!(
-                (hat(&knots, at, value) - wanted).abs() < 1.0e-12,
-                "{at} {value}"
-            );
-        }
-        // Together they are one everywhere.
-        for value in [0.0, 1.3, 2.0, 3.7, 8.0] {
-            let sum: f64 = (0..3).map(|at| hat(&knots, at, value)).sum();
-            assert!((sum - 1.0).abs() < 1.0e-12);
-        }
+    const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
+
+    fn left_of(axis: &Axis) -> Remainder {
+        let bench = axis.bench();
+        Remainder::of(&bench, &bench.fit(&model(&DECLARED)))
+    }
+
+    /// What is left of an axis with a force more than the usual ones.
+    fn left(force: impl Fn(&Kinematics, usize) -> f64) -> Remainder {
+        left_of(&axis(|motion, row| usual(motion, row) + force(motion, row)))
+    }
+
+    fn first(left: &Remainder) -> (&'static str, f64) {
+        let first = &left.structures[0];
+        (first.family.over, first.gain.share)
     }
 
     #[test]
-    fn knots_stand_at_quantiles_of_moving_samples_the_ends_among_them() {
-        let mut axis = axis(usual);
-        let motion = &mut axis.motion;
-        motion.moving.fill(false);
-        motion.moving[..701].fill(true);
-        // Squares of 0, 1 … 700: a seventh of the samples from knot to knot. Others are outside.
-        let squares: Vec<f64> = (0..motion.len()).map(|row| (row as f64).powi(2)).collect();
-        let hats = hats(&squares, motion, 8);
-        assert_eq!(hats.len(), 8);
-        for (at, hat) in hats.iter().enumerate() {
-            let ones: Vec<usize> = (0..=700).filter(|row| hat[*row] == 1.0).collect();
-            assert_eq!(ones, [100 * at]);
-        }
-        assert_eq!(hats[7][5000], 1.0);
-        // Half way from 100² to 200² are 25 000.
-        assert!((hats[1][158] - (40_000.0 - 24_964.0) / 30_000.0).abs() < 1.0e-12);
-        assert_eq!(self::hats(&vec![3.0; motion.len()], motion, 8).len(), 1);
-    }
-
-    #[test]
-    fn values_of_the_other_sign_stand_outside() {
-        let forwards = split(&[1.0, -2.0, 0.0], 1.0);
-        assert!(forwards[0] == 1.0 && forwards[1].is_nan() && forwards[2].is_nan());
-        let backwards = split(&[1.0, -2.0, 0.0], -1.0);
-        assert!(backwards[0].is_nan() && backwards[1] == -2.0);
-    }
-
-    #[test]
-    fn a_residual_goes_most_with_what_made_it() {
-        let axis = axis(usual);
-        let motion = &axis.motion;
-        let first = |law: &dyn Fn(usize) -> f64| {
-            let residual: Vec<f64> = (0..motion.len()).map(law).collect();
-            let structures = structures(motion, &residual);
-            let shares: Vec<f64> = structures.iter().map(|structure| structure.share).collect();
-            assert!(shares.windows(2).all(|pair| pair[0] >= pair[1]) && shares.len() == 3);
-            (structures[0].over, structures[0].share)
+    fn a_force_goes_most_with_the_family_that_it_is_of() {
+        let half = 0.02;
+        let over = |force: &dyn Fn(&Kinematics, usize) -> f64| {
+            let left = left(force);
+            assert!(first(&left).1 > 0.8, "{:?}", first(&left));
+            first(&left).0
         };
-        let (over, share) = first(&|row| motion.velocity_lp[row].abs());
-        assert!(
-            over == "velocity by direction" && share > 0.95,
-            "{over} {share}"
+        let load = |m: &Kinematics, row: usize| 90.0 * m.acceleration[row];
+        assert_eq!(
+            over(&|m, row| 0.3 * load(m, row) * m.position_lp[row] / half),
+            "acceleration times position"
         );
-        let (over, share) = first(&|row| motion.position_lp[row].powi(2));
-        assert!(over == "position" && share > 0.9, "{over} {share}");
-        let (over, share) = first(&|row| (motion.time_s[row] - 3.0).powi(2));
-        assert!(over == "time" && share > 0.9, "{over} {share}");
+        assert_eq!(
+            over(&|m, row| if m.time_s[row] > 3.0 {
+                0.2 * load(m, row)
+            } else {
+                0.0
+            }),
+            "acceleration times time"
+        );
+        assert_eq!(
+            over(&|m, row| 5.0 * m.direction[row] * (m.time_s[row] - 3.0)),
+            "direction times time"
+        );
+        assert_eq!(over(&|m, row| 5.0 * (m.time_s[row] - 3.0).powi(2)), "time");
     }
 
     #[test]
-    fn noise_goes_with_nothing_and_no_share_is_negative() {
-        let axis = axis(usual);
-        let noise = |row: usize| (1.7 * (row * row % 1013) as f64).sin();
-        let residual: Vec<f64> = (0..axis.motion.len()).map(noise).collect();
-        let structures = structures(&axis.motion, &residual);
-        let small = |one: &Structure| (0.0..0.02).contains(&one.share);
-        assert!(structures.iter().all(small), "{structures:?}");
+    fn noise_goes_with_nothing_and_is_as_fast_as_the_low_pass_lets_it_be() {
+        let left = left(|_, row| 8.0 * (1.7 * (row * row % 1013) as f64).sin());
+        assert!(first(&left).1 < 0.05, "{:?}", first(&left));
+        assert!((0.5..1.5).contains(&left.slowness), "{}", left.slowness);
+        assert!(left.reasons(false).is_empty());
     }
 
     #[test]
-    fn a_hundred_moving_samples_are_needed_for_features() {
-        let mut axis = axis(usual);
-        let moving: Vec<usize> = (0..axis.motion.len())
-            .filter(|row| axis.motion.moving[*row])
-            .collect();
-        let count =
-            |axis: &crate::fit::made::Axis| hats(&axis.motion.time_s, &axis.motion, 8).len();
-        axis.motion.moving.fill(false);
-        moving[..99]
-            .iter()
-            .for_each(|row| axis.motion.moving[*row] = true);
-        assert_eq!(count(&axis), 0);
-        axis.motion.moving[moving[99]] = true;
-        assert_eq!(count(&axis), 8);
+    fn a_slow_rest_is_slower_than_noise_and_counts_where_much_is_left() {
+        let wave = |m: &Kinematics, row: usize| 20.0 * (61.0 * m.time_s[row]).sin();
+        let left = left(wave);
+        assert!(left.slowness > NOISE_SLOWNESS, "{}", left.slowness);
+        assert!(left.percent > LEFT_PERCENT, "{}", left.percent);
+        let counts = left.of_what_is_left().map(|reason| reason.counts);
+        assert_eq!(counts, Some(true));
+        let fast = Remainder {
+            slowness: 1.9,
+            ..left.clone()
+        };
+        assert_eq!(
+            fast.of_what_is_left().map(|reason| reason.counts),
+            Some(false)
+        );
+        let small = Remainder {
+            percent: 11.9,
+            ..left
+        };
+        assert_eq!(small.of_what_is_left(), None);
+    }
+
+    #[test]
+    fn the_percentage_left_is_of_the_effort_without_its_mean() {
+        let percent = |gravity: f64| {
+            left(move |m, row| gravity + 10.0 * (61.0 * m.time_s[row]).sin()).percent
+        };
+        let (level, hanging) = (percent(0.0), percent(5000.0));
+        assert!((hanging / level - 1.0).abs() < 0.02, "{level} {hanging}");
+    }
+
+    /// The effort of another time: the same force, so many rows later.
+    fn shifted(rows: isize) -> Remainder {
+        let usual_axis = axis(usual);
+        let effort = usual_axis.motion.effort.clone();
+        let last = effort.len() as isize - 1;
+        left_of(&axis(|_, row| {
+            effort[(row as isize - rows).clamp(0, last) as usize]
+        }))
+    }
+
+    #[test]
+    fn a_shift_is_told_with_its_sign_and_is_no_structure_of_another_kind() {
+        for (rows, side) in [(2, "late"), (-2, "early")] {
+            let left = shifted(rows);
+            assert!(
+                (1.0e3 * left.late_s - rows as f64).abs() < 0.2,
+                "{}",
+                left.late_s
+            );
+            assert!(left.shift.share > 0.9, "{:?}", left.shift);
+            let reason = left.of_the_shift().unwrap();
+            assert!(reason.counts && reason.words.contains(side), "{reason:?}");
+        }
+    }
+
+    #[test]
+    fn a_shift_below_a_sixth_of_a_row_is_told_only() {
+        let counts = |late_s| {
+            let left = Remainder {
+                late_s,
+                ..shifted(2)
+            };
+            left.of_the_shift().unwrap().counts
+        };
+        assert!(counts(0.15e-3) && counts(-0.15e-3) && !counts(0.149e-3) && !counts(-0.149e-3));
+    }
+
+    #[test]
+    fn a_structure_counts_from_its_limits_on_and_a_gap_excuses_what_is_like_an_impact() {
+        let structure = |share: f64, family: usize| Structure {
+            family: &FAMILIES[family],
+            gain: Gain {
+                removed: 1.0,
+                share,
+                percent: 1.0,
+                t: 9.0,
+            },
+        };
+        let counts = |share: f64, percent: f64, has_gap: bool, family: usize| {
+            let left = Remainder {
+                structures: vec![structure(share, family)],
+                percent,
+                ..left(|_, _| 0.0)
+            };
+            let reasons = left.reasons(has_gap);
+            reasons.iter().any(|reason| reason.counts)
+        };
+        let place = |is_like_an_impact: bool| {
+            let is = |family: &Family| family.is_like_an_impact == is_like_an_impact;
+            FAMILIES.iter().position(is).unwrap()
+        };
+        for family in [place(true), place(false)] {
+            assert!(counts(0.15, 9.0, false, family) && !counts(0.149, 9.0, false, family));
+            // √0.25 of 1 % are 0.5 % of the effort.
+            assert!(counts(0.25, 1.0, false, family) && !counts(0.25, 0.99, false, family));
+        }
+        assert!(!counts(0.5, 9.0, true, place(true)) && counts(0.5, 9.0, true, place(false)));
+    }
+
+    #[test]
+    fn a_structure_below_the_rounding_of_the_effort_does_not_count() {
+        let matters = |rounding_percent: f64| {
+            let left = Remainder {
+                percent: 4.0,
+                rounding_percent,
+                ..left(|_, _| 0.0)
+            };
+            left.matters(&Gain {
+                removed: 1.0,
+                share: 0.25,
+                percent: 1.0,
+                t: 9.0,
+            })
+        };
+        assert!(matters(2.0) && !matters(2.01));
     }
 
     fn scored(round: usize, share: f64, physical: bool) -> Scored {
@@ -296,43 +514,6 @@ mod tests {
         }
     }
 
-    /// A judgement with a residual that follows a law of the row.
-    fn leaving(rows: usize, law: impl Fn(usize) -> f64) -> Judgement {
-        Judgement {
-            force_percent: 1.0,
-            reversal_rms: 0.0,
-            residual: (0..rows).map(law).collect(),
-            prediction: Vec::new(),
-        }
-    }
-
-    #[test]
-    fn the_share_of_a_model_is_the_larger_of_features_and_the_best_candidate_of_its_round() {
-        let motion = axis(usual).motion;
-        let noise = |row: usize| (1.7 * (row * row % 1013) as f64).sin();
-        let train = Compared {
-            declared: leaving(motion.len(), noise),
-            extended: leaving(motion.len(), |row| (motion.time_s[row] - 3.0).powi(2)),
-        };
-        let of = |scored: &[Scored]| ResidualStructure::of(&motion, &train, scored);
-        let alone = of(&[]);
-        assert_eq!(alone.over, "time");
-        assert!(alone.share.declared < 0.02 && alone.share.extended > 0.9);
-        // The declared model is judged by the first round, the extended one by the last.
-        let judged = of(&[
-            scored(0, 0.3, true),
-            scored(1, 0.9999, true),
-            scored(2, 0.9995, true),
-        ]);
-        assert_eq!(
-            (judged.share.declared, judged.share.extended),
-            (0.3, 0.9995)
-        );
-        let weak = of(&[scored(0, 0.999, true), scored(1, 0.2, true)]);
-        assert_eq!(weak.share.declared, 0.999);
-        assert_eq!(weak.share.extended, alone.share.extended);
-    }
-
     #[test]
     fn the_best_candidate_of_a_round_is_the_largest_that_can_be_its_effect() {
         let list = [
@@ -340,56 +521,25 @@ mod tests {
             scored(0, 0.7, true),
             scored(0, 0.9, false),
             scored(1, 0.2, true),
-            scored(2, -0.1, true),
         ];
-        let best = [0, 1, 2, 3].map(|round| best_of_round(&list, round));
-        assert_eq!(best, [0.7, 0.2, 0.0, 0.0]);
+        let best = [0, 1, 2].map(|round| best_of_round(&list, round).map(|one| one.gain.share));
+        assert_eq!(best, [Some(0.7), Some(0.2), None]);
     }
 
     #[test]
-    fn a_residual_is_white_below_the_share_of_the_smallest_accepted_effect() {
-        let left = ResidualStructure {
-            share: Compared {
-                declared: 0.05,
-                extended: 0.0499,
-            },
-            over: "time",
+    fn what_a_record_shows_and_another_contradicts_counts_where_it_is_large() {
+        let counts = |share, percent| {
+            of_a_veto(&Vetoed {
+                effect: EffectName::Stribeck.into(),
+                gain: Gain {
+                    removed: 1.0,
+                    share,
+                    percent,
+                    t: 9.0,
+                },
+            })
+            .counts
         };
-        let white = left.is_white();
-        assert!(!white.declared && white.extended);
-    }
-
-    fn structure(share: f64) -> ResidualStructure {
-        ResidualStructure {
-            share: Compared {
-                declared: 0.6,
-                extended: share,
-            },
-            over: "position",
-        }
-    }
-
-    #[test]
-    fn a_residual_counts_from_both_limits_on_and_a_gap_excuses_it() {
-        let counts = |share: f64, force_percent: f64, has_gap: bool| {
-            let reason = structure(share).reason(force_percent, has_gap);
-            reason.is_some_and(|reason| reason.counts)
-        };
-        assert!(counts(0.15, 10.0, false) && !counts(0.1499, 10.0, false));
-        // √0.25 of 0.6 % are 0.3 % of the effort.
-        assert!(counts(0.25, 0.6, false) && !counts(0.25, 0.599, false));
-        assert!(!counts(0.25, 10.0, true));
-    }
-
-    #[test]
-    fn a_structure_is_told_from_a_share_of_a_twentieth_on() {
-        let words = |share: f64| {
-            structure(share)
-                .reason(1.0, false)
-                .map(|reason| reason.words)
-        };
-        let wanted = "structure over position (5 % of the residual)";
-        assert_eq!(words(0.05).as_deref(), Some(wanted));
-        assert_eq!(words(0.0499), None);
+        assert!(counts(0.15, 0.5) && !counts(0.149, 9.0) && !counts(0.9, 0.49));
     }
 }

@@ -67,6 +67,17 @@ pub(crate) struct Selection<M = Model> {
     pub model: M,
     /// All candidates of all rounds.
     pub scored: Vec<Scored>,
+    /// What another record took away again.
+    pub vetoed: Vec<Vetoed>,
+}
+
+/// An effect that one record shows and another contradicts.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Vetoed {
+    /// Effect.
+    pub effect: Called,
+    /// What it removes on held-out blocks of the record that shows it.
+    pub gain: Gain,
 }
 
 impl Selection {
@@ -112,15 +123,25 @@ pub(crate) fn select<O: Output>(
         }
         model = output.refined(model);
     }
-    Selection { model, scored }
+    Selection {
+        model,
+        scored,
+        vetoed: Vec::new(),
+    }
 }
 
 /// Whether a gain in the effort is relevant, large enough to matter to the axis, and more than
 /// chance.
 #[must_use]
 pub(crate) fn is_enough(gain: &Gain) -> bool {
-    let is_certain = |(from, smallest_t): &(f64, f64)| gain.share >= *from && gain.t >= *smallest_t;
-    gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT && EFFORT_T.iter().any(is_certain)
+    gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT && is_certain(gain)
+}
+
+/// Whether a gain is more than chance.
+#[must_use]
+pub(crate) fn is_certain(gain: &Gain) -> bool {
+    let is_above = |(from, smallest_t): &(f64, f64)| gain.share >= *from && gain.t >= *smallest_t;
+    EFFORT_T.iter().any(is_above)
 }
 
 #[cfg(test)]

@@ -40,6 +40,10 @@ pub(crate) const NAMELESS_SHARE: f64 = UNEXPLAINED_SHARE;
 /// record only is no effect of the axis, but a little more error is no proof of that.
 pub(crate) const VETO_RATIO: f64 = 1.05;
 
+/// Smallest part of what an effect should remove from another record, by its size on the first one,
+/// that it must remove there: less is a third of its size, and other days do not change that much.
+pub(crate) const VETO_PART: f64 = 0.1;
+
 /// Smallest share and t with which the load's own inertia comes in beside a gap or a compliance
 /// that a load scale shows. The load is known to move otherwise: chance is not the question.
 pub(crate) const LOAD_INERTIA: (f64, f64) = (EFFORT_SHARE, 1.0);
@@ -58,9 +62,21 @@ pub(crate) const WHITE_SHARE: f64 = EFFORT_SHARE;
 /// what an accepted effect needs.
 pub(crate) const UNEXPLAINED_SHARE: f64 = 0.15;
 
-/// Structure below this much of the effort does not matter to the axis, percent. Chosen: twice
-/// the smallest effect that is named.
-pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.3;
+/// Structure below this much of the effort of motion does not matter to the axis, percent: three
+/// times the smallest effect that is named.
+pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.5;
+
+/// A shift in time below this is told and does not count, s: a sixth of the period at which drives
+/// usually record, the part of it by which a measured effort and a position may stand apart in it.
+pub(crate) const SHIFT_S: f64 = 0.15e-3;
+
+/// More than this of the effort of motion is not left by an explained axis, percent, unless it is
+/// noise. Real axes leave 1 to 6 % with their friction known.
+pub(crate) const LEFT_PERCENT: f64 = 12.0;
+
+/// Noise and quantisation leave a residual that is as slow as the low-pass makes white noise;
+/// motion is slower by more than this factor.
+pub(crate) const NOISE_SLOWNESS: f64 = 2.0;
 
 // ---- Motor − load: `difference`, `verdict` ----
 

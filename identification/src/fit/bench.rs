@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::fitted::{Estimate, Fitted, Term};
+use crate::fit::span::Span;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
@@ -168,6 +169,27 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).cross_validate()
     }
 
+    /// Sum of squares that the structure of a model leaves on each half of the blocks, with the
+    /// coefficients that the other half gives it.
+    #[must_use]
+    pub(crate) fn left_on_halves(&self, model: &Model) -> f64 {
+        let halves = self.blocks(&self.design(model)).in_folds(2);
+        halves.cross_validate().held_out.iter().sum()
+    }
+
+    /// Sum of squares of what the parts of a fit that a smaller model lacks would add here, as far
+    /// as the smaller model cannot take their place.
+    #[must_use]
+    pub(crate) fn adds(&self, fitted: &Fitted, without: &Model) -> f64 {
+        let mut own = vec![0.0; self.motion.len()];
+        let known = |part: &Part| without.parts.iter().any(|other| other.is_same(part));
+        for term in fitted.terms().filter(|term| !known(term.part)) {
+            add(&mut own, &self.columns(term.part), term.own);
+        }
+        let span = Span::of(self.design(without).into_columns(), &self.motion.fitted);
+        span.outside(&own).iter().map(|value| value * value).sum()
+    }
+
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
     /// linearised, the nonlinear parameters.
     #[must_use]
@@ -282,6 +304,12 @@ impl<'a> Bench<'a> {
 }
 
 impl Design {
+    /// The columns, as they are fitted.
+    #[must_use]
+    pub(crate) fn into_columns(self) -> Vec<Vec<f64>> {
+        self.columns
+    }
+
     /// The design of a saturating actuator, linearised about a wanted effort q0:
     /// `u − h(q0) + h'(q0) q0 = h'(q0) q`.
     fn about(mut self, saturation: Saturation, wanted: &[f64]) -> Self {

@@ -82,6 +82,27 @@ impl Blocks {
         }
     }
 
+    /// The same blocks in another number of folds.
+    #[must_use]
+    pub(crate) fn in_folds(self, folds: usize) -> Self {
+        let folds = folds.min(self.grams.len()).max(1);
+        Self { folds, ..self }
+    }
+
+    /// What is there to explain: the fit without any column.
+    #[must_use]
+    pub(crate) fn nothing(&self) -> Fit {
+        let last = self.scale.len() - 1;
+        let held_out: Vec<f64> = self.grams.iter().map(|gram| gram[(last, last)]).collect();
+        let total = held_out.iter().sum();
+        Fit {
+            coefficients: vec![0.0; last],
+            sse: total,
+            held_out,
+            total,
+        }
+    }
+
     /// The fit over all blocks, without cross-validation; `held_out` is empty.
     #[must_use]
     pub(crate) fn fit(&self) -> Fit {
