@@ -13,6 +13,7 @@
 //! puts together what was found, and [`verdict`] says whether something is left.
 
 pub(crate) mod all_rows;
+pub(crate) mod another_day;
 pub(crate) mod at_reversals;
 pub(crate) mod difference;
 pub(crate) mod effort;

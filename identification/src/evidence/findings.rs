@@ -7,6 +7,7 @@
 
 use axis_model::EffectName;
 
+use crate::evidence::another_day::{self, Change};
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
@@ -108,6 +109,8 @@ pub(crate) struct Findings<'a> {
     pub train: Compared<Judgement>,
     /// What they leave of the validation record.
     pub validate: Compared<Judgement>,
+    /// What the validation record has in another size.
+    pub changes: Vec<Change>,
     /// The effects that are lacking.
     pub found: Found,
     /// Structure in the residual of the training record.
@@ -133,6 +136,7 @@ impl<'a> Findings<'a> {
         let mut reasons = stages.reasons(dataset, has_gap);
         reasons.extend(residual.reasons(has_gap));
         let verdict = Verdict::of(reasons);
+        let changes = another_day::changes(dataset, [motion, validation], &models.extended);
         Self {
             dataset,
             motion,
@@ -141,6 +145,7 @@ impl<'a> Findings<'a> {
             models,
             train,
             validate,
+            changes,
             found,
             residual,
             verdict,

@@ -44,6 +44,10 @@ pub(crate) const VETO_RATIO: f64 = 1.05;
 /// that it must remove there: less is a third of its size, and other days do not change that much.
 pub(crate) const VETO_PART: f64 = 0.1;
 
+/// A coefficient of another record that differs by less than this is not told. Chosen: friction
+/// changes by as much while a record is taken.
+pub(crate) const OTHER_DAY_SHARE: f64 = 0.05;
+
 /// Smallest share and t with which the load's own inertia comes in beside a gap or a compliance
 /// that a load scale shows. The load is known to move otherwise: chance is not the question.
 pub(crate) const LOAD_INERTIA: (f64, f64) = (EFFORT_SHARE, 1.0);

@@ -1,5 +1,6 @@
 //! Remarks: what stands behind a decision, and what the record or its description cannot give.
 
+use crate::evidence::another_day::Change;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::reversal::Presliding;
@@ -32,6 +33,7 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
         length,
     };
     list.extend(said.sentence());
+    list.extend(of_another_day(&findings.changes));
     let found = findings.found.names();
     list.extend(excitation::warnings(dataset, findings.motion, found));
     list
@@ -39,6 +41,25 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
 
 const RAN_AWAY: &str = "the simulated axis ran away (an error beyond its travel): the loop of the \
                         identified model is not stable, and no free run was used as evidence";
+
+/// Coefficients that the validation record has in another size.
+fn of_another_day(changes: &[Change]) -> Option<String> {
+    let each = changes.iter().map(|change| {
+        let Change {
+            effect,
+            share,
+            half_width,
+        } = change;
+        let (percent, half) = (100.0 * share, 100.0 * half_width);
+        format!("{} {percent:+.0} ± {half:.0} %", effect.as_str())
+    });
+    let list = each.collect::<Vec<String>>().join(", ");
+    (!changes.is_empty()).then(|| {
+        format!(
+            "the validation record has the same structure in another size ({list}): the errors on it hold this difference too; another day or temperature does that"
+        )
+    })
+}
 
 /// What is to be said of a controller that was described.
 fn about(controller: Controller) -> Option<String> {
@@ -154,5 +175,31 @@ impl Said<'_> {
             figures::error(dahl),
             self.effort
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use axis_model::EffectName::{Coulomb, Viscous};
+
+    use super::*;
+
+    #[test]
+    fn another_day_is_told_with_every_change_and_its_interval() {
+        let change = |effect, share, half_width| Change {
+            effect,
+            share,
+            half_width,
+        };
+        assert_eq!(of_another_day(&[]), None);
+        let changes = [
+            change(Coulomb.into(), 0.149, 0.021),
+            change(Viscous.into(), -0.1, 0.034),
+        ];
+        let said = of_another_day(&changes).unwrap();
+        assert!(
+            said.contains("(coulomb +15 ± 2 %, viscous -10 ± 3 %)"),
+            "{said}"
+        );
     }
 }
