@@ -149,7 +149,10 @@ mod tests {
                 ratio(|axis| axis.actual.sliding.coulomb_n),
                 ratio(|axis| axis.actual.lead_m_per_rev),
             ] {
-                assert!((0.5..=1.5).contains(&ratio) && ratio != 1.0, "{seed} {ratio}");
+                assert!(
+                    (0.5..=1.5).contains(&ratio) && ratio != 1.0,
+                    "{seed} {ratio}"
+                );
             }
             let sliding = axis.actual.sliding;
             assert!(sliding.static_n > sliding.coulomb_n);

@@ -117,6 +117,7 @@ fn on_difference(bench: &Bench<'_>, fitted: &Fitted) -> Option<Difference> {
     let path = difference::Path {
         position: &bench.dataset.train.position,
         transmitted: &transmitted,
+        hold: bench.dataset.hold,
     };
     difference::difference(bench.dataset, bench.motion, path)
 }

@@ -163,6 +163,7 @@ pub(crate) fn difference_um(
     let path = Path {
         position: &record.position,
         transmitted: &transmitted,
+        hold: findings.dataset.hold,
     };
     let (declared, extended) = difference.on(motion, path)?;
     Some(Compared { declared, extended })

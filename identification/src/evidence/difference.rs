@@ -1,24 +1,34 @@
 //! The difference of motor and load position: backlash, compliance and pitch error, where there is
 //! a load scale.
 //!
-//! Candidates: a gap (the load coasts, or waits, while the motor crosses it:
-//! [`crate::simulate::load`]), wind-up by the transmitted force, and a function periodic in
-//! position. Judged on held-out blocks like the force, but accepted only where the amplitude is
-//! beyond the encoders' counts.
+//! Candidates: a gap, wind-up by the transmitted force, and a function periodic in position.
+//! Judged on held-out blocks like the force, but accepted only where the amplitude is beyond the
+//! encoders' counts.
+//!
+//! A gap between rigid flanks is judged by the motion: the load coasts, or waits, while the motor
+//! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
+//! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
 mod columns;
+mod flanks;
+mod left;
 mod search;
+
+use std::cell::OnceCell;
 
 use axis_model::EffectName;
 
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
+use self::flanks::Judged;
+use self::left::Left;
 use self::search::{best_gap, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
-    DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, FEWEST_COUNTS,
-    GAP_FACTOR,
+    DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,
+    FEWEST_COUNTS, GAP_FACTOR,
 };
+use crate::evidence::verdict::Reason;
 use crate::fit::blocks::{Fit, Gain};
 use crate::fit::plain::Plain;
 use crate::motion::kinematics::Kinematics;
@@ -46,6 +56,8 @@ pub(crate) struct Difference {
     pub gap: Option<f64>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<f64>,
+    /// The largest structure that no accepted effect explains, beyond the counts.
+    left: Option<Left>,
     declared: FittedWays,
     extended: FittedWays,
 }
@@ -57,41 +69,25 @@ pub(crate) fn difference(
     motion: &Kinematics,
     path: Path<'_>,
 ) -> Option<Difference> {
-    let apart = Apart::on(motion, path)?;
-    let count = dataset.resolution.max(dataset.load_resolution);
-    let declared = declared(dataset, &apart, count);
-    let before = apart.cross_validate(&declared).held_out.iter().sum();
-    let output = MotorLoad {
+    let mut output = MotorLoad {
         inertia: Plain::fit(motion).inertia,
-        apart,
-        count,
-        before,
+        apart: Apart::on(motion, path)?,
+        count: dataset.resolution.max(dataset.load_resolution),
+        before: 0.0,
+        springy: OnceCell::new(),
     };
+    let declared = output.declared(dataset);
+    output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
     let selection = selection::select(&output, declared.clone(), &mut |_| ());
     let apart = &output.apart;
     let fits = [&declared, &selection.model].map(|ways| apart.fit(ways));
     let rms_um = fits.each_ref().map(|fitted| apart.rms_um(fitted));
-    Some(Difference::of(fits, rms_um, selection.scored))
-}
-
-/// The ways that a dataset declares, in the order compliance, backlash, pitch error.
-fn declared(dataset: &Dataset, apart: &Apart<'_>, count: f64) -> Vec<Way> {
-    let mut ways = vec![Way::Constant];
-    for name in EFFECTS.into_iter().filter(|name| dataset.declares(*name)) {
-        let way = best(name, apart, &ways, count);
-        ways.extend(way);
-    }
-    ways
-}
-
-/// The way of an effect that leaves least beside others.
-fn best(name: EffectName, apart: &Apart<'_>, ways: &[Way], count: f64) -> Option<Way> {
-    match name {
-        EffectName::Compliance => Some(Way::WindUp),
-        EffectName::Backlash => Some(best_gap(apart, ways, count)),
-        EffectName::PitchError => best_pitch(apart, &apart.fit(ways)),
-        _ => None,
-    }
+    let mut difference = Difference::of(fits, rms_um, selection.scored);
+    let residual = apart.residual(&difference.extended);
+    let wound = difference.extended.of(EffectName::Compliance);
+    let wound = wound.map(|(way, own)| apart.predicted(way, own));
+    difference.left = left::left(apart, &residual, wound, output.count);
+    Some(difference)
 }
 
 /// Motor − load as an output that judges.
@@ -101,6 +97,8 @@ struct MotorLoad<'a> {
     count: f64,
     /// Held-out sum of squares that the declared ways leave.
     before: f64,
+    /// What the motor's balance says of a gap between springy flanks, once it was asked.
+    springy: OnceCell<Option<Judged>>,
     /// Moved mass as the plain model sees it: a motor's own mass is less.
     inertia: f64,
 }
@@ -110,22 +108,36 @@ impl Output for MotorLoad<'_> {
 
     fn candidates(&self, ways: &Vec<Way>, round: usize) -> Vec<Candidate<Vec<Way>>> {
         let base = self.apart.cross_validate(ways);
-        let is_open = |name: &EffectName| !ways.iter().any(|way| way.called() == *name);
+        let is_open = |name: &EffectName| !has(ways, *name);
         let open = EFFECTS.into_iter().filter(is_open);
-        let best = open.filter_map(|name| best(name, &self.apart, ways, self.count));
-        best.map(|way| self.judged(ways, &base, way, round))
-            .collect()
+        let judged = open.filter_map(|name| self.judged(ways, &base, name, round));
+        judged.collect()
     }
 
     fn accepts(&self, candidate: &Candidate<Vec<Way>>) -> bool {
         let Scored { gain, physical, .. } = &candidate.scored;
         let rows = self.apart.mask.iter().filter(|inside| **inside).count() as f64;
         let removed_rms = (gain.removed.max(0.0) / rows.max(1.0)).sqrt();
+        let is_relevant = self.shows_in_force(&candidate.model)
+            || gain.removed >= DIFFERENCE_SHARE_OF_ALL * self.before;
         *physical
             && gain.share >= DIFFERENCE_SHARE
             && gain.t >= DIFFERENCE_T
-            && gain.removed >= DIFFERENCE_SHARE_OF_ALL * self.before
+            && is_relevant
             && removed_rms >= DIFFERENCE_RMS_COUNTS * self.count
+    }
+
+    /// Friction of the motor's own side may show only beside what came in.
+    fn refined(&self, ways: Vec<Way>) -> Vec<Way> {
+        let is_wind_up = |way: &Way| matches!(way, Way::WindUp { .. });
+        let Some(place) = ways.iter().position(is_wind_up) else {
+            return ways;
+        };
+        let mut refined = ways;
+        refined.remove(place);
+        let wind_up = self.best_wind_up(&refined);
+        refined.insert(place, wind_up);
+        refined
     }
 
     fn most(&self) -> usize {
@@ -134,20 +146,132 @@ impl Output for MotorLoad<'_> {
 }
 
 impl MotorLoad<'_> {
-    fn judged(&self, ways: &[Way], base: &Fit, way: Way, round: usize) -> Candidate<Vec<Way>> {
-        let model = [ways, &[way]].concat();
-        let gain = Gain::of(base, &self.apart.cross_validate(&model));
+    /// The ways that a dataset declares, in the order compliance, backlash, pitch error.
+    fn declared(&self, dataset: &Dataset) -> Vec<Way> {
+        let mut ways = vec![Way::Constant];
+        for name in EFFECTS.into_iter().filter(|name| dataset.declares(*name)) {
+            let way = self.best(name, &ways);
+            ways.extend(way);
+        }
+        self.refined(ways)
+    }
+
+    /// The way of an effect that leaves least beside others.
+    fn best(&self, name: EffectName, ways: &[Way]) -> Option<Way> {
+        let apart = &self.apart;
+        match name {
+            EffectName::Compliance => Some(self.best_wind_up(ways)),
+            EffectName::Backlash => Some(self.best_gap(ways)),
+            EffectName::PitchError => best_pitch(apart, &apart.fit(ways)),
+            _ => None,
+        }
+    }
+
+    /// Wind-up beside other ways: with friction of the motor's own side where that helps and can be.
+    fn best_wind_up(&self, ways: &[Way]) -> Way {
+        let [plain, rubbed] = [false, true].map(|motor_friction| Way::WindUp { motor_friction });
+        let with = |way: Way| [ways, &[way]].concat();
+        let fit = |way: Way| self.apart.cross_validate(&with(way));
+        let gain = Gain::of(&fit(plain), &fit(rubbed));
+        let fitted = self.apart.fit(&with(rubbed));
+        let can_be = fitted
+            .last()
+            .is_some_and(|(way, own)| self.is_physical(way, own));
+        if can_be && gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T {
+            rubbed
+        } else {
+            plain
+        }
+    }
+
+    /// A gap beside other ways: where the flanks wind up, and the force shows them, by the force.
+    fn best_gap(&self, ways: &[Way]) -> Way {
+        let springy = self.springy().filter(|_| has(ways, EffectName::Compliance));
+        springy.map_or_else(
+            || best_gap(&self.apart, ways, self.count),
+            |judged| Way::Flanks(judged.flanks),
+        )
+    }
+
+    /// What the motor's balance says of a gap, where it shows the flanks.
+    fn springy(&self) -> Option<&Judged> {
+        let judge = || flanks::judged(&self.apart, self.count);
+        let judged = self.springy.get_or_init(judge).as_ref();
+        judged.filter(|judged| judged.sees_flanks)
+    }
+
+    /// An effect beside others, with what it is worth.
+    fn judged(
+        &self,
+        ways: &[Way],
+        base: &Fit,
+        name: EffectName,
+        round: usize,
+    ) -> Option<Candidate<Vec<Way>>> {
+        if name == EffectName::Compliance && has(ways, EffectName::Backlash) {
+            let springy = self.beside_gap(ways);
+            let wind_up = self.best_wind_up(&springy);
+            let model = [&springy[..], &[wind_up]].concat();
+            // Without any gap it must be better than the gap that it replaces.
+            let beside: &[Way] = if has(&springy, EffectName::Backlash) {
+                &springy
+            } else {
+                ways
+            };
+            let base = self.apart.cross_validate(beside);
+            return Some(self.scored(model, &base, round));
+        }
+        let way = self.best(name, ways)?;
+        Some(self.scored([ways, &[way]].concat(), base, round))
+    }
+
+    /// Whether the way that came in last belongs to a springy gap that matters to the effort: how
+    /// much it is of motor − load is not the question then.
+    fn shows_in_force(&self, ways: &[Way]) -> bool {
+        let is_springy = ways.iter().any(|way| matches!(way, Way::Flanks(_)));
+        let is_of_it = !matches!(ways.last(), Some(Way::Pitch { .. }));
+        let judged = self.springy().filter(|_| is_springy && is_of_it);
+        judged.is_some_and(|judged| judged.gain.percent >= EFFORT_PERCENT)
+    }
+
+    /// The ways beside which wind-up is judged where a gap was found without it: what looked like a
+    /// gap between rigid flanks is one between springy flanks, or none.
+    fn beside_gap(&self, ways: &[Way]) -> Vec<Way> {
+        let Some(judged) = self.springy() else {
+            return ways.to_vec();
+        };
+        let springy = is_enough(&judged.gain).then_some(Way::Flanks(judged.flanks));
+        let rigid = |way: &&Way| way.called() != EffectName::Backlash;
+        let others = ways.iter().filter(rigid).copied();
+        others.chain(springy).collect()
+    }
+
+    /// A model with its last way, beside what fits without that.
+    fn scored(&self, model: Vec<Way>, base: &Fit, round: usize) -> Candidate<Vec<Way>> {
         let fitted = self.apart.fit(&model);
-        let own = fitted.last().map_or(&[][..], |(_, own)| own);
+        let (way, own) = fitted.last().unwrap_or((Way::Constant, &[]));
         let scored = Scored {
             effect: way.called(),
             parameter: parameter(way, own),
-            gain,
+            gain: self.gain(way, base, &model),
             physical: self.is_physical(way, own),
             accepted: false,
             round,
         };
         Candidate { scored, model }
+    }
+
+    /// What a way removes on held-out blocks.
+    fn gain(&self, way: Way, base: &Fit, model: &[Way]) -> Gain {
+        let gain = Gain::of(base, &self.apart.cross_validate(model));
+        match (way, self.springy()) {
+            // The force decides; how much it is in counts motor − load knows.
+            (Way::Flanks(_), Some(judged)) => Gain {
+                removed: gain.removed,
+                ..judged.gain
+            },
+            _ => gain,
+        }
     }
 
     /// Whether coefficients can be those of a way, and the encoders can show it.
@@ -156,25 +280,48 @@ impl MotorLoad<'_> {
         match way {
             Way::Constant => false,
             Way::Play(behind) => GAP_FACTOR.contains(&own[0]) && behind.gap >= least,
+            Way::Flanks(flanks) => GAP_FACTOR.contains(&own[0]) && flanks.gap() >= least,
             Way::Pitch { .. } => own[0].hypot(own[1]) >= least,
-            Way::WindUp => {
+            Way::WindUp { .. } => {
                 let efforts = self.apart.path.transmitted.iter();
                 let largest = efforts.fold(0.0_f64, |most, effort| most.max(effort.abs()));
                 let motor_mass = -own[1] / own[0];
                 let is_visible = own[0] > 0.0 && own[0] * largest >= least;
-                is_visible && motor_mass > 0.0 && motor_mass < self.inertia
+                // Friction of the motor holds the load back; what pushes it on is a gap.
+                let is_friction = own.get(2).is_none_or(|step| *step <= 0.0);
+                is_visible && motor_mass > 0.0 && motor_mass < self.inertia && is_friction
             }
         }
     }
+}
+
+/// Whether ways have an effect.
+fn has(ways: &[Way], name: EffectName) -> bool {
+    ways.iter().any(|way| way.called() == name)
+}
+
+/// Whether the force speaks for a gap between springy flanks.
+fn is_enough(gain: &Gain) -> bool {
+    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T && gain.percent >= EFFORT_PERCENT
 }
 
 /// The quantity for people: width, stiffness, wave number.
 fn parameter(way: Way, own: &[f64]) -> f64 {
     match way {
         Way::Constant => 0.0,
-        Way::WindUp => 1.0 / own[0],
+        Way::WindUp { .. } => 1.0 / own[0],
         Way::Play(behind) => behind.gap,
+        Way::Flanks(flanks) => flanks.gap(),
         Way::Pitch { per_length } => per_length,
+    }
+}
+
+/// Stiffness of a spring, by the force where that shows a gap beside it: there it is not blurred by
+/// the noise of the effort.
+fn stiffness(gap: Option<(Way, &[f64])>, wind_up: Way, own: &[f64]) -> f64 {
+    match gap {
+        Some((Way::Flanks(flanks), _)) => flanks.stiffness,
+        _ => parameter(wind_up, own),
     }
 }
 
@@ -195,7 +342,8 @@ impl Difference {
             gap: gap.map(|(way, own)| parameter(way, own)),
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
-                .map(|(way, own)| parameter(way, own)),
+                .map(|(way, own)| stiffness(gap, way, own)),
+            left: None,
             declared,
             extended,
         }
@@ -205,6 +353,19 @@ impl Difference {
     #[must_use]
     pub(crate) const fn moves_apart(&self) -> bool {
         self.gap.is_some() || self.stiffness.is_some()
+    }
+
+    /// What no accepted effect explains; impacts between rigid flanks are excused.
+    #[must_use]
+    pub(crate) fn reason(&self) -> Option<Reason> {
+        let gap = self.extended.of(EffectName::Backlash);
+        let is_rigid = |(way, _): &(Way, &[f64])| matches!(way, Way::Play(_));
+        let Left { over, rms } = self.left.filter(|_| !gap.as_ref().is_some_and(is_rigid))?;
+        Some(Reason::unexplained(format!(
+            "motor − load that goes with {over} ({:.2} µm rms) otherwise than by a gap, a stiffness \
+             or a pitch error",
+            1.0e6 * rms
+        )))
     }
 
     /// Amplitude and wave number of the pitch error, if one was found.
@@ -224,11 +385,26 @@ impl Difference {
 
 #[cfg(test)]
 mod tests {
+    use super::flanks::Flanks;
     use super::*;
     use crate::fit::made::{Axis, on, usual};
+    use crate::record::units::EffortHold;
     use crate::simulate::load::Behind;
     use crate::simulate::made::{record, two_sines};
     use std::f64::consts::TAU;
+
+    impl Difference {
+        /// Motor and load that keep a structure.
+        pub(crate) fn with_structure() -> Self {
+            Self {
+                left: Some(Left {
+                    over: "the position",
+                    rms: 50.0e-6,
+                }),
+                ..Self::default()
+            }
+        }
+    }
 
     const COUNT: f64 = 1.0e-7;
 
@@ -249,6 +425,7 @@ mod tests {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
         };
         difference(&axis.dataset, &axis.motion, path).unwrap()
     }
@@ -260,6 +437,7 @@ mod tests {
         let path = Path {
             position: &[],
             transmitted: &[],
+            hold: EffortHold::Instant,
         };
         assert!(difference(&axis.dataset, &axis.motion, path).is_none());
     }
@@ -293,6 +471,7 @@ mod tests {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
         };
         let (before, after) = difference.on(&axis.motion, path).unwrap();
         assert_eq!((before, after), (difference.before_um, difference.after_um));
@@ -352,11 +531,13 @@ mod tests {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
         };
         MotorLoad {
             apart: Apart::on(&axis.motion, path).unwrap(),
             count,
             before: 100.0,
+            springy: OnceCell::new(),
             inertia: 90.0,
         }
     }
@@ -378,19 +559,39 @@ mod tests {
         };
         let pitch = Way::Pitch { per_length: 500.0 };
         let softest = 2.0e-6 / largest;
+        let [plain, rubbed] = [false, true].map(|motor_friction| Way::WindUp { motor_friction });
+        let flanks = |high: f64| {
+            Way::Flanks(Flanks {
+                high,
+                ..Flanks::default()
+            })
+        };
         for (way, own, wanted) in [
             (play(2.0e-6), &[0.8][..], true),
             (play(2.0e-6), &[1.2], true),
             (play(2.0e-6), &[0.79], false),
             (play(2.0e-6), &[1.21], false),
             (play(1.9e-6), &[1.0], false),
+            (flanks(2.1e-6), &[1.0], true),
+            (flanks(2.1e-6), &[1.21], false),
+            (flanks(1.9e-6), &[1.0], false),
             (pitch, &[1.2e-6, -1.61e-6], true),
             (pitch, &[1.2e-6, 1.59e-6], false),
-            (Way::WindUp, &[1.01 * softest, -30.0 * softest], true),
-            (Way::WindUp, &[0.99 * softest, -30.0 * softest], false),
-            (Way::WindUp, &[1.01 * softest, 30.0 * softest], false),
-            (Way::WindUp, &[1.01 * softest, -92.0 * softest], false),
-            (Way::WindUp, &[-1.01 * softest, 30.0 * softest], false),
+            (plain, &[1.01 * softest, -30.0 * softest], true),
+            (plain, &[0.99 * softest, -30.0 * softest], false),
+            (plain, &[1.01 * softest, 30.0 * softest], false),
+            (plain, &[1.01 * softest, -92.0 * softest], false),
+            (plain, &[-1.01 * softest, 30.0 * softest], false),
+            (
+                rubbed,
+                &[1.01 * softest, -30.0 * softest, -1.0e-6, 0.0],
+                true,
+            ),
+            (
+                rubbed,
+                &[1.01 * softest, -30.0 * softest, 1.0e-6, 0.0],
+                false,
+            ),
             (Way::Constant, &[1.0], false),
         ] {
             assert_eq!(output.is_physical(way, own), wanted, "{way:?} {own:?}");
@@ -460,7 +661,10 @@ mod tests {
             ..Behind::default()
         };
         assert_eq!(parameter(Way::Play(gap), &[0.9]), 3.0e-6);
-        assert_eq!(parameter(Way::WindUp, &[2.0e-7, 0.0]), 5.0e6);
+        let spring = Way::WindUp {
+            motor_friction: false,
+        };
+        assert_eq!(parameter(spring, &[2.0e-7, 0.0]), 5.0e6);
         assert_eq!(parameter(Way::Pitch { per_length: 7.0 }, &[1.0, 2.0]), 7.0);
     }
 }

@@ -82,7 +82,7 @@ pub(crate) const LEFT_PERCENT: f64 = 12.0;
 /// motion is slower by more than this factor.
 pub(crate) const NOISE_SLOWNESS: f64 = 2.0;
 
-// ---- Motor − load: `difference`, `verdict` ----
+// ---- Motor − load: `difference` and its rooms ----
 
 /// Smallest share of the held-out variance that an effect between motor and load removes.
 /// Chosen: twice that of the effort, because two encoders are quieter than an effort.
@@ -102,11 +102,14 @@ pub(crate) const DIFFERENCE_RMS_COUNTS: f64 = 1.0;
 /// A gap is as wide as it is: the factor that a fit would give its lag must be near one. Chosen.
 pub(crate) const GAP_FACTOR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
-/// What motor − load may keep before the two move apart otherwise: µm (µrad). Chosen.
-pub(crate) const APART_UM: f64 = 3.0;
+/// Structure of motor − load that no effect explains counts beyond so many counts of the coarser
+/// encoder, rms: rounding alone is 0.3 counts, and two encoders with errors of their own within a
+/// count make no more than one.
+pub(crate) const APART_COUNTS: f64 = 3.0;
 
-/// And counts of the coarser encoder: coarse scales alone make some. Chosen.
-pub(crate) const APART_COUNTS: f64 = 10.0;
+/// And from this share of what is left on: as for the effort, three times what an accepted effect
+/// needs.
+pub(crate) const APART_SHARE: f64 = UNEXPLAINED_SHARE;
 
 // ---- Reversals: `reversal`, `free_run`, `at_reversals`, and the amplitudes of `difference` ----
 

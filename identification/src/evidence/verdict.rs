@@ -5,11 +5,7 @@
 //! where the reason does. Reasons are structure in the residual of moving samples
 //! ([`crate::evidence::residual`]), a structure that was found but has no name, something at
 //! reversals that is none of the three shapes, and a motor and a load that move apart otherwise
-//! than by a gap, a stiffness or a pitch error.
-
-use crate::evidence::difference::Difference;
-use crate::evidence::thresholds::{APART_COUNTS, APART_UM};
-use crate::record::dataset::Dataset;
+//! than by a gap, a stiffness or a pitch error ([`crate::evidence::difference`]).
 
 /// One thing that is left.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,34 +64,9 @@ impl Verdict {
     }
 }
 
-/// Motor and load that keep a difference which no encoder makes; a gap excuses it.
-pub(crate) fn of_difference(
-    dataset: &Dataset,
-    difference: &Difference,
-    has_gap: bool,
-) -> Option<Reason> {
-    let apart = moves_apart(dataset, difference) && !has_gap;
-    apart.then(|| {
-        Reason::unexplained(
-            "motor and load that move apart otherwise than by a gap, a stiffness or a pitch error",
-        )
-    })
-}
-
-/// Whether motor and load keep a difference that no encoder makes.
-fn moves_apart(dataset: &Dataset, difference: &Difference) -> bool {
-    let count = dataset
-        .resolution
-        .max(dataset.load_resolution)
-        .max(f64::MIN_POSITIVE);
-    let counts = 1.0e-6 * difference.after_um / count;
-    difference.after_um > APART_UM && counts > APART_COUNTS
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::made;
 
     #[test]
     fn a_reason_that_counts_makes_a_record_unexplained_and_is_told_first() {
@@ -109,41 +80,5 @@ mod tests {
         assert_eq!(verdict(&[&counts]), ("unexplained", "a spring".into()));
         let both = ("unexplained", "a spring; a ripple".into());
         assert_eq!(verdict(&[&told, &counts]), both);
-    }
-
-    #[test]
-    fn a_gap_excuses_a_difference() {
-        let mut difference = Difference::default();
-        difference.after_um = 50.0;
-        let dataset = made::dataset(made::record(1.0e-3, made::two_sines(10)), None);
-        let reason = |has_gap| of_difference(&dataset, &difference, has_gap);
-        assert!(reason(false).is_some_and(|reason| reason.counts));
-        assert_eq!(reason(true), None);
-    }
-
-    /// A difference counts beyond 3 µm *and* ten counts of the coarser encoder.
-    #[test]
-    fn motor_and_load_move_apart_beyond_both_limits_only() {
-        let table = [
-            // µm left, counts of motor and load in µm, apart
-            (3.5, [0.1, 0.34], true),
-            (2.9, [0.1, 0.1], false),
-            (3.0, [0.1, 0.1], false),
-            (3.5, [0.1, 0.36], false),
-            (3.5, [0.36, 0.1], false),
-            (50.0, [4.9, 0.0], true),
-        ];
-        for (after_um, [motor_um, load_um], apart) in table {
-            let record = made::record(1.0e-3, made::two_sines(10));
-            let dataset = Dataset {
-                resolution: 1.0e-6 * motor_um,
-                load_resolution: 1.0e-6 * load_um,
-                ..made::dataset(record, None)
-            };
-            let mut difference = Difference::default();
-            difference.after_um = after_um;
-            let case = format!("{after_um} µm, counts of {motor_um} and {load_um} µm");
-            assert_eq!(moves_apart(&dataset, &difference), apart, "{case}");
-        }
     }
 }

@@ -1,16 +1,23 @@
 //! Motor − load on a record, and the ways in which the two come apart.
 //!
+//! Both sides go through the low-pass of the effort: what flanks and masses do above it cannot be
+//! compared with a force that has passed it.
+//!
 //! Wind-up is the transmitted force over a stiffness: `(F − M1·a) / K`, with two columns, because
-//! the motor's own mass M1 is not known. A gap has the lag of the load in it as its column. A pitch
-//! error is a cosine and a sine of position.
+//! the motor's own mass M1 is not known. Friction of the motor's own side, `Fc1·sign v + Fv1·v`, is
+//! no part of the transmitted force either: two more columns, where they help. A gap has the lag of the load in it as its column: between
+//! rigid flanks that of a load that coasts ([`Behind`]), beside wind-up the part of motor − load
+//! that the flanks leave ([`Flanks`]). A pitch error is a cosine and a sine of position.
 
 use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
+use super::flanks::Flanks;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
+use crate::record::units::EffortHold;
 use crate::simulate::load::Behind;
 
 /// What a record gives to the difference, besides its kinematics.
@@ -20,6 +27,23 @@ pub(crate) struct Path<'a> {
     pub position: &'a [f64],
     /// What the motor gives to the load side, but for its own mass; low-passed.
     pub transmitted: &'a [f64],
+    /// Over which time the effort of a row acts.
+    pub hold: EffortHold,
+}
+
+impl Path<'_> {
+    /// Values that go with the effort of each row, at the time of the row: an effort that is held
+    /// acts from its row to the next, half a row late.
+    fn at_rows(&self, values: &[f64]) -> Vec<f64> {
+        match self.hold {
+            EffortHold::Instant => values.to_vec(),
+            EffortHold::ZeroOrder => {
+                let before = values.iter().take(1).chain(values);
+                let pairs = before.zip(values);
+                pairs.map(|(before, at)| 0.5 * (before + at)).collect()
+            }
+        }
+    }
 }
 
 /// A way in which motor and load come apart.
@@ -27,10 +51,12 @@ pub(crate) struct Path<'a> {
 pub(crate) enum Way {
     /// Both scales have a zero of their own.
     Constant,
-    /// A spring between them.
-    WindUp,
+    /// A spring between them, and whether the motor's own side has friction.
+    WindUp { motor_friction: bool },
     /// A gap, and the load behind it.
     Play(Behind),
+    /// A gap between flanks that wind up.
+    Flanks(Flanks),
     /// Periodic in position, with so many periods per length.
     Pitch { per_length: f64 },
 }
@@ -40,28 +66,45 @@ impl Way {
     pub(crate) const fn called(self) -> Called {
         match self {
             Self::Constant => Called::Structure("constant"),
-            Self::WindUp => Called::Effect(EffectName::Compliance),
-            Self::Play(_) => Called::Effect(EffectName::Backlash),
+            Self::WindUp { .. } => Called::Effect(EffectName::Compliance),
+            Self::Play(_) | Self::Flanks(_) => Called::Effect(EffectName::Backlash),
             Self::Pitch { .. } => Called::Effect(EffectName::PitchError),
         }
     }
 
-    fn columns(self, motion: &Kinematics, path: Path<'_>) -> Vec<Vec<f64>> {
+    /// Its columns, low-passed, on a record with such a motor − load.
+    fn columns(self, motion: &Kinematics, path: Path<'_>, apart: &[f64]) -> Vec<Vec<f64>> {
         let position = path.position;
+        let low_passed = |column: Vec<f64>| motion.low_passed(&column);
         match self {
             Self::Constant => vec![vec![1.0; motion.len()]],
-            Self::WindUp => vec![
-                path.transmitted.to_vec(),
-                motion.low_passed(&motion.acceleration),
-            ],
-            Self::Play(behind) => vec![behind.follow(position, motion.period_s)],
+            Self::WindUp { motor_friction } => {
+                let force = path.transmitted.to_vec();
+                let held = [vec![force], of_motor(motion)].concat();
+                let held = held.iter().take(if motor_friction { 4 } else { 2 });
+                held.map(|column| path.at_rows(column)).collect()
+            }
+            Self::Play(behind) => vec![low_passed(behind.follow(position, motion.period_s))],
+            Self::Flanks(flanks) => vec![low_passed(flanks.lag(apart))],
             Self::Pitch { per_length } => {
                 let angle = |x: &f64| TAU * per_length * x;
                 let wave = |f: fn(f64) -> f64| position.iter().map(|x| f(angle(x))).collect();
-                vec![wave(f64::cos), wave(f64::sin)]
+                vec![low_passed(wave(f64::cos)), low_passed(wave(f64::sin))]
             }
         }
     }
+}
+
+/// What inertia and friction of the motor's own side go with: acceleration, direction and velocity
+/// of the motor, low-passed.
+pub(crate) fn of_motor(motion: &Kinematics) -> Vec<Vec<f64>> {
+    let velocity = motion.low_passed(&motion.velocity);
+    let direction: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
+    vec![
+        motion.low_passed(&motion.acceleration),
+        motion.low_passed(&direction),
+        velocity,
+    ]
 }
 
 /// Ways with the coefficients of their columns.
@@ -93,8 +136,10 @@ pub(crate) struct Apart<'a> {
     pub motion: &'a Kinematics,
     /// Position and transmitted force.
     pub path: Path<'a>,
-    /// Motor − load.
-    pub target: &'a [f64],
+    /// Motor − load, raw.
+    pub raw: &'a [f64],
+    /// Motor − load, low-passed.
+    pub target: Vec<f64>,
     /// The samples that are judged: moving ones and those about reversals.
     pub mask: Vec<bool>,
 }
@@ -103,16 +148,19 @@ impl<'a> Apart<'a> {
     /// The difference of a record; `None` where there is no load scale.
     pub(crate) fn on(motion: &'a Kinematics, path: Path<'a>) -> Option<Self> {
         let pairs = motion.moving.iter().zip(&motion.slow);
+        let raw = motion.difference.as_deref()?;
         Some(Self {
             motion,
             path,
-            target: motion.difference.as_deref()?,
+            raw,
+            target: motion.low_passed(raw),
             mask: pairs.map(|(moving, slow)| *moving || *slow).collect(),
         })
     }
 
-    fn columns(&self, way: Way) -> Vec<Vec<f64>> {
-        way.columns(self.motion, self.path)
+    /// The columns of a way.
+    pub(crate) fn columns(&self, way: Way) -> Vec<Vec<f64>> {
+        way.columns(self.motion, self.path, self.raw)
     }
 
     fn design(&self, ways: &[Way]) -> Vec<Vec<f64>> {
@@ -123,7 +171,7 @@ impl<'a> Apart<'a> {
     pub(crate) fn blocks(&self, ways: &[Way]) -> Blocks {
         let design = self.design(ways);
         let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, self.target, &self.mask, self.motion.period_s)
+        Blocks::new(&columns, &self.target, &self.mask, self.motion.period_s)
     }
 
     /// Errors on blocks that were held out of the fit.
@@ -139,14 +187,22 @@ impl<'a> Apart<'a> {
         FittedWays(ways.iter().map(|way| (*way, own(*way))).collect())
     }
 
+    /// What a way with such coefficients makes of motor − load.
+    pub(crate) fn predicted(&self, way: Way, own: &[f64]) -> Vec<f64> {
+        let mut predicted = vec![0.0; self.target.len()];
+        for (column, coefficient) in self.columns(way).iter().zip(own) {
+            let pairs = predicted.iter_mut().zip(column);
+            pairs.for_each(|(sum, value)| *sum += coefficient * value);
+        }
+        predicted
+    }
+
     /// What fitted ways leave of each sample.
     pub(crate) fn residual(&self, fitted: &FittedWays) -> Vec<f64> {
         let mut predicted = vec![0.0; self.target.len()];
         for (way, own) in &fitted.0 {
-            for (column, coefficient) in self.columns(*way).iter().zip(own) {
-                let pairs = predicted.iter_mut().zip(column);
-                pairs.for_each(|(sum, value)| *sum += coefficient * value);
-            }
+            let pairs = predicted.iter_mut().zip(self.predicted(*way, own));
+            pairs.for_each(|(sum, value)| *sum += value);
         }
         let pairs = self.target.iter().zip(predicted);
         pairs
@@ -185,6 +241,7 @@ mod tests {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
         };
         Apart::on(&axis.motion, path).unwrap()
     }
@@ -204,35 +261,37 @@ mod tests {
         assert!(!judged(false, false) && judged(true, false) && judged(false, true));
         axis.motion.difference = None;
         let (position, transmitted) = (&[][..], &[][..]);
+        let hold = EffortHold::Instant;
         let path = Path {
             position,
             transmitted,
+            hold,
         };
         assert!(Apart::on(&axis.motion, path).is_none());
     }
 
     #[test]
     fn a_pitch_error_is_a_cosine_and_a_sine_with_a_wave_number() {
-        let axis = axis(usual);
-        let path = Path {
-            position: &[0.0, 0.25, 0.5, 0.75],
-            transmitted: &[],
+        let axis = apart_by(|x| x);
+        let [cosine, sine] = &apart(&axis).columns(Way::Pitch { per_length: 5.0 })[..] else {
+            panic!("two columns");
         };
-        // Half a period a unit: 0°, 45°, 90°, 135°.
-        let columns = Way::Pitch { per_length: 0.5 }.columns(&axis.motion, path);
-        let half = 0.5_f64.sqrt();
-        let wanted = [[1.0, half, 0.0, -half], [0.0, half, 1.0, half]];
-        for (value, wanted) in columns.iter().flatten().zip(wanted.iter().flatten()) {
-            assert!((value - wanted).abs() < 1.0e-12, "{value} {wanted}");
+        // A period of 200 mm: slow beside the low-pass.
+        for row in (500..5500).step_by(500) {
+            let angle = TAU * 5.0 * axis.dataset.train.position[row];
+            assert!((cosine[row] - angle.cos()).abs() < 1.0e-6, "{row}");
+            assert!((sine[row] - angle.sin()).abs() < 1.0e-6, "{row}");
         }
     }
 
     #[test]
     fn a_spring_is_wound_up_by_the_transmitted_force_less_the_motors_own() {
         let axis = apart_by(|x| x);
-        let columns = apart(&axis).columns(Way::WindUp);
-        let acceleration = axis.motion.low_passed(&axis.motion.acceleration);
-        assert_eq!(columns, [axis.motion.effort_lp.clone(), acceleration]);
+        let columns = |motor_friction| apart(&axis).columns(Way::WindUp { motor_friction });
+        let force = vec![axis.motion.effort_lp.clone()];
+        let all = [force, of_motor(&axis.motion)].concat();
+        assert_eq!(columns(false), all[..2]);
+        assert_eq!(columns(true), all);
         let ones = apart(&axis).columns(Way::Constant);
         assert_eq!(ones, [vec![1.0; axis.motion.len()]]);
         let gap = Behind {
@@ -241,7 +300,21 @@ mod tests {
             ..Behind::default()
         };
         let lag = gap.follow(&axis.dataset.train.position, 1.0e-3);
+        let lag = axis.motion.low_passed(&lag);
         assert_eq!(apart(&axis).columns(Way::Play(gap)), [lag]);
+    }
+
+    #[test]
+    fn what_goes_with_an_effort_that_is_held_stands_half_a_row_later_than_its_row() {
+        let path = |hold| Path {
+            position: &[],
+            transmitted: &[],
+            hold,
+        };
+        let held = path(EffortHold::ZeroOrder).at_rows(&[1.0, 3.0, 7.0]);
+        assert_eq!(held, [1.0, 2.0, 5.0]);
+        let instant = path(EffortHold::Instant).at_rows(&[1.0, 3.0, 7.0]);
+        assert_eq!(instant, [1.0, 3.0, 7.0]);
     }
 
     #[test]
@@ -273,7 +346,7 @@ mod tests {
         let target: Vec<f64> = (0..axis.motion.len())
             .map(|row| [3.0e-6, -3.0e-6, 5.0e-6, 5.0e-6, 1.0][row.min(4)])
             .collect();
-        apart.target = &target;
+        apart.target = target;
         // √((9 + 9 + 25 + 25)/4) µm; the rows of a metre are outside.
         let rms = apart.rms_um(&FittedWays::default());
         assert!((rms - 17.0_f64.sqrt()).abs() < 1.0e-9, "{rms}");

@@ -96,11 +96,10 @@ fn improved(
 
 /// Sum of squares beside a gap. A gap is as wide as it is: its lag is subtracted, not scaled.
 fn left_by(apart: &Apart<'_>, ways: &[Way], behind: Behind) -> f64 {
-    let lag = behind.follow(apart.path.position, apart.motion.period_s);
+    let lag = apart.columns(Way::Play(behind)).concat();
     let pairs = apart.target.iter().zip(lag);
-    let target: Vec<f64> = pairs.map(|(target, lag)| target - lag).collect();
     let without = Apart {
-        target: &target,
+        target: pairs.map(|(target, lag)| target - lag).collect(),
         mask: apart.mask.clone(),
         ..*apart
     };
@@ -172,6 +171,7 @@ mod tests {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
         };
         Apart::on(&axis.motion, path).unwrap()
     }
