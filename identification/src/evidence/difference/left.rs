@@ -42,8 +42,8 @@ pub(crate) fn left(
     let rest = Rest { apart, residual };
     let all = [
         rest.over_direction(&motion),
-        rest.over("the transmitted force", &motion, laws_of(&motion.force)),
-        rest.over("the position", &motion, laws_of(&motion.position)),
+        rest.over("the transmitted force", &motion, &laws_of(&motion.force)),
+        rest.over("the position", &motion, &laws_of(&motion.position)),
     ];
     let beyond = |left: &Left| left.rms > APART_COUNTS * count;
     let all = all.into_iter().flatten().filter(beyond);
@@ -75,9 +75,9 @@ impl Motion {
 fn about_middle(mut values: Vec<f64>) -> Vec<f64> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    values
-        .iter_mut()
-        .for_each(|value| *value -= 0.5 * (low + high));
+    for value in &mut values {
+        *value -= 0.5 * (low + high);
+    }
     at_most_one(values)
 }
 
@@ -86,7 +86,9 @@ fn at_most_one(mut values: Vec<f64>) -> Vec<f64> {
     let largest = values
         .iter()
         .fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
-    values.iter_mut().for_each(|value| *value /= largest);
+    for value in &mut values {
+        *value /= largest;
+    }
     values
 }
 
@@ -116,7 +118,7 @@ impl Rest<'_> {
     }
 
     /// Structure over something, beside direction and velocity.
-    fn over(&self, what: &'static str, motion: &Motion, columns: Vec<Vec<f64>>) -> Option<Left> {
+    fn over(&self, what: &'static str, motion: &Motion, columns: &[Vec<f64>]) -> Option<Left> {
         let mut all: Vec<&[f64]> = vec![&motion.ones, &motion.direction, &motion.velocity];
         let base = self.fit(&all);
         all.extend(columns.iter().map(Vec::as_slice));
@@ -166,15 +168,13 @@ mod tests {
         let step = |axis: &Axis, row: usize| 2.0e-6 * axis.motion.direction[row];
         let fold = |axis: &Axis, row: usize| 4.0e-6 * (axis.motion.effort_lp[row] / 80.0).powi(2);
         let bow = |axis: &Axis, row: usize| 2.0e-3 * axis.motion.position_lp[row].powi(2);
-        let laws: [(&dyn Fn(&Axis, usize) -> f64, _); 3] = [
-            (&step, "the direction"),
-            (&fold, "the transmitted force"),
-            (&bow, "the position"),
-        ];
-        for (law, over) in laws {
-            let left = left_by(law).unwrap();
-            assert_eq!(left.over, over);
-            assert!((0.3e-6..3.0e-6).contains(&left.rms), "{left:?}");
-        }
+        let found = [left_by(step), left_by(fold), left_by(bow)].map(Option::unwrap);
+        let over = ["the direction", "the transmitted force", "the position"];
+        assert_eq!(found.map(|left| left.over), over);
+        let sizes = found.map(|left| left.rms);
+        assert!(
+            sizes.iter().all(|rms| (0.3e-6..3.0e-6).contains(rms)),
+            "{sizes:?}"
+        );
     }
 }
