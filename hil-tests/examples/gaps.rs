@@ -15,7 +15,8 @@ fn main() -> Outcome<()> {
         std::process::exit(2);
     };
     let asked: Vec<u64> = arguments.filter_map(|seed| seed.parse().ok()).collect();
-    for seed in SEEDS.filter(|seed| asked.is_empty() || asked.contains(seed)) {
+    let is_asked = |seed: &u64| asked.is_empty() || asked.contains(seed);
+    for seed in SEEDS.into_iter().filter(is_asked) {
         let machine = declaring_compliance(machine(seed, &GAPS_UM), true);
         let out = folder.join(seed.to_string());
         std::fs::create_dir_all(&out).expect("the folder can be made");

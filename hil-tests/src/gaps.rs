@@ -17,8 +17,10 @@ use rand_distr::{Distribution, Uniform};
 /// Widths of the gaps, µm.
 pub const GAPS_UM: [u32; 7] = [0, 2, 5, 10, 20, 50, 100];
 
-/// Seeds of the machines; 0 is the reference machine itself.
-pub const SEEDS: std::ops::RangeInclusive<u64> = 0..=12;
+/// Seeds of the machines; 0 is the reference machine itself. 8, 9 and 12 are left out: with a half
+/// of the masses on one side their gains are unstable with a gap outside the loop, and the drive
+/// stops them.
+pub const SEEDS: [u64; 13] = [0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 13, 14, 15];
 
 /// Where the gap is, seen from the position loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +142,7 @@ mod tests {
     #[test]
     fn other_seeds_differ_by_up_to_a_half_and_can_be() {
         let reference = Machine::reference().axes.swap_remove(0);
-        for seed in 1..=12 {
+        for seed in SEEDS.into_iter().skip(1) {
             let axis = &machine(seed, &[0]).axes[0];
             let ratio = |of: fn(&MachineAxis) -> f64| of(axis) / of(&reference);
             for ratio in [

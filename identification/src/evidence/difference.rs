@@ -167,7 +167,8 @@ impl MotorLoad<'_> {
         }
     }
 
-    /// Wind-up beside other ways: with friction of the motor's own side where that helps and can be.
+    /// Wind-up beside other ways: with friction of the motor's own side where that helps and can
+    /// be.
     fn best_wind_up(&self, ways: &[Way]) -> Way {
         let [plain, rubbed] = [false, true].map(|motor_friction| Way::WindUp { motor_friction });
         let with = |way: Way| [ways, &[way]].concat();

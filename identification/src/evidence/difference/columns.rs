@@ -5,9 +5,11 @@
 //!
 //! Wind-up is the transmitted force over a stiffness: `(F − M1·a) / K`, with two columns, because
 //! the motor's own mass M1 is not known. Friction of the motor's own side, `Fc1·sign v + Fv1·v`, is
-//! no part of the transmitted force either: two more columns, where they help. A gap has the lag of the load in it as its column: between
-//! rigid flanks that of a load that coasts ([`Behind`]), beside wind-up the part of motor − load
-//! that the flanks leave ([`Flanks`]). A pitch error is a cosine and a sine of position.
+//! no part of the transmitted force either: two more columns, where they help.
+//!
+//! A gap has the lag of the load in it as its column: between rigid flanks that of a load that
+//! coasts ([`Behind`]), beside wind-up the part of motor − load that the flanks leave ([`Flanks`]).
+//! A pitch error is a cosine and a sine of position.
 
 use std::f64::consts::TAU;
 
