@@ -281,7 +281,8 @@ impl MotorLoad<'_> {
         match way {
             Way::Constant => false,
             Way::Play(behind) => GAP_FACTOR.contains(&own[0]) && behind.gap >= least,
-            Way::Flanks(flanks) => GAP_FACTOR.contains(&own[0]) && flanks.gap() >= least,
+            // The force has judged its width: beside wind-up the factor of its lag is no test.
+            Way::Flanks(flanks) => flanks.gap() >= least,
             Way::Pitch { .. } => own[0].hypot(own[1]) >= least,
             Way::WindUp { .. } => {
                 let efforts = self.apart.path.transmitted.iter();
@@ -574,7 +575,7 @@ mod tests {
             (play(2.0e-6), &[1.21], false),
             (play(1.9e-6), &[1.0], false),
             (flanks(2.1e-6), &[1.0], true),
-            (flanks(2.1e-6), &[1.21], false),
+            (flanks(2.1e-6), &[1.21], true),
             (flanks(1.9e-6), &[1.0], false),
             (pitch, &[1.2e-6, -1.61e-6], true),
             (pitch, &[1.2e-6, 1.59e-6], false),

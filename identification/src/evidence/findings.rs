@@ -170,7 +170,7 @@ pub(crate) mod tests {
     impl Scene {
         /// 700 kg, 900 N s/m and 300 N, with a load that stands a constant way behind the motor.
         pub(crate) fn behind(way_m: f64) -> Self {
-        let mut record = record(None);
+            let mut record = record(None);
             record.load = Some(record.position.iter().map(|x| x - way_m).collect());
             let dataset = declared(record);
             let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
