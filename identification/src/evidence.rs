@@ -15,6 +15,7 @@
 pub(crate) mod all_rows;
 pub(crate) mod another_day;
 pub(crate) mod at_reversals;
+pub(crate) mod causes;
 pub(crate) mod difference;
 pub(crate) mod effort;
 pub(crate) mod features;

@@ -45,6 +45,7 @@ fn identify_excerpt(
     size: ExcerptSize,
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
+    plausibility::check_rows(dataset)?;
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);

@@ -9,6 +9,7 @@ use axis_model::EffectName;
 
 use crate::evidence::another_day::{self, Change};
 use crate::evidence::at_reversals::AtReversals;
+use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
 use crate::evidence::residual::{self, ResidualStructure};
@@ -135,6 +136,8 @@ impl<'a> Findings<'a> {
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
         let mut reasons = stages.reasons();
         reasons.extend(residual.reasons(has_gap));
+        let causes = causes::of(dataset, found.names());
+        reasons.extend(causes.into_iter().map(Reason::unexplained));
         let verdict = Verdict::of(reasons);
         let changes = another_day::changes(dataset, [motion, validation], &models.extended);
         Self {

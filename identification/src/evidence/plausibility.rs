@@ -1,5 +1,8 @@
 //! Whether a dataset can be what it says: units off by a thousand, signs swapped, columns that
-//! stand still or do not belong together.
+//! stand still or do not belong together, rows that no axis makes.
+//!
+//! Everything here refuses the record, with what it looks like. What only the fit can show is a
+//! cause beside the verdict ([`crate::evidence::causes`]).
 
 use crate::error::IdentificationError;
 use crate::evidence::thresholds::{
@@ -13,22 +16,42 @@ use crate::record::samples::Record;
 use crate::record::units::AxisKind;
 use crate::simulate::controller::law::Law;
 
+pub(crate) mod columns;
+pub(crate) mod repeats;
+pub(crate) mod steps;
+pub(crate) mod stillness;
+
 type Outcome = Result<(), IdentificationError>;
 
-/// Checks a dataset.
+/// Checks the rows of both records, before anything is made of them.
+///
+/// # Errors
+/// What does not fit, and what it looks like.
+pub(crate) fn check_rows(dataset: &Dataset) -> Outcome {
+    for (what, record) in [
+        ("training", &dataset.train),
+        ("validation", &dataset.validate),
+    ] {
+        let oddity = repeats::copy(record).or_else(|| columns::oddity(dataset, record));
+        if let Some(oddity) = oddity {
+            return Err(IdentificationError::new(format!(
+                "{}: {what} record: {oddity}",
+                dataset.name
+            )));
+        }
+        check_position(dataset, what, record)?;
+        check_followers(dataset, what, record)?;
+    }
+    Ok(())
+}
+
+/// Checks the training record with its motion.
 ///
 /// # Errors
 /// What does not fit, and what it looks like.
 pub(crate) fn check(dataset: &Dataset, motion: &Kinematics) -> Outcome {
     let name = &dataset.name;
     let refuse = |text: String| Err(IdentificationError::new(format!("{name}: {text}")));
-    for (what, record) in [
-        ("training", &dataset.train),
-        ("validation", &dataset.validate),
-    ] {
-        check_position(dataset, what, record)?;
-        check_followers(dataset, what, record)?;
-    }
     if let Some(gain) = Law::effort_over_computed(dataset) {
         let column = dataset.effort.column();
         if gain < SWAPPED_EFFORT {
@@ -124,6 +147,20 @@ fn smallest_step(values: &[f64]) -> f64 {
     steps.fold(f64::INFINITY, f64::min)
 }
 
+/// Whether a factor is that between turns and radians.
+fn is_turn(factor: f64) -> bool {
+    let is = |factor: f64| (factor / std::f64::consts::TAU - 1.0).abs() < TURN;
+    is(factor.abs()) || is(1.0 / factor.abs().max(f64::MIN_POSITIVE))
+}
+
+/// Whether a column is another one times a factor.
+fn goes_with(x: &[f64], y: &[f64]) -> bool {
+    columns::correlation(x, y).abs() > columns::SAME
+}
+
+/// How near a factor is to 2 pi: gears have whole teeth.
+const TURN: f64 = 0.005;
+
 /// Load position and setpoint must go with the motor.
 fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     let unit = dataset.kind.position_unit();
@@ -135,7 +172,9 @@ fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
         let slope = slope(&record.position, values);
         // A setpoint is not needed: only one in a wrong unit or direction is worth a refusal.
         let wrong = if column == "reference" {
-            is_thousand(slope) && slope.abs() > STANDSTILL_SLOPE || slope < SWAPPED_REFERENCE
+            is_thousand(slope) && slope.abs() > STANDSTILL_SLOPE
+                || slope < SWAPPED_REFERENCE
+                || goes_with(&record.position, values) && !LOAD_SLOPE.contains(&slope)
         } else {
             !LOAD_SLOPE.contains(&slope)
         };
@@ -144,6 +183,10 @@ fn check_followers(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
                 slope if slope.abs() < STANDSTILL_SLOPE => "it stands still".to_owned(),
                 slope if slope < 0.0 && slope > -2.0 => "its sign is swapped".to_owned(),
                 slope if is_thousand(slope) => "its unit is off by a thousand".to_owned(),
+                slope if is_turn(slope) => "one is in turns, the other in radians".to_owned(),
+                _ if goes_with(&record.position, values) => {
+                    "it needs a scale: a gear ratio, or the lead".to_owned()
+                }
                 _ => "it belongs to another axis or needs a scale".to_owned(),
             };
             return Err(IdentificationError::new(format!(
@@ -173,7 +216,9 @@ mod tests {
     use crate::simulate::made::{record, two_sines};
 
     fn refused(axis: &Axis) -> String {
-        let checked = check(&axis.dataset, &axis.motion);
+        let mut dataset = axis.dataset.clone();
+        dataset.validate.effort.clone_from(&dataset.train.effort);
+        let checked = check_rows(&dataset).and_then(|()| check(&dataset, &axis.motion));
         checked
             .err()
             .map_or(String::new(), |error| error.to_string())
@@ -314,10 +359,10 @@ mod tests {
             (1.0, ""),
             (0.81, ""),
             (1.24, ""),
-            (0.79, "belongs to another axis"),
-            (1.26, "belongs to another axis"),
+            (0.79, "a gear ratio"),
+            (1.26, "a gear ratio"),
             (-1.0, "its sign is swapped"),
-            (-3.0, "belongs to another axis"),
+            (-3.0, "a gear ratio"),
             (1000.0, "off by a thousand"),
             (0.0, "it stands still"),
         ] {
@@ -330,11 +375,12 @@ mod tests {
     }
 
     #[test]
-    fn of_setpoints_only_a_wrong_unit_or_direction_is_refused() {
+    fn a_setpoint_in_a_wrong_unit_or_direction_is_refused() {
         for (scale, looks) in [
             (1.0, ""),
-            (5.0, ""),
-            (-0.4, ""),
+            (5.0, "a gear ratio"),
+            (std::f64::consts::TAU, "in turns"),
+            (-0.4, "its sign is swapped"),
             (0.0, ""),
             (-0.6, "its sign is swapped"),
             (1000.0, "off by a thousand"),

@@ -15,8 +15,9 @@ type Outcome = Result<(), IdentificationError>;
 pub(crate) const FEWEST_ROWS: usize = 2000;
 /// A step longer than so many median ones is no hole that can be bridged.
 const LONGEST_HOLE_STEPS: f64 = 50.0;
-/// Median step over stated period beyond which one of them is in another unit.
-const PERIOD_RATIO: std::ops::Range<f64> = 0.01..100.0;
+/// Median step over stated period beyond which one of them is wrong: a clock is never off by so
+/// much, and every velocity of the fit would be.
+const PERIOD_RATIO: std::ops::Range<f64> = 0.8..1.25;
 /// Two records are of one rate within this ratio of their periods.
 const SAME_RATE: std::ops::RangeInclusive<f64> = 0.99..=1.01;
 /// Rows over which motion is looked for: noise of one step is no motion.
@@ -66,7 +67,7 @@ pub(crate) fn period(path: &str, time_s: &[f64], stated: Option<f64>) -> Outcome
     match stated {
         Some(period) if !PERIOD_RATIO.contains(&(median / period)) => {
             Err(IdentificationError::new(format!(
-                "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them in another unit?"
+                "{path}: time_s steps by {median} s, dataset.toml says sample_period_s = {period}; is one of them wrong, or in another unit?"
             )))
         }
         _ => Ok(()),
