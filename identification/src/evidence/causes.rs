@@ -25,6 +25,7 @@ pub(crate) mod times;
 pub(crate) mod worth;
 
 use rigid::Rigid;
+use times::Reading;
 use worth::WORTH_A_CAUSE;
 
 /// A rigid axis that leaves so much of the effort has nothing to do with it.
@@ -59,12 +60,31 @@ fn of_effort(dataset: &Dataset, rigid: &Rigid, found: &[EffectName]) -> Option<S
     }
     let shifts = found.contains(&EffectName::Delay) || dataset.declares(EffectName::Delay);
     let column = dataset.effort.column();
-    let time = times::cause(rigid, left, column).filter(|_| !shifts);
-    let limit = limit::cause(rigid, &dataset.train.effort, column);
-    limit
-        .or(time)
+    let mut readings = times::readings(rigid);
+    if shifts {
+        readings.clear();
+    }
+    readings.extend(of_setpoint(dataset));
+    limit::cause(rigid, &dataset.train.effort, column)
+        .or_else(|| times::cause(readings, left, column))
         .or_else(|| parts::within(rigid, left, column))
         .or_else(|| (left >= STRANGE).then(|| strange(column, left)))
+}
+
+/// The effort beside the motion of the setpoint: what is recorded as position may be the setpoint.
+fn of_setpoint(dataset: &Dataset) -> Option<Reading> {
+    let record = Record {
+        position: dataset.train.reference.clone()?,
+        load: None,
+        ..dataset.train.clone()
+    };
+    let motion = slow_motion(dataset, &record)?;
+    let left = Rigid::of(dataset, &motion).fit()?.left;
+    let unit = dataset.kind.position_unit();
+    let words = format!(
+        "goes with reference_{unit} and not with position_{unit} (are the two swapped, or is the position another axis'?)"
+    );
+    Some(Reading { words, left })
 }
 
 fn strange(column: &str, left: f64) -> String {
@@ -108,6 +128,20 @@ mod tests {
             said.len() == 1 && said[0].contains("another axis"),
             "{said:?}"
         );
+    }
+
+    #[test]
+    fn an_effort_that_goes_with_the_setpoint_has_its_columns_swapped() {
+        let mut swapped = axis(usual);
+        let train = &mut swapped.dataset.train;
+        // The measured path is in the setpoint's column; the position is its mean over 201 rows.
+        let path = train.position.clone();
+        train.reference = Some(path.clone());
+        let mean = |row: usize| path[row.saturating_sub(200)..=row].iter().sum::<f64>();
+        let smooth = |row: usize| mean(row) / (row + 1).min(201) as f64;
+        train.position = (0..path.len()).map(smooth).collect();
+        let said = causes(&swapped);
+        assert!(said[0].contains("goes with reference_m"), "{said:?}");
     }
 
     #[test]

@@ -119,6 +119,21 @@ impl Rigid {
         fit(from.map(|row| (means[row], self.effort[row])))
     }
 
+    /// The fit of the columns behind a first-order lag.
+    pub(crate) fn fit_lagged(&self, lag_s: f64) -> Option<RigidFit> {
+        let share = 1.0 - (-self.period_s / lag_s).exp();
+        let mut state = *self.columns.first()?;
+        let mut lagged = Vec::with_capacity(self.len());
+        for columns in &self.columns {
+            for (state, column) in state.iter_mut().zip(columns) {
+                *state += share * (column - *state);
+            }
+            lagged.push(state);
+        }
+        let rows = self.rows.iter().copied();
+        fit(rows.map(|row| (lagged[row], self.effort[row])))
+    }
+
     fn effort_at(&self, row: f64) -> Option<f64> {
         let (before, share) = (row.floor(), row - row.floor());
         let at = (before >= 0.0).then_some(before as usize)?;

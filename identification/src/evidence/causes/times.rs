@@ -1,4 +1,5 @@
-//! An effort that is read at the wrong time: rows late or early, by another clock, as a mean.
+//! An effort that is read at the wrong time: rows late or early, by another clock, as a mean,
+//! behind a filter.
 //!
 //! A shift by a row or two is a delay and has a name. Here it is one that no bus has.
 
@@ -11,21 +12,30 @@ const LONGEST_S: f64 = 0.1;
 const STEP_S: f64 = 5.0e-3;
 /// A shorter shift is a delay of a bus or of a log, s: three cycles at 1 kHz.
 const SHORTEST_S: f64 = 3.0e-3;
+/// A shorter lag is that of a current loop, s.
+const SHORTEST_LAG_S: f64 = 1.0e-2;
 /// Largest error of a clock that is tried: crystals are within 0.01 %, counters of a wrong rate are
 /// off by percents.
 const LARGEST_RATE: f64 = 0.03;
 
 /// A reading of the effort, and what it leaves.
-struct Reading {
-    words: String,
-    left: f64,
+pub(crate) struct Reading {
+    /// In words that follow the column's name.
+    pub words: String,
+    /// Share of the effort's variance.
+    pub left: f64,
 }
 
-/// The reading that explains most of what is left.
-pub(crate) fn cause(rigid: &Rigid, left: f64, column: &str) -> Option<String> {
-    let readings = [shift(rigid), clock(rigid), mean(rigid)];
+/// Readings at other times.
+pub(crate) fn readings(rigid: &Rigid) -> Vec<Reading> {
+    let readings = [shift(rigid), clock(rigid), mean(rigid), lag(rigid)];
+    readings.into_iter().flatten().collect()
+}
+
+/// The cause that explains most of what is left.
+pub(crate) fn cause(readings: Vec<Reading>, left: f64, column: &str) -> Option<String> {
     let explain = |reading: &Reading| explains(left, reading.left);
-    let readings = readings.into_iter().flatten().filter(explain);
+    let readings = readings.into_iter().filter(explain);
     let best = readings.min_by(|one, other| one.left.total_cmp(&other.left))?;
     Some(format!(
         "{column} {}: so read, the axis leaves {:.2} % of its square instead of {:.1} %",
@@ -90,6 +100,14 @@ fn mean(rigid: &Rigid) -> Option<Reading> {
     Some(Reading { words, left })
 }
 
+fn lag(rigid: &Rigid) -> Option<Reading> {
+    // Up to ten times the shortest, a fifth more each time.
+    let lags = (0..13).map(|at| SHORTEST_LAG_S * 1.2_f64.powi(at));
+    let (lag_s, left) = best(lags, |lag_s| rigid.fit_lagged(lag_s))?;
+    let words = format!("lags like a filter of {:.0} ms", 1.0e3 * lag_s);
+    Some(Reading { words, left })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,7 +118,7 @@ mod tests {
         let axis = axis(law);
         let rigid = Rigid::of(&axis.dataset, &axis.motion);
         let left = rigid.fit().unwrap().left;
-        cause(&rigid, left, "force_n").unwrap_or_default()
+        cause(readings(&rigid), left, "force_n").unwrap_or_default()
     }
 
     #[test]
@@ -136,5 +154,18 @@ mod tests {
             rows.map(|row| usual(motion, row)).sum::<f64>() / 100.0
         });
         assert!(mean.contains("a mean of the last 100 rows"), "{mean}");
+    }
+
+    #[test]
+    fn a_filter_is_told_with_its_lag() {
+        let lagged = said(|motion, row| {
+            let rows = row.saturating_sub(300)..=row;
+            let weights = rows.clone().map(|at| (-((row - at) as f64) / 40.0).exp());
+            let sum: f64 = weights.clone().sum();
+            rows.zip(weights)
+                .map(|(at, weight)| weight * usual(motion, at) / sum)
+                .sum()
+        });
+        assert!(lagged.contains("lags like a filter of 43 ms"), "{lagged}");
     }
 }

@@ -105,7 +105,7 @@ impl Steps {
         let looks = if is_wrap {
             "it wraps around; count its turns".to_owned()
         } else {
-            "the file holds several runs end to end; split it there".to_owned()
+            "the file holds several runs end to end, or rows are lost there; split it".to_owned()
         };
         // The header is line 1, and the step goes to the row after.
         Some(format!(
