@@ -104,6 +104,9 @@ impl<'a> Columns<'a> {
 
     fn frozen(&self) -> Option<String> {
         let period_s = self.record.period_s;
+        let words = |name: &str, from_s: f64| {
+            format!("{name} stands still from {from_s:.1} s on while the axis moves")
+        };
         let load = self.record.load.as_deref();
         let others = [
             load,
@@ -113,14 +116,14 @@ impl<'a> Columns<'a> {
         let said = |name: &str, values: &[f64]| {
             let froze = |other: &&[f64]| stillness::frozen_from(values, other, period_s);
             let from_s = others.iter().flatten().find_map(froze)?;
-            Some(format!(
-                "{name} stands still from {from_s:.1} s on while the axis moves"
-            ))
+            Some(words(name, from_s))
         };
         let mut measured = self.measured().into_iter();
-        let effort = &self.record.effort;
+        let (effort, column) = (&self.record.effort, self.dataset.effort.column());
         let is_at_limit = stillness::is_longest_at_an_end(effort);
-        let effort = said(self.dataset.effort.column(), effort).filter(|_| !is_at_limit);
+        let froze = stillness::frozen_effort_from(effort, &self.record.position, period_s);
+        let effort = froze.filter(|_| !is_at_limit);
+        let effort = effort.map(|from_s| words(column, from_s));
         effort.or_else(|| measured.find_map(|(name, values, _)| said(name, values)))
     }
 

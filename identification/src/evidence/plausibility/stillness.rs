@@ -25,6 +25,25 @@ pub(crate) fn frozen_from(values: &[f64], other: &[f64], period_s: f64) -> Optio
     (run.len() > rows && moves).then_some(period_s * run.start as f64)
 }
 
+/// The time from which on an effort stands still while the axis goes there and back, s: friction
+/// turns over, and even a coarse current shows that.
+pub(crate) fn frozen_effort_from(effort: &[f64], position: &[f64], period_s: f64) -> Option<f64> {
+    let (low, high) = range(position);
+    let least = MEANWHILE * (high - low);
+    let goes = |sign: f64| furthest(&position[longest_run(effort)], sign) > least;
+    frozen_from(effort, position, period_s).filter(|_| goes(1.0) && goes(-1.0))
+}
+
+/// The furthest way in one direction, from any row to any later one.
+fn furthest(position: &[f64], sign: f64) -> f64 {
+    let mut back = f64::INFINITY;
+    let ways = position.iter().map(|x| {
+        back = back.min(sign * x);
+        sign * x - back
+    });
+    ways.fold(0.0, f64::max)
+}
+
 /// Whether values stand still longest at an end of their range: an effort is at its limit there.
 pub(crate) fn is_longest_at_an_end(values: &[f64]) -> bool {
     let (low, high) = range(values);
@@ -80,6 +99,22 @@ mod tests {
         assert_eq!(frozen_for(900), None);
         let rest = vec![0.0; 4000];
         assert_eq!(frozen_from(&rest, &rest, 1.0e-3), None);
+    }
+
+    #[test]
+    fn an_effort_froze_where_the_axis_comes_back_meanwhile() {
+        let motion = two_sines(4000);
+        let effort_of = |rows: std::ops::Range<usize>| -> Vec<f64> {
+            let mut effort = motion.clone();
+            effort[rows].fill(1.0);
+            effort
+        };
+        let froze = |path: &[f64]| frozen_effort_from(&effort_of(1000..2500), path, 1.0e-3);
+        assert_eq!(froze(&motion), Some(1.0));
+        let one_way: Vec<f64> = (0..4000).map(f64::from).collect();
+        assert_eq!(froze(&one_way), None);
+        let way = [3.0, 1.0, 4.0, 2.0];
+        assert_eq!((furthest(&way, 1.0), furthest(&way, -1.0)), (3.0, 2.0));
     }
 
     #[test]
