@@ -43,7 +43,9 @@ pub fn text(names: &Names) -> String {
 
 const NOTHING: &str = "nothing";
 
-fn names(text: &str) -> Names {
+/// Names that a table shows.
+#[must_use]
+pub fn names(text: &str) -> Names {
     let words = text.split(", ").filter(|word| *word != NOTHING);
     words.map(str::to_owned).collect()
 }

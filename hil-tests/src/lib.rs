@@ -20,5 +20,6 @@ pub mod program;
 pub mod records;
 pub mod rig;
 pub mod targets;
+pub mod unlike;
 
 pub use scope::{Scope, on_all_cores};
