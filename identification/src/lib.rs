@@ -38,4 +38,4 @@ pub use progress::Step;
 pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::figures;
-pub use report::forms::{EffectCurve, Errors, FreeRunErrors, Identification, Report};
+pub use report::forms::{EffectCurve, Errors, FreeRun, FreeRunErrors, Identification, Report};

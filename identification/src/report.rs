@@ -29,6 +29,7 @@ pub(crate) mod pictures;
 pub(crate) mod protocols;
 pub(crate) mod ranking;
 pub(crate) mod remarks;
+pub(crate) mod shown;
 
 /// The report with its curves; errors and predictions are of all rows where an excerpt was fitted.
 pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>) -> Identification {
@@ -75,11 +76,13 @@ fn travel(dataset: &Dataset) -> Travel {
 fn report(findings: &Findings<'_>) -> Report {
     let dataset = findings.dataset;
     let found = &findings.found;
+    let parameters = parameters::parameters(findings);
     let whole = dataset.whole();
     let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
     Report {
         dataset: dataset.name.clone(),
         declared: words(&dataset.declared),
+        shown: shown::shown(findings),
         candidates: ranking::candidates(findings),
         train: errors::on_training(findings),
         validate: errors::on_validation(findings),
@@ -92,7 +95,8 @@ fn report(findings: &Findings<'_>) -> Report {
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
         cutoff_hz: filter::fit_cutoff_hz(&dataset.train),
         as_defined: errors::as_defined(findings),
-        parameters: parameters::parameters(findings),
+        parameters: parameters.estimates,
+        parameters_from: parameters.from,
         verdict: findings.verdict.word().into(),
         warnings: remarks::remarks(findings),
         found: words(found.names()),

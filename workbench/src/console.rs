@@ -1,6 +1,6 @@
 //! Results on stdout, for people. Machines get JSON.
 
-use identification::Identification;
+use identification::{Identification, figures};
 
 use crate::ballbar::REVERSALS;
 use crate::circle_test::CircleReport;
@@ -62,6 +62,7 @@ pub fn print_tuned(names: &[String], tuned: &Tuned) {
 pub fn print_identification(result: &Identification) {
     println!("{}", sentence(&result.report));
     print_errors(result);
+    print_shown(result);
     print_free_run(result);
     print_slow_ripple(result);
     for warning in &result.report.warnings {
@@ -82,20 +83,41 @@ fn print_errors(result: &Identification) {
     }
 }
 
+/// Where each effect shows that was found.
+fn print_shown(result: &Identification) {
+    for row in &result.report.shown {
+        println!(
+            "  {:<32}{} → {} {} without and with it, {}, training",
+            row.effect,
+            figures::error(row.without),
+            figures::error(row.with),
+            row.unit,
+            row.on,
+        );
+    }
+}
+
 fn print_free_run(result: &Identification) {
     let Some(free_run) = &result.report.free_run else {
         return;
     };
     let [train, validate] = [&free_run.train, &free_run.validate].map(|errors| {
         format!(
-            "{:.3} → {:.3}",
-            errors.position_error_um_before, errors.position_error_um_after
+            "{} → {}",
+            figures::error(errors.position_error_um_before),
+            figures::error(errors.position_error_um_after)
         )
     });
+    let (what, why) = match free_run.controller {
+        "known" => ("free run", "by the controller of dataset.toml".to_owned()),
+        why => (
+            "simulation kept near the record",
+            format!("controller {why}"),
+        ),
+    };
     println!(
-        "  free-run position error, {} rms: training {train}, validation {validate} (controller {})",
+        "  {what}, position error, {} rms: training {train}, validation {validate} ({why})",
         position_error_unit(result),
-        free_run.controller
     );
 }
 
@@ -104,17 +126,17 @@ fn print_slow_ripple(result: &Identification) {
         return;
     };
     for order in &ripple.orders {
-        let (amplitude, half_width) = (order.amplitude, order.half_width);
+        let [amplitude, low, high] = figures::estimate(&order.estimate(result.effort_unit));
         println!(
-            "  torque ripple of order {} per rev: {amplitude:.4} ± {half_width:.4} {}",
+            "  torque ripple of order {} per rev: {amplitude} ({low} to {high}) {}",
             order.per_rev, result.effort_unit
         );
     }
     println!(
-        "  about reversals (up to {:.1} {}/s): force error {:.2} → {:.2} % on the validation record",
-        ripple.fastest,
+        "  about reversals (up to {} {}/s): force error {} → {} % on the validation record",
+        figures::error(ripple.fastest),
         result.position_unit,
-        ripple.validate_force_error_before_percent,
-        ripple.validate_force_error_after_percent
+        figures::error(ripple.validate_force_error_before_percent),
+        figures::error(ripple.validate_force_error_after_percent)
     );
 }

@@ -6,7 +6,8 @@
 //!   about reversals; it cannot see a gap, whose impacts are not in the low-passed effort;
 //! - the *free run* ([`free_run`](crate::evidence::free_run)) sees both, where it knows the
 //!   controller. Where it does not, the simulation is tied to the record: too closely to judge a
-//!   bristle, but a gap that it sees is one.
+//!   bristle, but a gap that it sees is one, unless the inverse model sees a bristle so clearly
+//!   that a gap cannot be it: bristles of other laws than ours (Maxwell slip) look like a gap to it.
 //!
 //! The load scale is asked first, then a free run with the known controller. The inverse model
 //! decides where neither can, and breaks a tie of the free run.
@@ -80,8 +81,21 @@ impl Witnesses {
         }
     }
 
+    /// A bristle leaves so little of the effort about reversals that no gap would.
+    fn is_clearly_a_bristle(&self) -> bool {
+        let clear = |inverse: Presliding| inverse.dahl < BRISTLE_TIE_RATIO * inverse.rigid;
+        self.accepts_bristle() && self.inverse.is_some_and(clear)
+    }
+
     fn by_followed_run(&self, seen: Summary) -> AtReversals {
         let backlash = seen.accepted.backlash;
+        if backlash && !seen.accepted.presliding && self.is_clearly_a_bristle() {
+            return AtReversals {
+                presliding: seen.bristle_helps,
+                backlash: false,
+                unexplained: !seen.bristle_helps,
+            };
+        }
         let presliding = if backlash {
             seen.accepted.presliding
         } else {
@@ -168,6 +182,7 @@ mod tests {
                 undecided,
             },
             gap_leaves_less: false,
+            bristle_helps: false,
             something_left: true,
         }
     }
@@ -303,8 +318,24 @@ mod tests {
             ),
             (
                 "beside its gap the inverse model's bristle does not",
-                heard(Some(inverse(0.3, true)), [false, true, false]),
+                heard(Some(inverse(0.5, true)), [false, true, false]),
                 GAP,
+            ),
+            (
+                "unless that is so clear that no gap can be it",
+                heard(Some(inverse(0.49, true)), [false, true, false]),
+                UNEXPLAINED,
+            ),
+            (
+                "and the run sees it too",
+                Witnesses {
+                    free_run: Some(Summary {
+                        bristle_helps: true,
+                        ..free_run(false, [false, true, false])
+                    }),
+                    ..heard(Some(inverse(0.49, true)), [false, true, false])
+                },
+                BRISTLE,
             ),
             (
                 "the inverse model's bristle counts",

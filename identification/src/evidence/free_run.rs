@@ -13,8 +13,10 @@
 
 pub(crate) mod decision;
 
+use axis_model::{Effect, Estimate};
+
 use crate::evidence::free_run::decision::{Accepted, Left, Scene, Tried};
-use crate::evidence::thresholds::{FEWEST_COUNTS, VISIBLE_ROUNDINGS};
+use crate::evidence::thresholds::{FEWEST_COUNTS, SHAPE_RATIO, VISIBLE_ROUNDINGS};
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
@@ -27,7 +29,6 @@ use crate::simulate::drive::Drive;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
-use crate::simulate::model::estimates::Estimates;
 use crate::simulate::run::{Run, position_rms, simulate, strays};
 
 /// Length of the blocks that are fitted and judged in turn, s.
@@ -98,6 +99,8 @@ pub(crate) struct Summary {
     pub accepted: Accepted,
     /// Whether a gap leaves less than a bristle on blocks that were not fitted.
     pub gap_leaves_less: bool,
+    /// Whether a bristle leaves clearly less than rigid friction there.
+    pub bristle_helps: bool,
     /// Whether rigid friction leaves more than the rounding of the encoder.
     pub something_left: bool,
 }
@@ -401,6 +404,11 @@ impl Judged {
         }
     }
 
+    /// What it leaves on blocks that were not fitted; no number where it ran away.
+    pub(crate) fn told(&self) -> f64 {
+        self.left().held_out
+    }
+
     /// What it leaves; no number where it ran away.
     fn left(&self) -> Left {
         let told = |rms: f64| if self.ran_away { f64::NAN } else { rms };
@@ -428,6 +436,7 @@ impl Reversals {
             controller_known: matches!(self.drive, Drive::Known(_)),
             accepted: self.accepted,
             gap_leaves_less: self.gap.as_ref().is_some_and(less),
+            bristle_helps: self.bristle.told() <= SHAPE_RATIO * self.rigid.told(),
             something_left: self.something_left,
         }
     }
@@ -468,9 +477,9 @@ impl Reversals {
         crate::fit::blocks::t_of(&gains)
     }
 
-    /// Parameters of the simulation that was accepted, fitted to the positions, with intervals.
+    /// Bristle and gap of the simulation that was accepted, with intervals.
     #[must_use]
-    pub(crate) fn estimates(&self, dataset: &Dataset) -> Estimates {
+    pub(crate) fn estimates(&self, dataset: &Dataset) -> Vec<Effect<Estimate>> {
         let model = &self.best().model;
         model.estimates(dataset, &half_widths(model, &self.drive, &dataset.train))
     }
@@ -790,6 +799,7 @@ mod tests {
             position_gain: 40.0,
             limit: None,
             on_load: false,
+            velocity_of_load: false,
             misfit: 0.0,
         };
         let path = made::two_sines(4000);
@@ -859,6 +869,7 @@ mod tests {
             position_gain: 4.0,
             limit: None,
             on_load: false,
+            velocity_of_load: false,
             misfit: 0.0,
         });
         let summary = found.summary();

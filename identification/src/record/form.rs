@@ -87,6 +87,9 @@ pub struct ControllerForm {
     pub force_limit_n: Option<f64>,
     /// `motor` or `load`.
     pub position_sensor: Option<String>,
+    /// `motor` or `load`: whose velocity the velocity loop takes; without it that of the position
+    /// loop.
+    pub velocity_sensor: Option<String>,
 }
 
 /// `[declared]`.

@@ -32,6 +32,15 @@ impl AxisKind {
             Self::Rotary => "rad",
         }
     }
+
+    /// Millionths of the position's unit: what position errors are told in.
+    #[must_use]
+    pub const fn millionths(self) -> &'static str {
+        match self {
+            Self::Linear => "µm",
+            Self::Rotary => "µrad",
+        }
+    }
 }
 
 /// Which effort was recorded.

@@ -57,7 +57,10 @@ fn rounded(value: f64, last: i32) -> String {
         }
         return format!("{value:.*}", last.unsigned_abs() as usize);
     }
-    let digits = place(value, 1) - last;
+    // The first digit after rounding: 9.996e7 to three digits is 1.00e8.
+    let step = 10.0_f64.powi(last);
+    let first = place(step * (value / step).round(), 15) + 14;
+    let digits = first - last;
     format!("{:.*e}", digits.max(0).unsigned_abs() as usize, value)
 }
 
@@ -76,6 +79,8 @@ mod tests {
             (0.001_234_5, "0.00123"),
             (1.234_56e-5, "1.23e-5"),
             (1.0e42, "1.00e42"),
+            (9.7287e7, "9.73e7"),
+            (9.996e7, "1.00e8"),
             (0.0, "0"),
             (-5.5468, "-5.55"),
             (f64::NAN, "ran away"),

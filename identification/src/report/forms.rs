@@ -10,10 +10,12 @@ use crate::report::protocols::Protocol;
 pub struct Candidate {
     /// Effect.
     pub effect: String,
-    /// Error if this effect alone is added to the declared model, percent: of the force on the
-    /// validation record, or, for effects judged on motor − load, what is left of that difference
-    /// on held-out blocks.
+    /// Force error on the validation record if this effect alone is added to the declared model,
+    /// percent; for effects that are judged on the effort.
     pub validation_error_percent: Option<f64>,
+    /// What is left of the rms of motor − load on held-out blocks, percent; for effects that are
+    /// judged on that.
+    pub difference_left_percent: Option<f64>,
     /// Evidence: mean over standard error of its gain on held-out blocks, in the round in which it
     /// stood best.
     pub evidence: f64,
@@ -25,6 +27,21 @@ pub struct Candidate {
     pub physical: bool,
     /// Whether it was accepted.
     pub accepted: bool,
+}
+
+/// An output on which an effect shows that was found: what is left of it on the training record.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Shown {
+    /// Effect.
+    pub effect: String,
+    /// The measured output.
+    pub on: &'static str,
+    /// Unit of what is left: percent of the effort (rms), or an rms.
+    pub unit: &'static str,
+    /// What is left without the effect.
+    pub without: f64,
+    /// What is left with it.
+    pub with: f64,
 }
 
 /// Errors on one record.
@@ -50,10 +67,14 @@ pub struct Errors {
 /// Free-run errors on one record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FreeRunErrors {
-    /// Rms of simulated − recorded motor position, declared model; µm (µrad).
+    /// Rms of simulated − recorded motor position, declared model; µm (µrad). No number where the
+    /// simulation ran away: an error beyond the travel.
     pub position_error_um_before: f64,
     /// The same, extended.
     pub position_error_um_after: f64,
+    /// Rms of setpoint − position of the record itself, where there is a setpoint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tracking_error_um: Option<f64>,
     /// The declared model's error over the rms of setpoint − position, percent, where there is a
     /// setpoint.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,14 +84,11 @@ pub struct FreeRunErrors {
     pub tracking_error_percent_after: Option<f64>,
 }
 
-/// What stick, bristle and gap leave on blocks that were not fitted; µm (µrad).
-#[allow(
-    clippy::struct_field_names,
-    reason = "the keys of the JSON form carry their unit"
-)]
+/// What stick, bristle and gap leave: of the simulated position on blocks that were not fitted, µm
+/// (µrad), and of the effort about reversals, rms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ReversalShapes {
-    /// Rigid friction.
+    /// Rigid friction. Here as below: no number where the simulation ran away.
     pub rigid_um: f64,
     /// A bristle.
     pub bristle_um: f64,
@@ -80,6 +98,12 @@ pub struct ReversalShapes {
     /// A bristle behind a gap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub both_um: Option<f64>,
+    /// Effort about reversals that rigid friction leaves, in the unit of the effort.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rigid_effort: Option<f64>,
+    /// The same, a bristle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bristle_effort: Option<f64>,
 }
 
 /// Torque ripple of an axis that is never slow for long, found about its reversals.
@@ -116,14 +140,28 @@ pub struct RippleOrder {
     pub evidence: f64,
 }
 
+impl RippleOrder {
+    /// Its amplitude with the interval.
+    #[must_use]
+    pub fn estimate(&self, unit: &str) -> Estimate {
+        Estimate {
+            value: self.amplitude,
+            unit: unit.into(),
+            low: self.amplitude - self.half_width,
+            high: self.amplitude + self.half_width,
+        }
+    }
+}
+
 /// Free-run simulation with output-error fits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FreeRun {
-    /// `known`: the controller of the dataset gives the recorded effort. `followed`: it is not
-    /// known; the recorded effort was applied and a soft controller of our own kept the simulation
-    /// near the record, so that the errors compare models but are no free run.
+    /// `known`: the controller of the dataset gives the recorded effort. Else the recorded effort
+    /// was applied and a soft controller of our own kept the simulation near the record, so that
+    /// the errors compare models but are no free run: the controller is `not described`, `hidden
+    /// by noise` of the record, or `refuted` by it.
     pub controller: &'static str,
-    /// What the known controller leaves of the recorded effort, percent.
+    /// What the described controller leaves of the recorded effort, percent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub controller_misfit_percent: Option<f64>,
     /// Training record.
@@ -132,8 +170,6 @@ pub struct FreeRun {
     pub validate: FreeRunErrors,
     /// The shapes that were compared.
     pub reversals: ReversalShapes,
-    /// Parameters of the extended model, fitted to the positions.
-    pub parameters: std::collections::BTreeMap<String, Estimate>,
 }
 
 /// Whether structure is left.
@@ -160,6 +196,8 @@ pub struct Report {
     pub declared: Vec<String>,
     /// Effects that were lacking, in order of contribution.
     pub found: Vec<String>,
+    /// Where each of them shows.
+    pub shown: Vec<Shown>,
     /// Ranking.
     pub candidates: Vec<Candidate>,
     /// Errors on the training record.
@@ -188,6 +226,8 @@ pub struct Report {
     pub as_defined: Option<[Errors; 2]>,
     /// Parameters of the extended model.
     pub parameters: std::collections::BTreeMap<String, Estimate>,
+    /// The output that each of them comes from.
+    pub parameters_from: std::collections::BTreeMap<String, &'static str>,
     /// `explained` or `unexplained`.
     pub verdict: String,
     /// What the record cannot say, and what cannot be told apart.

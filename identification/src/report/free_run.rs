@@ -8,15 +8,16 @@ use axis_model::EffectName;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::inverse_dynamics::Compared;
+use crate::evidence::reversal::Presliding;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::report::forms::{FreeRun, FreeRunErrors, ReversalShapes};
-use crate::report::parameters;
 use crate::simulate::axis::Shape;
+use crate::simulate::controller::known::Controller;
 use crate::simulate::drive::Drive;
 use crate::simulate::fit::fit;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{Run, SETTLING_ROWS, position_rms, simulate};
+use crate::simulate::run::{Run, SETTLING_ROWS, position_rms, simulate, strays};
 
 const MICRO: f64 = 1.0e6;
 /// Points of the picture, at most about twice as many.
@@ -33,22 +34,32 @@ pub(crate) fn report(
         declared: declared(findings, reversals)?,
         extended: reversals.best().model.clone(),
     };
-    let (dataset, drive) = (findings.dataset, &reversals.drive);
+    let (travel, drive) = (2.0 * findings.dataset.travel().1, &reversals.drive);
     let form = FreeRun {
-        controller: match drive {
-            Drive::Known(_) => "known",
-            Drive::Followed => "followed",
-        },
-        controller_misfit_percent: match drive {
-            Drive::Known(law) => Some(100.0 * law.misfit),
-            Drive::Followed => None,
-        },
-        train: errors(&models, drive, &judged_on.train),
-        validate: errors(&models, drive, &judged_on.validate),
-        reversals: shapes(reversals),
-        parameters: parameters::of_a_free_run(reversals.estimates(dataset)),
+        controller: word(reversals.controller),
+        controller_misfit_percent: misfit(reversals.controller).map(|share| 100.0 * share),
+        train: errors(&models, drive, &judged_on.train, travel),
+        validate: errors(&models, drive, &judged_on.validate, travel),
+        reversals: shapes(reversals, findings.stages.reversals.inverse),
     };
     Some((form, curve(&models, drive, &judged_on.validate)))
+}
+
+const fn word(controller: Controller) -> &'static str {
+    match controller {
+        Controller::Known(_) => "known",
+        Controller::NotDescribed => "not described",
+        Controller::Hidden(_) => "hidden by noise",
+        Controller::Refuted(_) => "refuted",
+    }
+}
+
+const fn misfit(controller: Controller) -> Option<f64> {
+    match controller {
+        Controller::Known(law) => Some(law.misfit),
+        Controller::NotDescribed => None,
+        Controller::Hidden(share) | Controller::Refuted(share) => Some(share),
+    }
 }
 
 /// The declared model, simulated.
@@ -66,27 +77,38 @@ fn declared(findings: &Findings<'_>, reversals: &Reversals) -> Option<Simulated>
     Some(fit(&start, &reversals.drive, &dataset.train, &|_| true))
 }
 
-fn errors(models: &Compared<Simulated>, drive: &Drive, record: &Record) -> FreeRunErrors {
+fn errors(
+    models: &Compared<Simulated>,
+    drive: &Drive,
+    record: &Record,
+    travel: f64,
+) -> FreeRunErrors {
     let um = models.each(|model| {
         let run = simulate(model, drive, record);
+        if strays(&run, record, travel) {
+            return f64::NAN;
+        }
         MICRO * position_rms(&run, record, &|_| true)
     });
     let tracking_um = tracking_rms(record).map(|rms| MICRO * rms);
     FreeRunErrors {
         position_error_um_before: um.declared,
         position_error_um_after: um.extended,
+        tracking_error_um: tracking_um,
         tracking_error_percent_before: tracking_um.map(|rms| 100.0 * um.declared / rms),
         tracking_error_percent_after: tracking_um.map(|rms| 100.0 * um.extended / rms),
     }
 }
 
-fn shapes(reversals: &Reversals) -> ReversalShapes {
-    let um = |judged: &Judged| MICRO * judged.held_out;
+fn shapes(reversals: &Reversals, inverse: Option<Presliding>) -> ReversalShapes {
+    let um = |judged: &Judged| MICRO * judged.told();
     ReversalShapes {
         rigid_um: um(&reversals.rigid),
         bristle_um: um(&reversals.bristle),
         gap_um: reversals.gap.as_ref().map(um),
         both_um: reversals.both.as_ref().map(um),
+        rigid_effort: inverse.map(|inverse| inverse.rigid),
+        bristle_effort: inverse.map(|inverse| inverse.dahl),
     }
 }
 

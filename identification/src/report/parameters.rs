@@ -15,32 +15,51 @@ use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::bench::Bench;
 use crate::model::effects::{Named, Naming};
-use crate::simulate::model::estimates::Estimates;
+use crate::report::ranking;
 
 /// A parameter with its name.
 type Entry = (String, Estimate);
 
-/// The table of an identification.
-pub(crate) fn parameters(findings: &Findings<'_>) -> BTreeMap<String, Estimate> {
-    let stages = &findings.stages;
-    let mut entries = entries(of_the_inverse_model(findings));
-    entries.extend(of_the_shape(findings));
-    let difference = stages.difference.iter();
-    let effects = difference.flat_map(|difference| of_the_difference(findings, difference));
-    entries.extend(effects.flat_map(|effect| of_an_effect(&effect)));
-    let orders = stages.ripple.iter().flat_map(|ripple| &ripple.orders);
-    entries.extend(orders.map(|order| of_an_order(findings, order)));
-    table(entries)
+/// The parameters of an identification: each once, with the output that it comes from.
+pub(crate) struct Parameters {
+    /// Values and intervals.
+    pub estimates: BTreeMap<String, Estimate>,
+    /// Outputs.
+    pub from: BTreeMap<String, &'static str>,
 }
 
-/// Entries as a table; a name that comes again gets a number.
-fn table(entries: Vec<Entry>) -> BTreeMap<String, Estimate> {
-    let mut table = BTreeMap::new();
-    for (name, estimate) in entries {
-        let key = free_key(&table, &name);
-        table.insert(key, estimate);
+/// The table of an identification.
+pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
+    let stages = &findings.stages;
+    let difference = stages.difference.iter();
+    let between = difference.flat_map(|difference| of_the_difference(findings, difference));
+    let orders = stages.ripple.iter().flat_map(|ripple| &ripple.orders);
+    let of_outputs = [
+        (ranking::EFFORT, entries(of_the_inverse_model(findings))),
+        of_the_shape(findings),
+        (
+            ranking::DIFFERENCE,
+            between.flat_map(|effect| of_an_effect(&effect)).collect(),
+        ),
+        (
+            ranking::ABOUT_FAST_REVERSALS,
+            orders.map(|order| of_an_order(findings, order)).collect(),
+        ),
+    ];
+    table(of_outputs)
+}
+
+/// Entries of outputs as a table; a name that comes again gets a number.
+fn table(of_outputs: impl IntoIterator<Item = (&'static str, Vec<Entry>)>) -> Parameters {
+    let (mut estimates, mut from) = (BTreeMap::new(), BTreeMap::new());
+    for (output, entries) in of_outputs {
+        for (name, estimate) in entries {
+            let key = free_key(&estimates, &name);
+            from.insert(key.clone(), output);
+            estimates.insert(key, estimate);
+        }
     }
-    table
+    Parameters { estimates, from }
 }
 
 fn free_key(table: &BTreeMap<String, Estimate>, name: &str) -> String {
@@ -99,9 +118,9 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
     parameters.collect()
 }
 
-/// Deflection and gap: from the free run with their intervals where that decided, else the
-/// deflection that the effort about reversals gave.
-fn of_the_shape(findings: &Findings<'_>) -> Vec<Entry> {
+/// Deflection and gap, with their output: from the free run with their intervals where that
+/// decided, else the deflection that the effort about reversals gave.
+fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
     let Some(reversals) = findings.stages.reversals.accepted_shape() else {
         let length = findings.dataset.kind.position_unit();
         let bristle = findings.models.extended.deflection.map(|deflection| {
@@ -110,16 +129,12 @@ fn of_the_shape(findings: &Findings<'_>) -> Vec<Entry> {
                 damping: None,
             })
         });
-        return bristle.iter().flat_map(of_an_effect).collect();
+        let bristle = bristle.iter().flat_map(of_an_effect);
+        return (ranking::ABOUT_REVERSALS, bristle.collect());
     };
-    let shape = reversals.estimates(findings.dataset).shape;
-    shape.iter().flat_map(of_an_effect).collect()
-}
-
-/// Everything that a free run was fitted to be.
-pub(crate) fn of_a_free_run(estimates: Estimates) -> BTreeMap<String, Estimate> {
-    let shape = estimates.shape.iter().flat_map(of_an_effect);
-    table(entries(estimates.parts).into_iter().chain(shape).collect())
+    let shape = reversals.estimates(findings.dataset);
+    let shape = shape.iter().flat_map(of_an_effect);
+    (ranking::FREE_RUN, shape.collect())
 }
 
 fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {
@@ -205,8 +220,13 @@ mod tests {
     fn a_second_and_a_third_ripple_get_numbers() {
         let name = "torque_ripple_amplitude";
         let ripple = [3.0, 2.0, 1.0].map(|value| named(name, value, None));
-        let table = table(entries(ripple.to_vec()));
-        let values: Vec<(&str, f64)> = table.iter().map(|(k, p)| (k.as_str(), p.value)).collect();
+        let table = table([("an output", entries(ripple.to_vec()))]);
+        assert!(table.from.values().all(|from| *from == "an output"));
+        let values: Vec<(&str, f64)> = table
+            .estimates
+            .iter()
+            .map(|(k, p)| (k.as_str(), p.value))
+            .collect();
         let wanted = [
             ("torque_ripple_amplitude", 3.0),
             ("torque_ripple_amplitude_2", 2.0),

@@ -17,10 +17,11 @@ use crate::model::effects::find;
 use crate::model::inverse::{Model, Part};
 use crate::report::forms::Candidate;
 
-const EFFORT: &str = "effort of moving samples";
-const ABOUT_REVERSALS: &str = "effort about reversals";
-const FREE_RUN: &str = "free-run position";
-const DIFFERENCE: &str = "motor - load position";
+pub(crate) const EFFORT: &str = "effort of moving samples";
+pub(crate) const ABOUT_REVERSALS: &str = "effort about reversals";
+pub(crate) const ABOUT_FAST_REVERSALS: &str = "effort about fast reversals";
+pub(crate) const FREE_RUN: &str = "free-run position";
+pub(crate) const DIFFERENCE: &str = "motor - load position";
 
 /// Every candidate once, where it stood best; accepted ones first.
 pub(crate) fn candidates(findings: &Findings<'_>) -> Vec<Candidate> {
@@ -28,6 +29,7 @@ pub(crate) fn candidates(findings: &Findings<'_>) -> Vec<Candidate> {
     list.extend(on_reversals(findings));
     list.extend(on_free_run(findings));
     list.extend(on_difference(findings));
+    list.extend(about_fast_reversals(findings));
     let names = findings.found.names();
     for candidate in &mut list {
         candidate.accepted = names.iter().any(|name| name.as_str() == candidate.effect);
@@ -74,6 +76,7 @@ fn on_effort_alone(
     Candidate {
         effect: scored.effect.as_str().into(),
         validation_error_percent: Some(validation.force_error_percent(&fitted)),
+        difference_left_percent: None,
         evidence: scored.gain.t,
         share: scored.gain.share,
         judged_on: EFFORT,
@@ -95,6 +98,7 @@ fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
     Some(Candidate {
         effect: EffectName::Presliding.to_string(),
         validation_error_percent: Some(with_bristle(findings, &presliding)),
+        difference_left_percent: None,
         evidence: presliding.t,
         share: removed(presliding.dahl, presliding.rigid),
         judged_on: ABOUT_REVERSALS,
@@ -125,6 +129,7 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
     let candidate = |effect: EffectName, judged: &Judged| Candidate {
         effect: effect.to_string(),
         validation_error_percent: None,
+        difference_left_percent: None,
         evidence: reversals.t(judged),
         share: removed(judged.held_out, reversals.rigid.held_out),
         judged_on: FREE_RUN,
@@ -135,6 +140,21 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
     let gap = reversals.gap.as_ref();
     let gap = gap.map(|gap| candidate(EffectName::Backlash, gap));
     [bristle].into_iter().chain(gap).collect()
+}
+
+fn about_fast_reversals(findings: &Findings<'_>) -> Option<Candidate> {
+    let ripple = findings.stages.ripple.as_ref()?;
+    let percent = ripple.train_percent;
+    Some(Candidate {
+        effect: EffectName::TorqueRipple.to_string(),
+        validation_error_percent: None,
+        difference_left_percent: None,
+        evidence: ripple.orders.first().map_or(0.0, |order| order.gain.t),
+        share: removed(percent.extended, percent.declared),
+        judged_on: ABOUT_FAST_REVERSALS,
+        physical: true,
+        accepted: false,
+    })
 }
 
 /// The first round: later ones stand on what was accepted in it.
@@ -149,8 +169,8 @@ fn of_the_difference(scored: &Scored) -> Candidate {
     let share_left = (1.0 - scored.gain.share).max(0.0);
     Candidate {
         effect: scored.effect.as_str().into(),
-        // Of the position difference: what is left of its rms on held-out blocks.
-        validation_error_percent: Some(100.0 * share_left.sqrt()),
+        validation_error_percent: None,
+        difference_left_percent: Some(100.0 * share_left.sqrt()),
         evidence: scored.gain.t,
         share: scored.gain.share,
         judged_on: DIFFERENCE,
@@ -167,6 +187,7 @@ mod tests {
         Candidate {
             effect: effect.into(),
             validation_error_percent: None,
+            difference_left_percent: None,
             evidence: 5.0,
             share,
             judged_on,

@@ -6,7 +6,6 @@ use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::reversal::Presliding;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
-use crate::record::units::AxisKind;
 use crate::report::figures;
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
@@ -23,14 +22,10 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
             .filter(|run| run.rigid.ran_away)
             .map(|_| RAN_AWAY.to_owned()),
     );
-    let length = match dataset.kind {
-        AxisKind::Linear => "µm",
-        AxisKind::Rotary => "µrad",
-    };
     let said = Said {
         stage,
         effort: dataset.effort.unit(),
-        length,
+        length: dataset.kind.millionths(),
     };
     list.extend(said.sentence());
     list.extend(of_another_day(&findings.changes));
@@ -110,6 +105,11 @@ impl Said<'_> {
                 self.on_effort()?
             )),
             (false, false, Some(run)) => Some(self.undecided(run)),
+            (true, false, None) if run.is_some_and(|run| run.alone.backlash) => Some(format!(
+                "presliding: {} is clear; the simulated position alone would have a gap ({}), but a gap hardly changes that effort",
+                self.on_effort()?,
+                self.figures(run?)
+            )),
             (true, false, None) if !run.is_some_and(shows_a_bristle) => {
                 Some(format!("presliding: {}", self.on_effort()?))
             }
@@ -146,12 +146,7 @@ impl Said<'_> {
 
     fn figures(&self, run: &Reversals) -> String {
         let left = |name: &str, judged: &Judged| {
-            let rms = if judged.ran_away {
-                f64::NAN
-            } else {
-                judged.held_out
-            };
-            format!("{name} {}", figures::error(1.0e6 * rms))
+            format!("{name} {}", figures::error(1.0e6 * judged.told()))
         };
         let gap = run.gap.iter().map(|gap| left("a gap", gap));
         let both = run.both.iter().map(|both| left("both", both));

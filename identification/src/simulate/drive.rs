@@ -8,7 +8,7 @@
 use crate::record::samples::Record;
 use crate::simulate::axis::Axis;
 use crate::simulate::controller::known::Controller;
-use crate::simulate::controller::law::{Law, Measured, Memory};
+use crate::simulate::controller::law::{Law, Memory};
 use crate::simulate::controller::timing::Setpoints;
 
 /// Bandwidth ω of the soft controller, rad/s: below any drive's own, so that it does not hide what
@@ -62,13 +62,9 @@ impl Driving<'_> {
     pub(crate) fn effort(&mut self, row: usize, axis: &Axis) -> f64 {
         match self.drive {
             Drive::Known(law) => {
-                let position = if law.on_load {
-                    axis.load.x
-                } else {
-                    axis.motor.x
-                };
                 let setpoints = Setpoints::of(self.record);
-                law.effort(&setpoints, &mut self.memory, Measured { row, position })
+                let seen = law.sees(row, axis.motor.x, axis.load.x);
+                law.effort(&setpoints, &mut self.memory, seen)
             }
             Drive::Followed => self.followed(row, axis),
         }
@@ -139,6 +135,7 @@ mod tests {
                 position_gain: 4.0,
                 limit: None,
                 on_load,
+                velocity_of_load: on_load,
                 misfit: 0.0,
             };
             let drive = Drive::Known(law);

@@ -1,6 +1,7 @@
 //! The folder of a dataset: `train.csv`, `validate.csv`, and `dataset.toml` that says what they
 //! are.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -66,20 +67,17 @@ fn csv(record: &AxisRecord, noise_n: f64, seed: u64) -> String {
     text
 }
 
-/// What an engineer knows of the axis before it moves: units, encoders, current loop, declared
-/// effects. Nothing of the simulator's own.
+/// What an engineer knows of the axis before it moves: units, encoders, current loop, the
+/// controller that is downloaded, declared effects. Nothing of the simulator's own.
 fn dataset_toml(machine: &Machine, axis: &MachineAxis) -> String {
     let actual = &axis.actual;
-    let sensor = match axis.gains.position_sensor {
-        PositionSensor::Motor => "motor",
-        PositionSensor::Load => "load",
-    };
+    let controller = controller_toml(axis);
     let quoted = axis.declared.iter().map(|name| format!("\"{name}\""));
     let declared = quoted.collect::<Vec<_>>().join(", ");
     format!(
         "name = \"{}-{}\"\nsample_period_s = {}\neffort_hold = \"zero-order\"\ntime_from = \"power-on\"\neffort_lag_s = {}   # current loop, first order\n\n\
          [axis]\nkind = \"linear\"\nlead_m_per_rev = {}\nencoder_resolution_m = {:e}\nload_encoder_resolution_m = {:e}\n\n\
-         [controller]\nposition_gain_per_s = {}\nposition_sensor = \"{sensor}\"\n\n[declared]\neffects = [{declared}]\n",
+         {controller}\n[declared]\neffects = [{declared}]\n",
         machine.name,
         axis.name,
         machine.period_s,
@@ -87,7 +85,25 @@ fn dataset_toml(machine: &Machine, axis: &MachineAxis) -> String {
         actual.lead_m_per_rev,
         actual.lead_m_per_rev / f64::from(actual.motor_encoder_counts_per_rev),
         actual.load_encoder_resolution_m,
-        axis.gains.position_gain_per_s,
+    )
+}
+
+/// The controller that the drive gets: its velocity loop takes the motor's velocity, and its
+/// feedforward the inertia that the drive is told.
+fn controller_toml(axis: &MachineAxis) -> String {
+    let gains = &axis.gains;
+    let sensor = match gains.position_sensor {
+        PositionSensor::Motor => "motor",
+        PositionSensor::Load => "load",
+    };
+    let inertia_kg = axis.actual.inertia().inertia;
+    format!(
+        "[controller]\nposition_gain_per_s = {}\nvelocity_gain_n_s_per_m = {}\nintegral_per_s = {}\nvelocity_filter = {}\n\
+         acceleration_feedforward_kg = {inertia_kg}\nposition_sensor = \"{sensor}\"\nvelocity_sensor = \"motor\"\n",
+        gains.position_gain_per_s,
+        TAU * gains.velocity_bandwidth_hz * inertia_kg,
+        TAU * gains.velocity_integral_hz,
+        gains.velocity_filter,
     )
 }
 
@@ -122,6 +138,32 @@ mod tests {
         assert_eq!(train.lines().count(), 101);
         assert_eq!(train, written(Part::Train, None).0);
         assert_ne!(train, written(Part::Validate, None).0);
+    }
+
+    #[test]
+    fn a_dataset_carries_the_gains_that_the_drive_gets() {
+        let (_, toml) = written(Part::Train, None);
+        let form: toml::Table = toml.parse().unwrap();
+        let controller = &form["controller"];
+        let (axis, number) = (&Machine::reference().axes[0], |key: &str| {
+            let value = &controller[key];
+            let whole = value.as_integer().map(|whole| f64::from(whole as i32));
+            value.as_float().or(whole).unwrap()
+        });
+        let (gains, kg) = (&axis.gains, axis.actual.inertia().inertia);
+        for (key, wanted) in [
+            ("position_gain_per_s", gains.position_gain_per_s),
+            (
+                "velocity_gain_n_s_per_m",
+                TAU * gains.velocity_bandwidth_hz * kg,
+            ),
+            ("integral_per_s", TAU * gains.velocity_integral_hz),
+            ("velocity_filter", gains.velocity_filter),
+            ("acceleration_feedforward_kg", kg),
+        ] {
+            assert!((number(key) / wanted - 1.0).abs() < 1.0e-12, "{key}");
+        }
+        assert_eq!(controller["velocity_sensor"].as_str(), Some("motor"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use identification::{Identification, Report};
+use identification::{Identification, Report, figures};
 use serde::Serialize;
 
 use super::reversal_curves::six_curves;
@@ -218,8 +218,8 @@ fn circle_rows(before: &CircleReport, after: &CircleReport) -> TextTable {
 fn row(name: &str, [before, after]: [f64; 2], unit: &str) -> Vec<String> {
     vec![
         name.to_owned(),
-        format!("{before:.2}"),
-        format!("{after:.2}"),
+        figures::error(before),
+        figures::error(after),
         unit.to_owned(),
     ]
 }

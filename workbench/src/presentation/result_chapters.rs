@@ -1,12 +1,12 @@
 //! The chapters of a page about one identification.
 
-use identification::Identification;
+use identification::{Identification, figures};
 
 use super::page::Page;
 use super::result_pictures::{effect_pictures, free_run_picture, residual_pictures, time_picture};
 use super::result_tables::{
-    candidate_table, error_table, free_run_table, parameter_table, protocol_table,
-    reversal_shape_table, sentence, slow_ripple_table,
+    candidate_table, error_table, free_run_sentence, free_run_table, parameter_table,
+    protocol_table, reversal_shape_table, sentence, shown_table, slow_ripple_table,
 };
 use crate::error::Outcome;
 
@@ -19,6 +19,10 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
     page.heading(title);
     page.key(&sentence(report));
     page.table(&error_table(result));
+    if !report.shown.is_empty() {
+        page.paragraph("Where each effect shows that was found, on the training record:");
+        page.table(&shown_table(report));
+    }
     page.pictures(&residual_pictures(result)?);
     page.pictures(&[time_picture(result)?]);
     page.pictures(&effect_pictures(result)?);
@@ -31,7 +35,7 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
     );
     page.table(&candidate_table(report));
     page.paragraph(
-        "Parameters of the extended model, with 95 % intervals (jackknife over blocks of 1 s, nonlinear ones linearised; low = high where there is none):",
+        "Parameters of the extended model, with 95 % intervals (jackknife over blocks of 1 s, nonlinear ones linearised); model.toml carries the same:",
     );
     page.table(&parameter_table(report));
     for warning in &report.warnings {
@@ -45,14 +49,10 @@ fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
     let Some(free_run) = &result.report.free_run else {
         return Ok(());
     };
-    page.paragraph(if free_run.controller == "known" {
-        "Free run: the whole axis simulated in closed loop from the setpoints alone, parameters fitted to the positions of the training record:"
-    } else {
-        "The controller is not known: the recorded effort was applied and a soft controller kept the simulation near the record. No free run, but models compare:"
-    });
+    page.paragraph(&free_run_sentence(free_run));
     page.table(&free_run_table(result));
     page.paragraph(
-        "What acts at reversals, by what the free run leaves on blocks that were not fitted:",
+        "What each shape of friction leaves at reversals, of the simulated position (blocks that were not fitted) and of the effort:",
     );
     page.table(&reversal_shape_table(result));
     page.pictures(&[free_run_picture(result)?]);
@@ -65,14 +65,14 @@ fn slow_ripple(page: &mut Page, result: &Identification) {
         return;
     };
     page.paragraph(&format!(
-        "Torque ripple about the reversals (samples up to {:.3} {}/s, low-pass {} Hz): force error {:.2} → {:.2} % on the training record, {:.2} → {:.2} % on the validation record:",
-        ripple.fastest,
+        "Torque ripple about the reversals (samples up to {} {}/s, low-pass {} Hz): force error {} → {} % on the training record, {} → {} % on the validation record:",
+        figures::error(ripple.fastest),
         result.position_unit,
         ripple.cutoff_hz,
-        ripple.train_force_error_before_percent,
-        ripple.train_force_error_after_percent,
-        ripple.validate_force_error_before_percent,
-        ripple.validate_force_error_after_percent
+        figures::error(ripple.train_force_error_before_percent),
+        figures::error(ripple.train_force_error_after_percent),
+        figures::error(ripple.validate_force_error_before_percent),
+        figures::error(ripple.validate_force_error_after_percent)
     ));
     page.table(&slow_ripple_table(result));
 }

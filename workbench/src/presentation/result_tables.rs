@@ -1,7 +1,7 @@
 //! What an identification found, as a sentence and as tables of text: the same for a page and for
 //! the console.
 
-use identification::{Errors, FreeRunErrors, Identification, Report};
+use identification::{Errors, FreeRun, FreeRunErrors, Identification, Report, figures};
 
 /// Rows of cells; the first one is the head.
 pub type TextTable = Vec<Vec<String>>;
@@ -70,13 +70,13 @@ pub fn error_table(result: &Identification) -> TextTable {
 fn error_row(name: &str, errors: &Errors, has_difference: bool) -> Vec<String> {
     let mut row = vec![
         name.to_owned(),
-        format!("{:.2}", errors.force_error_before_percent),
-        format!("{:.2}", errors.force_error_after_percent),
-        format!("{:.1}", errors.reversal_error_before),
-        format!("{:.1}", errors.reversal_error_after),
+        figures::error(errors.force_error_before_percent),
+        figures::error(errors.force_error_after_percent),
+        figures::error(errors.reversal_error_before),
+        figures::error(errors.reversal_error_after),
     ];
     if has_difference {
-        let um = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
+        let um = |value: Option<f64>| value.map_or_else(String::new, figures::error);
         row.push(um(errors.position_difference_error_um_before));
         row.push(um(errors.position_difference_error_um_after));
     }
@@ -88,11 +88,10 @@ fn error_row(name: &str, errors: &Errors, has_difference: bool) -> Vec<String> {
 pub fn protocol_table(report: &Report) -> TextTable {
     let mut rows = vec![head(["samples and fit", "declared, %", "extended, %"])];
     rows.extend(report.protocols.iter().map(|protocol| {
-        let percent = |value: f64| format!("{value:.2}");
         vec![
             protocol.definition.to_owned(),
-            percent(protocol.declared_percent),
-            percent(protocol.extended_percent),
+            figures::error(protocol.declared_percent),
+            figures::error(protocol.extended_percent),
         ]
     }));
     rows
@@ -106,7 +105,8 @@ pub fn candidate_table(report: &Report) -> TextTable {
         "judged on",
         "share removed, %",
         "evidence t",
-        "validation error alone, %",
+        "force error with it alone, validation, %",
+        "motor − load left with it alone, %",
         "physical",
     ])];
     rows.extend(report.candidates.iter().map(|candidate| {
@@ -114,38 +114,85 @@ pub fn candidate_table(report: &Report) -> TextTable {
         vec![
             format!("{mark}{}", candidate.effect),
             candidate.judged_on.to_owned(),
-            format!("{:.1}", 100.0 * candidate.share.max(-9.99)),
-            format!("{:.1}", candidate.evidence),
-            candidate
-                .validation_error_percent
-                .map_or_else(|| "–".to_owned(), |error| format!("{error:.2}")),
+            figures::error(100.0 * candidate.share),
+            figures::error(candidate.evidence),
+            or_dash(candidate.validation_error_percent),
+            or_dash(candidate.difference_left_percent),
             if candidate.physical { "yes" } else { "no" }.to_owned(),
         ]
     }));
     rows
 }
 
-/// The parameters of the extended model with their intervals.
+/// A figure; a dash where there is none.
+fn or_dash(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), figures::error)
+}
+
+/// Each effect that was found, with what is left of the outputs on which it shows.
 #[must_use]
-pub fn parameter_table(report: &Report) -> TextTable {
-    let mut rows = vec![head(["parameter", "value", "low", "high", "unit"])];
-    rows.extend(report.parameters.iter().map(|(name, parameter)| {
-        let number = |value: f64| {
-            if value.abs() >= 0.01 && value.abs() < 1.0e6 {
-                format!("{value:.4}")
-            } else {
-                format!("{value:.4e}")
-            }
-        };
+pub fn shown_table(report: &Report) -> TextTable {
+    let mut rows = vec![head([
+        "effect",
+        "shows on",
+        "left without it",
+        "left with it",
+        "unit",
+    ])];
+    rows.extend(report.shown.iter().map(|row| {
         vec![
-            name.clone(),
-            number(parameter.value),
-            number(parameter.low),
-            number(parameter.high),
-            parameter.unit.clone(),
+            row.effect.clone(),
+            row.on.to_owned(),
+            figures::error(row.without),
+            figures::error(row.with),
+            row.unit.to_owned(),
         ]
     }));
     rows
+}
+
+/// The parameters of the extended model with their intervals, and the output of each.
+#[must_use]
+pub fn parameter_table(report: &Report) -> TextTable {
+    let columns = ["parameter", "value", "low", "high", "unit", "from"];
+    let mut rows = vec![head(columns)];
+    rows.extend(report.parameters.iter().map(|(name, parameter)| {
+        let [value, low, high] = figures::estimate(parameter);
+        let has_interval = parameter.low < parameter.high;
+        let end = |end: String| if has_interval { end } else { "–".into() };
+        let from = report.parameters_from.get(name).copied();
+        vec![
+            name.clone(),
+            value,
+            end(low),
+            end(high),
+            parameter.unit.clone(),
+            from.unwrap_or_default().to_owned(),
+        ]
+    }));
+    rows
+}
+
+/// Who drove the simulation, and what its errors are worth.
+#[must_use]
+pub fn free_run_sentence(free_run: &FreeRun) -> String {
+    let misfit = free_run.controller_misfit_percent.map(figures::error);
+    let misfit = misfit.unwrap_or_default();
+    let followed = "the recorded effort was applied and a soft controller kept the simulation near the record. No free run, but models compare:";
+    match free_run.controller {
+        "known" => format!(
+            "Free run: the whole axis simulated in closed loop from the setpoints alone, with the controller of dataset.toml (it leaves {misfit} % of the recorded effort), parameters fitted to the positions of the training record:"
+        ),
+        "not described" => format!(
+            "dataset.toml describes no whole controller, or the record has no setpoints: {followed}"
+        ),
+        "hidden by noise" => format!(
+            "The controller of dataset.toml leaves {misfit} % of the recorded effort, most of it noise from row to row: {followed}"
+        ),
+        _ => format!(
+            "The controller of dataset.toml does not give the recorded effort (it leaves {misfit} %): {followed}"
+        ),
+    }
 }
 
 /// Errors of the free run on both records; empty where there was none.
@@ -154,15 +201,12 @@ pub fn free_run_table(result: &Identification) -> TextTable {
     let Some(free_run) = &result.report.free_run else {
         return TextTable::new();
     };
-    let percent =
-        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
     let line = |name: &str, errors: &FreeRunErrors| {
         vec![
             name.to_owned(),
-            format!("{:.3}", errors.position_error_um_before),
-            format!("{:.3}", errors.position_error_um_after),
-            percent(errors.tracking_error_percent_before),
-            percent(errors.tracking_error_percent_after),
+            figures::error(errors.position_error_um_before),
+            figures::error(errors.position_error_um_after),
+            or_dash(errors.tracking_error_um),
         ]
     };
     vec![
@@ -170,8 +214,10 @@ pub fn free_run_table(result: &Identification) -> TextTable {
             "record",
             &format!("position error before, {} rms", position_error_unit(result)),
             &format!("after, {} rms", position_error_unit(result)),
-            "of the tracking error before, %",
-            "after, %",
+            &format!(
+                "setpoint − position of the record, {} rms",
+                position_error_unit(result)
+            ),
         ]),
         line("training", &free_run.train),
         line("validation", &free_run.validate),
@@ -185,17 +231,22 @@ pub fn reversal_shape_table(result: &Identification) -> TextTable {
         return TextTable::new();
     };
     let shapes = &free_run.reversals;
-    let row = |name: &str, value: Option<f64>| {
-        let left = value.map_or_else(|| "not tried".to_owned(), |value| format!("{value:.3}"));
-        vec![name.to_owned(), left]
+    let row = |name: &str, position: Option<f64>, effort: Option<f64>| {
+        let left = position.map_or_else(|| "not tried".to_owned(), figures::error);
+        vec![name.to_owned(), left, or_dash(effort)]
     };
-    let unit = position_error_unit(result);
+    let (length, effort) = (position_error_unit(result), result.effort_unit);
+    let (rigid, bristle) = (shapes.rigid_effort, shapes.bristle_effort);
     vec![
-        head(["shape", &format!("position error, {unit} rms")]),
-        row("rigid friction with stick", Some(shapes.rigid_um)),
-        row("bristle (presliding)", Some(shapes.bristle_um)),
-        row("gap (backlash)", shapes.gap_um),
-        row("bristle behind a gap", shapes.both_um),
+        head([
+            "shape",
+            &format!("simulated position, {length} rms"),
+            &format!("effort about reversals, {effort} rms"),
+        ]),
+        row("rigid friction with stick", Some(shapes.rigid_um), rigid),
+        row("bristle (presliding)", Some(shapes.bristle_um), bristle),
+        row("gap (backlash)", shapes.gap_um, None),
+        row("bristle behind a gap", shapes.both_um, None),
     ]
 }
 
@@ -206,13 +257,10 @@ pub fn slow_ripple_table(result: &Identification) -> TextTable {
         return TextTable::new();
     };
     let amplitude = format!("amplitude, {}", result.effort_unit);
-    let mut rows = vec![head(["order per revolution", &amplitude, "± (95 %)"])];
+    let mut rows = vec![head(["order per revolution", &amplitude, "low", "high"])];
     rows.extend(ripple.orders.iter().map(|order| {
-        vec![
-            order.per_rev.to_string(),
-            format!("{:.4}", order.amplitude),
-            format!("{:.4}", order.half_width),
-        ]
+        let [amplitude, low, high] = figures::estimate(&order.estimate(result.effort_unit));
+        vec![order.per_rev.to_string(), amplitude, low, high]
     }));
     rows
 }

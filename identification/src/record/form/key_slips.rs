@@ -21,7 +21,7 @@ const OTHER_KEYS: [(&str, &[&str]); 4] = [
         ],
     ),
     ("axis", &["kind"]),
-    ("controller", &["position_sensor"]),
+    ("controller", &["position_sensor", "velocity_sensor"]),
     ("declared", &["effects"]),
 ];
 /// Most edits (Damerau–Levenshtein) between a key and one that was meant.

@@ -11,7 +11,7 @@ use std::ops::Range;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 use crate::record::units::Effort;
-use crate::simulate::controller::law::{Form, Law, Measured, Memory};
+use crate::simulate::controller::law::{Form, Law, Memory};
 use crate::simulate::controller::timing::{Setpoints, TIMINGS, Timing};
 
 /// A law fits where it leaves less than this share of the recorded effort (rms): the rest is noise
@@ -94,7 +94,7 @@ impl Law {
 
     /// Whether what it closes on was recorded.
     fn is_checkable(&self, record: &Record) -> bool {
-        !self.on_load || record.load.is_some()
+        !(self.on_load || self.velocity_of_load) || record.load.is_some()
     }
 
     fn unlimited(self) -> Self {
@@ -154,12 +154,9 @@ impl Law {
 
     fn teacher_forced_piece(&self, record: &Record, mut memory: Memory) -> Vec<f64> {
         let setpoints = Setpoints::of(record);
-        let rows = self.measured(record).iter().enumerate();
-        rows.map(|(row, position)| {
-            let position = *position;
-            self.effort(&setpoints, &mut memory, Measured { row, position })
-        })
-        .collect()
+        let rows = 0..record.len();
+        rows.map(|row| self.effort(&setpoints, &mut memory, self.measured(record, row)))
+            .collect()
     }
 
     fn misfit_on(&self, record: &Record) -> f64 {

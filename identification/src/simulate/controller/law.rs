@@ -4,6 +4,9 @@
 //! - *force*: `F = Kv (e + Ki Σ e T) + aff·a_ref`, `e = Kp (r − q) + v_ref − v_f`. The velocity v_f
 //!   follows the difference quotient of the position by the share `velocity_filter` a row;
 //!   setpoint velocity and acceleration: [`timing`](super::timing);
+//!
+//!   A drive with a load scale closes the position loop on the load, and often the velocity loop on
+//!   the motor: then v_f is of the motor's position.
 //! - *voltage*: `V = Kv (Kp (r − q) − v)`, with v from a two-sample mean of the position, then
 //!   differenced: `v_n = (q_n − q_{n−2})/2T`.
 //!
@@ -58,6 +61,8 @@ pub(crate) struct Law {
     pub limit: Option<f64>,
     /// Whether it closes the position loop on the load.
     pub on_load: bool,
+    /// Whether it takes the velocity of the load.
+    pub velocity_of_load: bool,
     /// Rms of recorded − computed effort, as a share of the recorded one; zero where the load that
     /// it closes on was not recorded.
     pub misfit: f64,
@@ -66,7 +71,7 @@ pub(crate) struct Law {
 /// State of a law.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Memory {
-    /// Position one and two rows ago.
+    /// Position of which the velocity is taken, one and two rows ago.
     before: [f64; 2],
     /// Filtered velocity.
     velocity: f64,
@@ -74,13 +79,15 @@ pub(crate) struct Memory {
     sum: f64,
 }
 
-/// A row of a record with the position that the controller measures there.
+/// A row of a record with what the controller measures there.
 #[derive(Clone, Copy)]
 pub(crate) struct Measured {
     /// Row.
     pub row: usize,
     /// Position.
     pub position: f64,
+    /// Position of which the velocity is taken.
+    pub turned: f64,
 }
 
 impl Law {
@@ -97,32 +104,45 @@ impl Law {
             timing: Timing::Central,
         });
         let voltage = form.velocity_gain_v_s_per_m;
+        let is_load = |sensor: &str| sensor == "load";
+        let on_load = form.position_sensor.as_deref().is_some_and(is_load);
         Some(Self {
             form: force.or(voltage.map(|gain| Form::Voltage { gain }))?,
             position_gain: form.position_gain_per_s?,
             limit: form.force_limit_n,
-            on_load: form.position_sensor.as_deref() == Some("load"),
+            on_load,
+            velocity_of_load: form.velocity_sensor.as_deref().map_or(on_load, is_load),
             misfit: 0.0,
         })
     }
 
-    /// The recorded positions that it closes on.
+    /// What it measures of a motor and a load in a row.
     #[must_use]
-    pub(crate) fn measured<'a>(&self, record: &'a Record) -> &'a [f64] {
-        if self.on_load {
-            record.load.as_deref().unwrap_or(&record.position)
-        } else {
-            &record.position
+    pub(crate) const fn sees(&self, row: usize, motor: f64, load: f64) -> Measured {
+        Measured {
+            row,
+            position: if self.on_load { load } else { motor },
+            turned: if self.velocity_of_load { load } else { motor },
         }
+    }
+
+    /// What it measured in a row of a record.
+    #[must_use]
+    pub(crate) fn measured(&self, record: &Record, row: usize) -> Measured {
+        let motor = record.position[row];
+        let load = record.load.as_ref().map_or(motor, |load| load[row]);
+        self.sees(row, motor, load)
     }
 
     /// State at the first row, with nothing in the integral: the axis came at the velocity that it
     /// goes on with.
     #[must_use]
     pub(crate) fn at_first(&self, record: &Record) -> Memory {
-        let positions = self.measured(record);
-        let first = positions.first().copied().unwrap_or(0.0);
-        let step = positions.get(1).map_or(0.0, |second| second - first);
+        if record.len() < 2 {
+            return Memory::default();
+        }
+        let [first, second] = [0, 1].map(|row| self.measured(record, row).turned);
+        let step = second - first;
         Memory {
             before: [first - step, first - 2.0 * step],
             velocity: step / record.period_s,
@@ -151,10 +171,9 @@ impl Law {
     /// Sum of the recorded effort that it does not give in the first rows.
     fn missing(&self, record: &Record, rows: usize, mut memory: Memory) -> f64 {
         let setpoints = Setpoints::of(record);
-        let positions = self.measured(record);
         let mut missing = |row: usize| {
-            let position = positions[row];
-            record.effort[row] - self.effort(&setpoints, &mut memory, Measured { row, position })
+            let seen = self.measured(record, row);
+            record.effort[row] - self.effort(&setpoints, &mut memory, seen)
         };
         (0..rows).map(&mut missing).sum()
     }
@@ -169,7 +188,7 @@ impl Law {
         let error = self.position_gain * (setpoints.position(now.row) - now.position);
         let effort = match self.form {
             Form::Voltage { gain } => {
-                let velocity = (now.position - memory.before[1]) / (2.0 * setpoints.period_s());
+                let velocity = (now.turned - memory.before[1]) / (2.0 * setpoints.period_s());
                 gain * (error - velocity)
             }
             Form::Force { gains, timing } => {
@@ -179,7 +198,7 @@ impl Law {
                 gains.velocity * inner + gains.feedforward * acceleration
             }
         };
-        memory.before = [now.position, memory.before[0]];
+        memory.before = [now.turned, memory.before[0]];
         self.limit
             .map_or(effort, |limit| effort.clamp(-limit, limit))
     }
@@ -195,7 +214,7 @@ impl Memory {
         position_error: f64,
     ) -> f64 {
         let period_s = setpoints.period_s();
-        let quotient = (now.position - self.before[0]) / period_s;
+        let quotient = (now.turned - self.before[0]) / period_s;
         self.velocity += gains.filter * (quotient - self.velocity);
         let error = position_error + setpoints.velocity(now.row) - self.velocity;
         self.sum += error * period_s;
@@ -223,6 +242,7 @@ mod tests {
             position_gain: 4.0,
             limit: None,
             on_load: false,
+            velocity_of_load: false,
             misfit: 0.0,
         }
     }
@@ -237,12 +257,9 @@ mod tests {
     /// Efforts along the positions of a record.
     fn efforts(law: &Law, record: &Record) -> Vec<f64> {
         let (setpoints, mut memory) = (Setpoints::of(record), law.at_first(record));
-        let rows = law.measured(record).iter().enumerate();
-        rows.map(|(row, position)| {
-            let position = *position;
-            law.effort(&setpoints, &mut memory, Measured { row, position })
-        })
-        .collect()
+        let rows = 0..record.len();
+        rows.map(|row| law.effort(&setpoints, &mut memory, law.measured(record, row)))
+            .collect()
     }
 
     const FORCE: Gains = Gains {
@@ -362,10 +379,39 @@ mod tests {
             on_load: true,
             ..force(FORCE)
         };
-        assert_eq!(on_load.measured(&record), [5.0, 6.0]);
-        assert_eq!(force(FORCE).measured(&record), [3.0, 4.0]);
+        let seen = |law: &Law, record: &Record| {
+            let Measured {
+                position, turned, ..
+            } = law.measured(record, 1);
+            (position, turned)
+        };
+        let both = Law {
+            velocity_of_load: true,
+            ..on_load
+        };
+        assert_eq!(seen(&both, &record), (6.0, 6.0));
+        assert_eq!(seen(&on_load, &record), (6.0, 4.0));
+        assert_eq!(seen(&force(FORCE), &record), (4.0, 4.0));
         record.load = None;
-        assert_eq!(on_load.measured(&record), [3.0, 4.0]);
+        assert_eq!(seen(&both, &record), (4.0, 4.0));
+    }
+
+    #[test]
+    fn the_velocity_is_that_of_the_position_sensor_unless_another_is_described() {
+        let law = |position: Option<&str>, velocity: Option<&str>| {
+            let law = Law::described(&ControllerForm {
+                position_gain_per_s: Some(4.0),
+                velocity_gain_n_s_per_m: Some(10.0),
+                position_sensor: position.map(String::from),
+                velocity_sensor: velocity.map(String::from),
+                ..ControllerForm::default()
+            });
+            law.map(|law| (law.on_load, law.velocity_of_load)).unwrap()
+        };
+        assert_eq!(law(None, None), (false, false));
+        assert_eq!(law(Some("load"), None), (true, true));
+        assert_eq!(law(Some("load"), Some("motor")), (true, false));
+        assert_eq!(law(Some("motor"), Some("load")), (false, true));
     }
 
     #[test]
@@ -391,6 +437,7 @@ mod tests {
         let wanted = Law {
             limit: Some(9.0),
             on_load: true,
+            velocity_of_load: true,
             ..law(Form::Voltage { gain: 7.0 })
         };
         assert_eq!(Law::described(&voltage), Some(wanted));

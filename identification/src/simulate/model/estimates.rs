@@ -1,21 +1,14 @@
-//! The parameters of a simulated model for people, with intervals.
+//! The shape at reversals of a simulated model for people, with intervals.
+//!
+//! Masses, forces and actuator were fitted to the positions too, but what is told of them are the
+//! estimates of the inverse dynamics: one parameter has one value.
 
 use axis_model::vocabulary::{Backlash, Presliding};
-use axis_model::{Effect, EffectName, Estimate};
+use axis_model::{Effect, Estimate};
 
-use super::{Force, Simulated};
-use crate::model::effects::{Named, Naming};
-use crate::model::inverse::Part;
+use super::Simulated;
 use crate::record::dataset::Dataset;
 use crate::simulate::parameters::Place;
-
-/// What a simulation was fitted to be.
-pub(crate) struct Estimates {
-    /// What the inverse model has too: mass, forces, actuator.
-    pub parts: Vec<Named>,
-    /// What makes a reversal: bristle and gap.
-    pub shape: Vec<Effect<Estimate>>,
-}
 
 /// Half widths of 95 % intervals, by the place of their parameter.
 struct HalfWidths(Vec<(Place, f64)>);
@@ -25,15 +18,6 @@ impl HalfWidths {
     fn of(&self, place: Place) -> f64 {
         let row = self.0.iter().find(|(other, _)| *other == place);
         row.map_or(0.0, |(_, half_width)| *half_width)
-    }
-
-    fn named(&self, place: Place, name: String, value: f64, unit: String) -> Named {
-        Named {
-            name,
-            value,
-            half_width: Some(self.of(place)),
-            unit,
-        }
     }
 
     fn estimate(&self, place: Place, value: f64, unit: &str) -> Estimate {
@@ -48,48 +32,16 @@ impl HalfWidths {
 }
 
 impl Simulated {
-    /// The parameters; `half_widths` in the order of their table.
+    /// Bristle and gap; `half_widths` in the order of the table of parameters.
     #[must_use]
-    pub(crate) fn estimates(&self, dataset: &Dataset, half_widths: &[f64]) -> Estimates {
+    pub(crate) fn estimates(
+        &self,
+        dataset: &Dataset,
+        half_widths: &[f64],
+    ) -> Vec<Effect<Estimate>> {
         let table = self.parameters().into_iter().map(|row| row.place);
         let half_widths = HalfWidths(table.zip(half_widths.iter().copied()).collect());
-        let mut parts = self.named_forces(dataset, &half_widths);
-        parts.extend(self.named_actuator(dataset, &half_widths));
-        Estimates {
-            parts,
-            shape: self.estimated_shape(dataset, &half_widths),
-        }
-    }
-
-    /// Mass, then the forces in their order.
-    fn named_forces(&self, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
-        let (effort, length) = (dataset.effort.unit(), dataset.kind.position_unit());
-        let mass = half_widths.named(
-            Place::Mass,
-            EffectName::Inertia.to_string(),
-            self.mechanics.mass,
-            format!("{effort} s^2/{length}"),
-        );
-        let forces = self.forces.iter().enumerate();
-        let forces = forces.flat_map(|(at, force)| force.named(at, dataset, half_widths));
-        std::iter::once(mass).chain(forces).collect()
-    }
-
-    /// Saturation and delay, where there are any.
-    fn named_actuator(&self, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
-        let saturation = (!self.saturation.is_ideal()).then(|| {
-            half_widths.named(
-                Place::Saturation,
-                EffectName::TorqueSaturation.to_string(),
-                self.saturation.per_effort,
-                format!("1/{}", dataset.effort.unit()),
-            )
-        });
-        let delay = (self.delay_s != 0.0).then(|| {
-            let name = format!("{}_beyond_hold", EffectName::Delay);
-            half_widths.named(Place::Delay, name, self.delay_s, "s".into())
-        });
-        saturation.into_iter().chain(delay).collect()
+        self.estimated_shape(dataset, &half_widths)
     }
 
     /// Bristle and gap, where there are any.
@@ -121,28 +73,6 @@ impl Simulated {
     }
 }
 
-impl Force {
-    /// The parameters of the force that stands at a place of the model.
-    fn named(&self, force: usize, dataset: &Dataset, half_widths: &HalfWidths) -> Vec<Named> {
-        let coefficient = |(column, value): (usize, &f64)| {
-            let place = Place::Coefficient { force, column };
-            (*value, half_widths.of(place))
-        };
-        let coefficients: Vec<(f64, f64)> = self.own.iter().enumerate().map(coefficient).collect();
-        let Part {
-            effect, parameter, ..
-        } = self.part;
-        effect.parameters(&Naming {
-            parameter,
-            parameter_half_width: effect
-                .is_tuned()
-                .then(|| half_widths.of(Place::Nonlinear { force })),
-            coefficients: &coefficients,
-            dataset,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,7 +82,7 @@ mod tests {
 
     /// Every kind of entry once. Hold and record agree, so the whole delay stays.
     fn simulated(dataset: &Dataset) -> Simulated {
-        use EffectName::{Coulomb, Delay, Inertia, Stribeck, TorqueSaturation};
+        use axis_model::EffectName::{Coulomb, Delay, Inertia, Stribeck, TorqueSaturation};
         let fitted = made::fitted(&[
             (Inertia, 0.0, &[700.0]),
             (Coulomb, 0.0, &[300.0]),
@@ -181,23 +111,15 @@ mod tests {
         let model = simulated(&dataset);
         let values: Vec<f64> = model.parameters().iter().map(|row| row.value).collect();
         let half_widths: Vec<f64> = (1..=values.len()).map(|place| place as f64).collect();
-        let estimates = model.estimates(&dataset, &half_widths);
-        let parts = estimates.parts.iter();
-        let parts = parts.map(|named| (named.name.clone(), named.value, named.half_width.unwrap()));
-        let shape = estimates.shape.iter().flat_map(Effect::parts);
+        let shape = model.estimates(&dataset, &half_widths);
+        let shape = shape.iter().flat_map(Effect::parts);
         let shape = shape.map(|(row, estimate)| {
             let half_width = 0.5 * (estimate.high - estimate.low);
             (row.report_name(), estimate.value, half_width)
         });
-        let all: Vec<(String, f64, f64)> = parts.chain(shape).collect();
+        let all: Vec<(String, f64, f64)> = shape.collect();
         let names: Vec<&str> = all.iter().map(|(name, ..)| name.as_str()).collect();
         let wanted = [
-            "inertia",
-            "coulomb",
-            "stribeck_excess",
-            "stribeck_velocity",
-            "torque_saturation",
-            "delay_beyond_hold",
             "presliding_deflection",
             "presliding_damping",
             "backlash_gap",
@@ -206,7 +128,9 @@ mod tests {
             "backlash_restitution",
         ];
         assert_eq!(names, wanted);
-        for ((name, value, half_width), (place, wanted)) in all.iter().zip((1_u8..).zip(values)) {
+        for ((name, value, half_width), (place, wanted)) in
+            all.iter().zip((1_u8..).zip(values).skip(6))
+        {
             assert!((value / wanted - 1.0).abs() < 1.0e-12, "{name}: {value}");
             assert!(
                 (half_width - f64::from(place)).abs() < 1.0e-9,
