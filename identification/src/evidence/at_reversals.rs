@@ -7,7 +7,7 @@
 //! - the *free run* ([`free_run`](crate::evidence::free_run)) sees both, where it knows the
 //!   controller. Where it does not, the simulation is tied to the record: too closely to judge a
 //!   bristle, but a gap that it sees is one, unless the inverse model sees a bristle so clearly
-//!   that a gap cannot be it: bristles of other laws than ours (Maxwell slip) look like a gap to it.
+//!   that a gap cannot be it: a bristle of another law (Maxwell slip) looks like a gap to it.
 //!
 //! The load scale is asked first, then a free run with the known controller. The inverse model
 //! decides where neither can, and breaks a tie of the free run.

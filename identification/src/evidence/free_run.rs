@@ -91,6 +91,10 @@ pub(crate) struct Reversals {
 }
 
 /// What a free run says in short.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "independent answers of one witness"
+)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Summary {
     /// Whether the controller of the record drove the simulation; else it followed the record.

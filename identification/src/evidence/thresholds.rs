@@ -134,8 +134,8 @@ pub(crate) const BRISTLE_T: f64 = 1.2;
 
 /// Below this ratio of the inverse model (Dahl over rigid) a bristle wins a tie of the free run.
 /// Noise that really acts raises what every shape leaves there; the inverse model averages it out.
-/// Below it a gap that a followed simulation sees is none: gaps have 0.6 and more, bristles of other
-/// laws (Maxwell slip, Bouc–Wen) 0.02 to 0.08.
+/// Below it a gap that a followed simulation sees is none: gaps have 0.6 and more, bristles of
+/// other laws (Maxwell slip, Bouc–Wen) 0.02 to 0.08.
 pub(crate) const BRISTLE_TIE_RATIO: f64 = 0.5;
 
 /// Above this ratio a gap wins it. Of 128 simulated records those with a gap had 0.88 and more.
