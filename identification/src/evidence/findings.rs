@@ -134,10 +134,11 @@ impl<'a> Findings<'a> {
         let scored = &stages.effort.scored;
         let residual = ResidualStructure::of(dataset, motion, &models, scored);
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
-        let mut reasons = stages.reasons();
+        // What has happened to the record says why everything after it is there.
+        let causes = causes::of(dataset, found.names()).into_iter();
+        let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
+        reasons.extend(stages.reasons());
         reasons.extend(residual.reasons(has_gap));
-        let causes = causes::of(dataset, found.names());
-        reasons.extend(causes.into_iter().map(Reason::unexplained));
         let verdict = Verdict::of(reasons);
         let changes = another_day::changes(dataset, [motion, validation], &models.extended);
         Self {
