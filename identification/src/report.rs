@@ -114,6 +114,7 @@ fn residual(findings: &Findings<'_>) -> ResidualReport {
         white_after: white.extended,
         share_before: structure.share.declared,
         share_after: structure.share.extended,
+        late_ms: 1.0e3 * structure.left.extended.late_s,
         looks_like: findings.verdict.looks_like.clone(),
     }
 }

@@ -112,7 +112,7 @@ fn numbers(text: &str) -> Vec<String> {
 fn figures(value: &Value, list: &mut Vec<f64>) {
     match value {
         Value::Number(number) => {
-            let number = number.as_f64().unwrap_or(f64::NAN);
+            let number = number.as_f64().unwrap_or(f64::NAN).abs();
             list.extend([1.0, 100.0, 1.0e6].map(|factor| factor * number));
         }
         Value::Array(values) => values.iter().for_each(|one| figures(one, list)),
@@ -123,7 +123,7 @@ fn figures(value: &Value, list: &mut Vec<f64>) {
 
 /// Whether a number, rounded as the text has it, is one of a list.
 fn stands(text: &str, list: &[f64]) -> bool {
-    let number: f64 = text.parse().unwrap_or(f64::NAN);
+    let number: f64 = text.parse::<f64>().unwrap_or(f64::NAN).abs();
     let digits = text
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());

@@ -183,6 +183,8 @@ pub struct ResidualReport {
     pub share_before: f64,
     /// The same, extended.
     pub share_after: f64,
+    /// How late the effort is against the motion by what the extended model leaves, ms.
+    pub late_ms: f64,
     /// What the structure that is left looks like, where there is any.
     pub looks_like: String,
 }
