@@ -3,8 +3,8 @@
 //! ```text
 //! dataset.toml ─▶ form (and its slips of the pen)
 //! train.csv    ─▶ table ──▶┐
-//! train.log    ─▶ bus_log ─▶┴ reading ─▶ checks ─▶ time_base ─▶ samples
-//!                                       samples ─▶ dataset ─▶ excerpt (of a long record)
+//! train.log    ─▶ bus_log ─▶┴ reading ─▶ checks ─▶ outliers ─▶ time_base ─▶ samples
+//! samples ─▶ dataset ─▶ excerpt (of a long record)
 //! ```
 
 pub(crate) mod bus_log;
@@ -13,6 +13,7 @@ pub(crate) mod dataset;
 pub(crate) mod excerpt;
 pub(crate) mod extent;
 pub(crate) mod form;
+pub(crate) mod outliers;
 pub(crate) mod reading;
 pub(crate) mod rounding;
 pub(crate) mod samples;

@@ -8,7 +8,7 @@ use crate::error::IdentificationError;
 use crate::record::checks;
 use crate::record::extent::{plateau, range, smallest_step};
 use crate::record::form::{self, ControllerForm, DatasetForm};
-use crate::record::reading;
+use crate::record::reading::{self, Reading};
 use crate::record::samples::Record;
 use crate::record::units::{AxisKind, Effort, EffortHold};
 
@@ -45,7 +45,7 @@ pub struct Dataset {
     pub validate: Record,
     /// Whether the validation record is the last part of the training record's file.
     pub held_back: bool,
-    /// What is odd in `dataset.toml` but no reason to refuse it.
+    /// What is odd in `dataset.toml` or in the records but no reason to refuse them.
     pub notes: Vec<String>,
 }
 
@@ -70,8 +70,9 @@ impl Dataset {
         declared: Option<Vec<String>>,
     ) -> Outcome<Self> {
         check_folder(folder)?;
-        let (form, notes) = form::read(&folder.join("dataset.toml"))?;
+        let (form, mut notes) = form::read(&folder.join("dataset.toml"))?;
         let records = Records::read(folder, validate, &form)?;
+        notes.extend_from_slice(&records.notes);
         for (what, record) in [
             ("training", &records.train),
             ("validation", &records.validate),
@@ -155,20 +156,28 @@ struct Records {
     validate: Record,
     effort: Effort,
     held_back: bool,
+    /// What was left out of them.
+    notes: Vec<String>,
 }
 
 impl Records {
     fn read(folder: &Path, validate: Option<&Path>, form: &DatasetForm) -> Outcome<Self> {
         let extension = if form.bus.is_some() { "log" } else { "csv" };
         let file = |stem: &str| folder.join(stem).with_extension(extension);
-        let (whole, effort) = reading::record(&file("train"), form)?;
+        let Reading {
+            record: whole,
+            effort,
+            outliers,
+        } = reading::read(&file("train"), form)?;
+        let mut notes: Vec<String> = outliers.iter().map(|one| one.words("training")).collect();
         let beside = Some(file("validate")).filter(|path| path.is_file());
         let other: Option<PathBuf> = validate.map(Path::to_path_buf).or(beside);
         let (train, validate) = match &other {
             Some(path) => {
-                let (validate, its_effort) = reading::record(path, form)?;
-                checks::alike(path, (&whole, effort), (&validate, its_effort))?;
-                (whole, validate)
+                let other = reading::read(path, form)?;
+                checks::alike(path, (&whole, effort), (&other.record, other.effort))?;
+                notes.extend(other.outliers.iter().map(|one| one.words("validation")));
+                (whole, other.record)
             }
             None => held_back(whole),
         };
@@ -178,6 +187,7 @@ impl Records {
             validate,
             effort,
             held_back: other.is_none(),
+            notes,
         })
     }
 }

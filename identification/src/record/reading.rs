@@ -6,6 +6,7 @@ use crate::error::IdentificationError;
 use crate::record::bus_log;
 use crate::record::checks;
 use crate::record::form::{DatasetForm, TimeFrom};
+use crate::record::outliers::{self, Outliers};
 use crate::record::samples::Record;
 use crate::record::table::Table;
 use crate::record::time_base::{Clock, Rows, uniform};
@@ -13,8 +14,18 @@ use crate::record::units::Effort;
 
 type Outcome<T> = Result<T, IdentificationError>;
 
-/// The record of a file, and which effort it has.
-pub(crate) fn record(path: &Path, form: &DatasetForm) -> Outcome<(Record, Effort)> {
+/// What was read of a file.
+pub(crate) struct Reading {
+    /// Its record.
+    pub record: Record,
+    /// Which effort it has.
+    pub effort: Effort,
+    /// What was left out of it.
+    pub outliers: Vec<Outliers>,
+}
+
+/// Reads a file.
+pub(crate) fn read(path: &Path, form: &DatasetForm) -> Outcome<Reading> {
     let mut table = table(path, form)?;
     let unit = form.axis.kind.position_unit();
     let time_s = table.take_required("time_s")?;
@@ -22,7 +33,8 @@ pub(crate) fn record(path: &Path, form: &DatasetForm) -> Outcome<(Record, Effort
     checks::time(&table.path, &time_s)?;
     checks::period(&table.path, &time_s, form.sample_period_s)?;
     let which = which_effort(&table)?;
-    let rows = Rows {
+    let mut rows = Rows {
+        left_out: vec![false; time_s.len()],
         time_s,
         effort: table.take_required(which.column())?,
         position: table.take_required(&format!("position_{unit}"))?,
@@ -39,7 +51,17 @@ pub(crate) fn record(path: &Path, form: &DatasetForm) -> Outcome<(Record, Effort
     };
     // The other columns of the file are not needed while the record is made.
     drop(table);
-    Ok((uniform(rows, clock), which))
+    let as_recorded = rows.stamped();
+    let outliers = outliers::leave_out(&mut rows, form.axis.kind);
+    let record = Record {
+        rows: as_recorded,
+        ..uniform(rows, clock)
+    };
+    Ok(Reading {
+        record,
+        effort: which,
+        outliers,
+    })
 }
 
 fn table(path: &Path, form: &DatasetForm) -> Outcome<Table> {
@@ -70,7 +92,7 @@ fn which_effort(table: &Table) -> Outcome<Effort> {
 mod tests {
     use super::*;
 
-    fn read(header: &str, form: &DatasetForm) -> Outcome<(Record, Effort)> {
+    fn read_header(header: &str, form: &DatasetForm) -> Outcome<Reading> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("train.csv");
         let columns = header.split(',').count();
@@ -81,13 +103,13 @@ mod tests {
             text.push_str(&format!("{time}{}\n", rest.collect::<String>()));
         }
         std::fs::write(&path, text).unwrap();
-        record(&path, form)
+        read(&path, form)
     }
 
     #[test]
     fn columns_of_the_axis_are_taken_and_others_are_left() {
         let header = "time_s,position_m,other,reference_m,current_a";
-        let (record, effort) = read(header, &DatasetForm::default()).unwrap();
+        let Reading { record, effort, .. } = read_header(header, &DatasetForm::default()).unwrap();
         assert_eq!(effort, Effort::Current);
         assert_eq!(
             (record.len(), record.position[10], record.effort[10]),
@@ -103,16 +125,17 @@ mod tests {
             time_from: TimeFrom::PowerOn,
             ..DatasetForm::default()
         };
-        let (record, _) = read("time_s,position_m,force_n", &form).unwrap();
-        assert_eq!(record.time_s[0], 5.0);
+        let reading = read_header("time_s,position_m,force_n", &form).unwrap();
+        assert_eq!(reading.record.time_s[0], 5.0);
     }
 
     #[test]
     fn one_effort_is_wanted_no_more_and_no_less() {
         let error = |header: &str| {
-            read(header, &DatasetForm::default())
-                .unwrap_err()
-                .to_string()
+            let reading = read_header(header, &DatasetForm::default());
+            reading
+                .err()
+                .map_or(String::new(), |error| error.to_string())
         };
         let none = error("time_s,position_m");
         assert!(none.contains("no effort column") && none.contains("time_s, position_m"));

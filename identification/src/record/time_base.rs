@@ -16,6 +16,17 @@ pub(crate) struct Rows {
     pub reference: Option<Vec<f64>>,
     /// Effort.
     pub effort: Vec<f64>,
+    /// Rows that were found to be outliers, and bridged.
+    pub left_out: Vec<bool>,
+}
+
+impl Rows {
+    /// Time stamp and effort of each row.
+    #[must_use]
+    pub(crate) fn stamped(&self) -> Vec<(f64, f64)> {
+        let pairs = self.time_s.iter().zip(&self.effort);
+        pairs.map(|(time, effort)| (*time, *effort)).collect()
+    }
 }
 
 /// What `dataset.toml` says about time.
@@ -65,8 +76,8 @@ fn is_even(time_s: &[f64], period_s: f64) -> bool {
 fn as_it_stands(rows: Rows, period_s: f64, origin_s: f64) -> Record {
     Record {
         period_s,
-        rows: stamped(&rows),
-        interpolated: vec![false; rows.time_s.len()],
+        rows: rows.stamped(),
+        interpolated: rows.left_out,
         time_s: rows.time_s.into_iter().map(|t| t - origin_s).collect(),
         position: rows.position,
         load: rows.load,
@@ -85,8 +96,8 @@ fn interpolated(rows: &Rows, period_s: f64, median: f64, origin_s: f64) -> Recor
     let on_base = |values: &[f64]| interpolate(&rows.time_s, values, &at);
     Record {
         period_s,
-        rows: stamped(rows),
-        interpolated: in_holes(&rows.time_s, &at, HOLE_PERIODS * median),
+        rows: rows.stamped(),
+        interpolated: bridged(rows, &at, HOLE_PERIODS * median),
         position: on_base(&rows.position),
         load: rows.load.as_deref().map(on_base),
         reference: rows.reference.as_deref().map(on_base),
@@ -95,11 +106,6 @@ fn interpolated(rows: &Rows, period_s: f64, median: f64, origin_s: f64) -> Recor
         joints: Vec::new(),
         time_s: at.iter().map(|t| t - origin_s).collect(),
     }
-}
-
-fn stamped(rows: &Rows) -> Vec<(f64, f64)> {
-    let pairs = rows.time_s.iter().zip(&rows.effort);
-    pairs.map(|(time, effort)| (*time, *effort)).collect()
 }
 
 /// Median of the steps between time stamps.
@@ -117,13 +123,14 @@ fn jitters(time_s: &[f64], period_s: f64) -> bool {
     count as f64 > JITTERY_SHARE * time_s.len() as f64
 }
 
-/// Which times stand between two rows that are further apart than a hole.
-fn in_holes(time_s: &[f64], at: &[f64], hole_s: f64) -> Vec<bool> {
+/// Which times stand in a hole, between two rows that are further apart, or next to an outlier.
+fn bridged(rows: &Rows, at: &[f64], hole_s: f64) -> Vec<bool> {
     let between = |(right, t): (usize, f64)| {
-        let (before, after) = (time_s[right - 1], time_s[right]);
-        after - before > hole_s && t > before && t < after
+        let (before, after) = (rows.time_s[right - 1], rows.time_s[right]);
+        let in_hole = after - before > hole_s && t > before && t < after;
+        in_hole || rows.left_out[right - 1] || rows.left_out[right]
     };
-    neighbours(time_s, at).map(between).collect()
+    neighbours(&rows.time_s, at).map(between).collect()
 }
 
 /// Values seen at other times, in rising order; beyond the ends they stay.
@@ -158,6 +165,7 @@ mod tests {
             load: None,
             reference: Some(position.clone()),
             effort: time_s.iter().map(|t| -t).collect(),
+            left_out: vec![false; time_s.len()],
             position,
             time_s,
         }
@@ -223,6 +231,21 @@ mod tests {
         assert!(!record.jittered && record.len() == 100);
         let marked: Vec<usize> = (0..100).filter(|row| record.interpolated[*row]).collect();
         assert_eq!(marked, (50..70).collect::<Vec<usize>>());
+    }
+
+    #[test]
+    fn an_outlier_is_marked_on_an_even_base_and_its_neighbours_are_on_a_jittered_one() {
+        let marked = |time_s: Vec<f64>| {
+            let mut rows = rows(time_s);
+            rows.left_out[50] = true;
+            let record = uniform(rows, CLOCK);
+            let marked = (0..record.len()).filter(|row| record.interpolated[*row]);
+            marked.collect::<Vec<usize>>()
+        };
+        assert_eq!(marked(even(100)), [50]);
+        let mut late = even(100);
+        late.iter_mut().skip(1).for_each(|t| *t += 0.003);
+        assert_eq!(marked(late), [50, 51]);
     }
 
     #[test]
