@@ -129,6 +129,8 @@ fn check_position(dataset: &Dataset, what: &str, record: &Record) -> Outcome {
     if dataset.resolution > 0.0
         && smallest.is_finite()
         && is_thousand(smallest / dataset.resolution)
+        // A short record may move fast all the time.
+        && (what == "training" || smallest < dataset.resolution)
         && !record.jittered
     {
         return refuse(format!(

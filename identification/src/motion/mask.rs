@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::motion::filter::TRIM;
+use crate::motion::filter::trim;
 use crate::record::samples::Record;
 
 /// Slow and spoilt samples take their neighbours within this time with them: about two periods of
@@ -14,9 +14,10 @@ const LIMITED: f64 = 0.999;
 /// Whether a sample is away from the filter's ends in its piece.
 #[must_use]
 pub(crate) fn is_inside(pieces: &[Range<usize>], row: usize) -> bool {
-    pieces
-        .iter()
-        .any(|piece| row >= piece.start + TRIM && row + TRIM < piece.end)
+    pieces.iter().any(|piece| {
+        let trim = trim(piece.len());
+        row >= piece.start + trim && row + trim < piece.end
+    })
 }
 
 /// Samples of one piece at a velocity above a limit, and those about a lower one; the filter's ends
@@ -124,9 +125,9 @@ mod tests {
 
     #[test]
     fn every_piece_has_the_filters_ends_of_its_own() {
-        let pieces = [0..500, 500..1000];
-        let inside: Vec<usize> = (0..1000).filter(|row| is_inside(&pieces, *row)).collect();
-        assert_eq!(inside, (200..300).chain(700..800).collect::<Vec<_>>());
+        let pieces = [0..1000, 1000..1400];
+        let inside: Vec<usize> = (0..1400).filter(|row| is_inside(&pieces, *row)).collect();
+        assert_eq!(inside, (200..800).chain(1100..1300).collect::<Vec<_>>());
     }
 
     #[test]

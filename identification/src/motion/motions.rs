@@ -1,7 +1,6 @@
 //! The motion of both records of a dataset, or why there is too little of it.
 
 use crate::error::IdentificationError;
-use crate::motion::filter::TRIM;
 use crate::motion::kinematics::Kinematics;
 use crate::record::checks::FEWEST_ROWS;
 use crate::record::dataset::Dataset;
@@ -39,13 +38,21 @@ impl Motions {
                 "{name}: only {fitted} moving samples are left for the fit; record longer runs, away from the effort's limit"
             )));
         }
-        if count(&self.validate.moving) < TRIM {
+        if count(&self.validate.moving) < fewest_judged(self.validate.period_s) {
             return Err(IdentificationError::new(format!(
                 "{name}: hardly any moving samples are left in the validation record; record longer runs for it"
             )));
         }
         Ok(())
     }
+}
+
+/// Fewest moving samples that a model is judged on: a fifth of a second, which is what two
+/// reversals and the filter's ends leave of one second; 200 where that is more.
+fn fewest_judged(period_s: f64) -> usize {
+    const FEWEST_S: f64 = 0.2;
+    const ENOUGH: usize = 200;
+    ((FEWEST_S / period_s).round() as usize).min(ENOUGH)
 }
 
 /// The motion of the training record alone.

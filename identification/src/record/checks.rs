@@ -13,6 +13,11 @@ type Outcome = Result<(), IdentificationError>;
 
 /// Fewest rows of a training record: the filter's ends (2 × 200) and a few blocks.
 pub(crate) const FEWEST_ROWS: usize = 2000;
+/// Shortest validation record, s: nothing is fitted to it, so a stroke is enough.
+const SHORTEST_VALIDATION_S: f64 = 1.0;
+/// And its fewest rows: the ends of the low-pass settle within 30 rows where its cut-off is a tenth
+/// of the rate, and as many again must be left.
+const FEWEST_VALIDATION_ROWS: usize = 100;
 /// A step longer than so many median ones is no hole that can be bridged.
 const LONGEST_HOLE_STEPS: f64 = 50.0;
 /// Median step over stated period beyond which one of them is wrong: a clock is never off by so
@@ -28,14 +33,35 @@ const MOVING_ONE_IN: usize = 20;
 /// The header is line 1, so that row 0 is line 2.
 const FIRST_LINE: usize = 2;
 
-/// Enough rows.
-pub(crate) fn rows(path: &str, count: usize) -> Outcome {
-    if count >= FEWEST_ROWS {
-        return Ok(());
+/// What a record is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// The model is fitted to it.
+    Training,
+    /// The model is judged on it.
+    Validation,
+}
+
+/// A record that is long enough for its purpose.
+pub(crate) fn length(path: &str, time_s: &[f64], purpose: Purpose) -> Outcome {
+    let refused = |why: String| Err(IdentificationError::new(format!("{path}: {why}")));
+    let (count, fewest) = match purpose {
+        Purpose::Training => (time_s.len(), FEWEST_ROWS),
+        Purpose::Validation => (time_s.len(), FEWEST_VALIDATION_ROWS),
+    };
+    if count < fewest {
+        return refused(format!(
+            "{count} rows; identification needs at least {fewest}, record longer"
+        ));
     }
-    Err(IdentificationError::new(format!(
-        "{path}: {count} rows; identification needs at least {FEWEST_ROWS}, record longer"
-    )))
+    // A record of n rows lasts n periods.
+    let lasts_s = (time_s[count - 1] - time_s[0]) * count as f64 / (count - 1) as f64;
+    if purpose == Purpose::Validation && lasts_s < SHORTEST_VALIDATION_S * (1.0 - 1.0e-6) {
+        return refused(format!(
+            "{lasts_s:.3} s; a validation record lasts at least {SHORTEST_VALIDATION_S} s, record longer"
+        ));
+    }
+    Ok(())
 }
 
 /// Time that increases, without gaps that cannot be bridged.
@@ -170,9 +196,21 @@ mod tests {
     }
 
     #[test]
-    fn two_thousand_rows_are_enough() {
-        assert!(rows("a.csv", 2000).is_ok());
-        assert!(text(rows("a.csv", 1999)).starts_with("a.csv: 1999 rows"));
+    fn two_thousand_rows_are_enough_for_training() {
+        let checked = |rows: usize| length("a.csv", &even(rows), Purpose::Training);
+        assert!(checked(2000).is_ok());
+        assert!(text(checked(1999)).starts_with("a.csv: 1999 rows"));
+    }
+
+    #[test]
+    fn one_second_is_enough_for_validation_at_a_hundred_hertz_and_more() {
+        let checked = |rows: usize, period_s: f64| {
+            let time_s: Vec<f64> = (0..rows).map(|row| 3.0 + period_s * row as f64).collect();
+            length("b.csv", &time_s, Purpose::Validation)
+        };
+        assert!(checked(1000, 1.0e-3).is_ok() && checked(100, 1.0e-2).is_ok());
+        assert!(text(checked(999, 1.0e-3)).starts_with("b.csv: 0.999 s; a validation record"));
+        assert!(text(checked(99, 0.1)).starts_with("b.csv: 99 rows"));
     }
 
     #[test]

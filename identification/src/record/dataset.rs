@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use axis_model::EffectName;
 
 use crate::error::IdentificationError;
-use crate::record::checks;
+use crate::record::checks::{self, Purpose};
 use crate::record::extent::{plateau, range, smallest_step};
 use crate::record::form::{self, ControllerForm, DatasetForm};
 use crate::record::reading::{self, Reading};
@@ -168,13 +168,13 @@ impl Records {
             record: whole,
             effort,
             outliers,
-        } = reading::read(&file("train"), form)?;
+        } = reading::read(&file("train"), form, Purpose::Training)?;
         let mut notes: Vec<String> = outliers.iter().map(|one| one.words("training")).collect();
         let beside = Some(file("validate")).filter(|path| path.is_file());
         let other: Option<PathBuf> = validate.map(Path::to_path_buf).or(beside);
         let (train, validate) = match &other {
             Some(path) => {
-                let other = reading::read(path, form)?;
+                let other = reading::read(path, form, Purpose::Validation)?;
                 checks::alike(path, (&whole, effort), (&other.record, other.effort))?;
                 notes.extend(other.outliers.iter().map(|one| one.words("validation")));
                 (whole, other.record)

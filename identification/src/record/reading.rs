@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::IdentificationError;
 use crate::record::bus_log;
-use crate::record::checks;
+use crate::record::checks::{self, Purpose};
 use crate::record::form::{DatasetForm, TimeFrom};
 use crate::record::outliers::{self, Outliers};
 use crate::record::samples::Record;
@@ -25,11 +25,11 @@ pub(crate) struct Reading {
 }
 
 /// Reads a file.
-pub(crate) fn read(path: &Path, form: &DatasetForm) -> Outcome<Reading> {
+pub(crate) fn read(path: &Path, form: &DatasetForm, purpose: Purpose) -> Outcome<Reading> {
     let mut table = table(path, form)?;
     let unit = form.axis.kind.position_unit();
     let time_s = table.take_required("time_s")?;
-    checks::rows(&table.path, time_s.len())?;
+    checks::length(&table.path, &time_s, purpose)?;
     checks::time(&table.path, &time_s)?;
     checks::period(&table.path, &time_s, form.sample_period_s)?;
     let which = which_effort(&table)?;
@@ -103,7 +103,7 @@ mod tests {
             text.push_str(&format!("{time}{}\n", rest.collect::<String>()));
         }
         std::fs::write(&path, text).unwrap();
-        read(&path, form)
+        read(&path, form, Purpose::Training)
     }
 
     #[test]
