@@ -10,7 +10,8 @@
 //!
 //! [`selection`] is the one forward selection that judges share, [`thresholds`] has every limit.
 //! [`reversal_stage`] asks the witnesses of a reversal and [`at_reversals`] decides. [`findings`]
-//! puts together what was found, and [`verdict`] says whether something is left.
+//! puts together what was found, [`signs`] says what of it is impossible, and [`verdict`] says
+//! whether something is left.
 
 pub(crate) mod all_rows;
 pub(crate) mod another_day;
@@ -27,6 +28,7 @@ pub(crate) mod residual;
 pub(crate) mod reversal;
 pub(crate) mod reversal_stage;
 pub(crate) mod selection;
+pub(crate) mod signs;
 pub(crate) mod slow_ripple;
 pub(crate) mod thresholds;
 pub(crate) mod verdict;

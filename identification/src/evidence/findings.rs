@@ -15,6 +15,7 @@ use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
 use crate::evidence::residual::{self, ResidualStructure};
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
+use crate::evidence::signs;
 use crate::evidence::slow_ripple::RippleAtReversals;
 use crate::evidence::verdict::{Reason, Verdict};
 use crate::motion::kinematics::Kinematics;
@@ -139,6 +140,7 @@ impl<'a> Findings<'a> {
         let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
         reasons.extend(stages.reasons());
         reasons.extend(residual.reasons(has_gap));
+        reasons.extend(signs::reasons(dataset, motion, &models.extended));
         let verdict = Verdict::of(reasons);
         let changes = another_day::changes(dataset, [motion, validation], &models.extended);
         Self {

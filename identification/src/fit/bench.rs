@@ -288,6 +288,22 @@ impl<'a> Bench<'a> {
             .collect()
     }
 
+    /// Rms of one column of a part, for a coefficient of one, over fitted samples; percent of the
+    /// effort's.
+    #[must_use]
+    pub(crate) fn percent_of_effort(&self, part: &Part, column: usize) -> f64 {
+        let norm = |values: &[f64]| {
+            let pairs = values.iter().zip(&self.motion.fitted);
+            let fitted = pairs.filter(|(_, fitted)| **fitted);
+            fitted.map(|(value, _)| value * value).sum::<f64>().sqrt()
+        };
+        let columns = self.columns(part);
+        let effort = norm(&self.motion.effort_lp).max(f64::MIN_POSITIVE);
+        columns
+            .get(column)
+            .map_or(0.0, |column| 100.0 * norm(column) / effort)
+    }
+
     /// Force error over moving samples, percent.
     #[must_use]
     pub(crate) fn force_error_percent(&self, fitted: &Fitted) -> f64 {
