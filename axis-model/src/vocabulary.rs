@@ -160,6 +160,30 @@ vocabulary! {
         load_dependent_friction: RATIO, 0.0 => 0.9,
     } optional {}
 
+    /// inertia that changes at a time, with the friction and the weight that come with it
+    payload: Payload, MovingEffort, {
+        /// inertia that is there from then on, at the load; below zero where one is put down
+        payload: INERTIA, -1.0e6 => 1.0e6,
+        /// time since the start of the record
+        time: TIME, 0.0 => 1.0e6,
+    } optional {
+        /// level of friction that comes with it
+        friction: EFFORT, -1.0e6 => 1.0e6,
+        /// constant force against positive motion that comes with it
+        weight: EFFORT, -1.0e6 => 1.0e6,
+    }
+
+    /// inertia that is a periodic function of position, as of a crank or an arm
+    position_dependent_inertia: PositionDependentInertia, MovingEffort, {
+        /// amplitude about the mean, at the load
+        position_dependent_inertia: INERTIA, 0.0 => 1.0e6,
+        /// way from one period to the next
+        period: POSITION, 1.0e-6 => 1.0e3,
+    } optional {
+        /// phase at position zero, of a sine
+        phase: ANGLE, -1.0e3 => 1.0e3,
+    }
+
     /// delivered effort that falls behind the commanded one as it grows, u / (1 + k abs(u))
     torque_saturation: TorqueSaturation, MovingEffort, {
         /// k

@@ -249,6 +249,7 @@ impl Axis {
             table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) + effects.table_n(&at),
             friction_factor: effects.friction_factor(&at),
             friction_level_n: effects.friction_level_n(&at),
+            added_mass_kg: effects.added_mass_kg(&at),
             brake_n: self.brake.as_mut().map_or(0.0, |brake| brake.pass(dt_s)),
         };
         self.parameters
@@ -262,6 +263,7 @@ impl Axis {
         Instant {
             motor_m: motion.motor_m + 0.5 * dt_s * motion.motor_m_per_s,
             table_m: motion.table_m,
+            table_m_per_s: motion.table_m_per_s,
             time_s: self.time_s,
             lead_m: parameters.lead_m_per_rev,
             transmitted_n: parameters.mechanics.transmitted_n(motion),

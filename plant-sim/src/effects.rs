@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! commanded ─ delivered_n ─ delay_s ─▶ motor ─ motor_n ─▶ screw ─▶ table ─ table_n
+//!                                                          mass: its own + added_mass_kg
 //!                                                          friction: factor · level + level_n
 //!                                                          load scale: scale_error_m
 //! ```
@@ -16,8 +17,10 @@ mod delay;
 mod friction_drift;
 mod load_dependent_friction;
 mod offset;
+mod payload;
 mod pitch_error;
 mod position_dependent_friction;
+mod position_dependent_inertia;
 mod torque_ripple;
 mod torque_saturation;
 
@@ -31,6 +34,8 @@ pub struct Instant {
     pub motor_m: f64,
     /// Table position, m.
     pub table_m: f64,
+    /// Table velocity, m/s.
+    pub table_m_per_s: f64,
     /// Time since the axis was switched on, s.
     pub time_s: f64,
     /// Travel per motor revolution, m.
@@ -53,6 +58,11 @@ pub trait Simulated {
 
     /// Force on the table, N.
     fn table_n(&self, _at: &Instant) -> f64 {
+        0.0
+    }
+
+    /// Mass that moves with the table beside its own, kg.
+    fn added_mass_kg(&self, _at: &Instant) -> f64 {
         0.0
     }
 
@@ -91,6 +101,8 @@ fn simulated(effect: &Effect) -> Option<&dyn Simulated> {
         Effect::PositionDependentFriction(own) => Some(own),
         Effect::FrictionDrift(own) => Some(own),
         Effect::LoadDependentFriction(own) => Some(own),
+        Effect::Payload(own) => Some(own),
+        Effect::PositionDependentInertia(own) => Some(own),
         Effect::TorqueSaturation(own) => Some(own),
         Effect::Delay(own) => Some(own),
         _ => None,
@@ -149,6 +161,12 @@ impl Effects {
         self.all().map(|effect| effect.table_n(at)).sum()
     }
 
+    /// Mass that moves with the table beside its own, kg.
+    #[must_use]
+    pub fn added_mass_kg(&self, at: &Instant) -> f64 {
+        self.all().map(|effect| effect.added_mass_kg(at)).sum()
+    }
+
     /// Factor on the friction level.
     #[must_use]
     pub fn friction_factor(&self, at: &Instant) -> f64 {
@@ -200,6 +218,7 @@ mod tests {
     const AT: Instant = Instant {
         motor_m: 0.1,
         table_m: 0.1,
+        table_m_per_s: 0.0,
         time_s: 0.0,
         lead_m: 0.01,
         transmitted_n: 0.0,
@@ -209,6 +228,7 @@ mod tests {
     fn an_axis_without_effects_is_left_alone() {
         let none = Effects::default();
         assert_eq!((none.motor_n(&AT), none.table_n(&AT)), (0.0, 0.0));
+        assert_eq!(none.added_mass_kg(&AT), 0.0);
         assert_eq!(
             (none.friction_factor(&AT), none.friction_level_n(&AT)),
             (1.0, 0.0)

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; brake on the shaft
-//! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table
+//! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table, M2 its own mass and what is added
 //! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: it only pushes where there is
 //!                                                     a gap, and damps in contact only
 //! ```
@@ -13,6 +13,9 @@
 //! used (`tests/mechanics.rs`, against a high-accuracy integration).
 
 use crate::friction::{Friction, Table};
+
+/// A table keeps at least this share of its mass: without one it has no equation of motion.
+const SMALLEST_SHARE: f64 = 1.0e-3;
 
 /// Inertia and screw.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +56,8 @@ pub struct Drive {
     pub friction_factor: f64,
     /// Friction level at the table beside the one of the law, N.
     pub friction_level_n: f64,
+    /// Mass that moves with the table beside its own, kg; below zero where one was put down.
+    pub added_mass_kg: f64,
     /// Force up to which a brake holds the motor, N; zero without one.
     pub brake_n: f64,
 }
@@ -76,6 +81,11 @@ impl Mechanics {
         } else {
             0.0
         }
+    }
+
+    /// Mass of the table with what is added to it, or without what was put down, kg.
+    fn moved_kg(&self, added_kg: f64) -> f64 {
+        (self.table_mass_kg + added_kg).max(SMALLEST_SHARE * self.table_mass_kg)
     }
 
     /// One sub-step.
@@ -125,7 +135,7 @@ impl Mechanics {
     ) {
         let spring = self.screw_stiffness_n_per_m * deflection;
         let half = 0.5 * damping * dt_s;
-        let (m1, m2) = (self.motor_inertia_kg, self.table_mass_kg);
+        let (m1, m2) = (self.motor_inertia_kg, self.moved_kg(drive.added_mass_kg));
         let relative = motion.motor_m_per_s - motion.table_m_per_s;
         // m1 v1' = p1 − half (v1' − v2'),  m2 v2' = p2 + half (v1' − v2') − friction
         let p1 = m1 * motion.motor_m_per_s + dt_s * (drive.motor_n - spring) - half * relative;

@@ -42,6 +42,7 @@ fn push(
             table_n: 0.0,
             friction_factor: 1.0,
             friction_level_n: 0.0,
+            added_mass_kg: 0.0,
             brake_n: 0.0,
         };
         m.advance(motion, friction, drive, dt_s);

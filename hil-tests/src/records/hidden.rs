@@ -6,8 +6,8 @@
 use std::f64::consts::TAU;
 
 use axis_model::{
-    Delay, Effect, EffectName, FrictionDrift, LoadDependentFriction, PitchError,
-    PositionDependentFriction, TorqueRipple, TorqueSaturation,
+    Delay, Effect, EffectName, FrictionDrift, LoadDependentFriction, Payload, PitchError,
+    PositionDependentFriction, PositionDependentInertia, TorqueRipple, TorqueSaturation,
 };
 use plant_sim::axis::AxisParameters;
 use plant_sim::friction::{Law, Sliding};
@@ -20,8 +20,8 @@ pub const UNEXPLAINED: &str = "unexplained";
 const BRISTLE_DAMPING_N_S_PER_M: f64 = 2.0e4;
 /// Damping of a screw that is compliant, N·s/m.
 const SCREW_DAMPING_N_S_PER_M: f64 = 2.0e4;
-/// Phase of a hidden ripple at position zero: none that a fit would start from.
-const RIPPLE_PHASE_RAD: f64 = 0.7;
+/// Phase of a hidden wave at position zero: none that a fit would start from.
+const WAVE_PHASE_RAD: f64 = 0.7;
 /// Saturation is stated as the share lost at 1 kN: k of `u / (1 + k |u|)` per share over rest.
 const SATURATION_PER_N: f64 = 1.0e-3;
 
@@ -54,6 +54,10 @@ pub enum Hidden {
     QuadraticDrag { n_s2_per_m2: f64 },
     /// Friction per force that the screw transmits.
     LoadDependentFriction { share: f64 },
+    /// A part that is taken up at a time, without friction or weight.
+    Payload { kg: f64, at_s: f64 },
+    /// Amplitude and period of a mass over position.
+    PositionDependentInertia { kg: f64, period_m: f64 },
     /// Share of the effort that is lost at 1 kN.
     TorqueSaturation { share: f64 },
     /// Effort that acts late.
@@ -90,6 +94,8 @@ impl Hidden {
             Self::FrictionDrift { .. } => EffectName::FrictionDrift,
             Self::QuadraticDrag { .. } => EffectName::QuadraticDrag,
             Self::LoadDependentFriction { .. } => EffectName::LoadDependentFriction,
+            Self::Payload { .. } => EffectName::Payload,
+            Self::PositionDependentInertia { .. } => EffectName::PositionDependentInertia,
             Self::TorqueSaturation { .. } => EffectName::TorqueSaturation,
             Self::Delay { .. } => EffectName::Delay,
             Self::Foreign(_) => return None,
@@ -126,6 +132,8 @@ impl Hidden {
             | Self::PositionDependentFriction { .. }
             | Self::FrictionDrift { .. }
             | Self::LoadDependentFriction { .. }
+            | Self::Payload { .. }
+            | Self::PositionDependentInertia { .. }
             | Self::TorqueSaturation { .. }
             | Self::Delay { .. } => {
                 let added = self.further().map(|effect| axis.effects.add(effect));
@@ -145,7 +153,7 @@ impl Hidden {
                 amplitude: amplitude_n,
                 order: Some(order_per_rev),
                 period: None,
-                phase: Some(RIPPLE_PHASE_RAD),
+                phase: Some(WAVE_PHASE_RAD),
             }),
             Self::PitchError {
                 amplitude_m,
@@ -171,6 +179,19 @@ impl Hidden {
             Self::LoadDependentFriction { share } => {
                 Effect::LoadDependentFriction(LoadDependentFriction {
                     load_dependent_friction: share,
+                })
+            }
+            Self::Payload { kg, at_s } => Effect::Payload(Payload {
+                payload: kg,
+                time: at_s,
+                friction: None,
+                weight: None,
+            }),
+            Self::PositionDependentInertia { kg, period_m } => {
+                Effect::PositionDependentInertia(PositionDependentInertia {
+                    position_dependent_inertia: kg,
+                    period: period_m,
+                    phase: Some(WAVE_PHASE_RAD),
                 })
             }
             Self::TorqueSaturation { share } => Effect::TorqueSaturation(TorqueSaturation {

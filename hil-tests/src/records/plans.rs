@@ -5,9 +5,9 @@
 
 use super::hidden::Foreign::{CubicDrag, Hum, Spring};
 use super::hidden::Hidden::{
-    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, LoadDependentFriction, PitchError,
-    PositionDependentFriction, Presliding, QuadraticDrag, Stribeck, TorqueRipple, TorqueSaturation,
-    ViscousAsymmetry,
+    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, LoadDependentFriction, Payload,
+    PitchError, PositionDependentFriction, PositionDependentInertia, Presliding, QuadraticDrag,
+    Stribeck, TorqueRipple, TorqueSaturation, ViscousAsymmetry,
 };
 use super::plan::{Plan, Positions};
 
@@ -114,6 +114,14 @@ const FOLLOWING_LOAD: &[Case] = &[
             Stribeck { ratio: 1.4, velocity_m_per_s: 4.0e-3 }]),
 ];
 
+#[rustfmt::skip] // As above.
+const CHANGING_MASS: &[Case] = &[
+    motor(&[Payload { kg: 90.0, at_s: 11.0 }]),
+    motor(&[PositionDependentInertia { kg: 70.0, period_m: 0.15 }]),
+    motor(&[PositionDependentInertia { kg: 50.0, period_m: 0.08 },
+            ViscousAsymmetry { share: 0.2 }]),
+];
+
 /// All plans, in a fixed order.
 #[must_use]
 pub fn plans() -> Vec<Plan> {
@@ -121,7 +129,7 @@ pub fn plans() -> Vec<Plan> {
         let case = if index % 2 == 0 { scale } else { motor };
         case(&[])
     });
-    let hidden = [ALONE, PAIRS, OUTSIDE, FOLLOWING_LOAD].concat();
+    let hidden = [ALONE, PAIRS, OUTSIDE, FOLLOWING_LOAD, CHANGING_MASS].concat();
     let cases = empty.chain(hidden).enumerate();
     cases.map(|(index, case)| plan(index, case)).collect()
 }
@@ -141,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_are_67_plans_and_every_seed_is_its_own() {
+    fn there_are_70_plans_and_every_seed_is_its_own() {
         let plans = plans();
         let hides = |count: usize| {
             plans
@@ -149,9 +157,9 @@ mod tests {
                 .filter(|plan| plan.hidden.len() == count)
                 .count()
         };
-        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 33, 14));
+        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 35, 15));
         let seeds: Vec<u64> = plans.iter().map(|plan| plan.seed).collect();
-        assert_eq!(seeds, (1000..1067).collect::<Vec<_>>());
+        assert_eq!(seeds, (1000..1070).collect::<Vec<_>>());
     }
 
     #[test]

@@ -4,6 +4,12 @@
 //! held-out blocks with its nonlinear parameter at its best; delay and saturation must hold at the
 //! lower cut-off too. What later effects made superfluous is removed again, and so is what makes
 //! another record worse.
+//!
+//! The nearest outsiders ([`Effect::is_nearest_outsider`]) never replace a listed name that is as
+//! good. First only what the listed effects leave is open to them. Where one of them explains some
+//! of that, all compete from the start, and in each round an outsider must beat the best listed
+//! candidate by the rule by which an effect beats no effect ([`is_enough`]). Of the two models the
+//! second is taken, unless the first beats it by the same rule.
 
 use axis_model::EffectName;
 
@@ -22,12 +28,43 @@ use crate::model::inverse::{Model, Origin, Part};
 use crate::progress::Step;
 use crate::record::rounding;
 
-/// The effort of moving samples, at both cut-offs.
-struct Effort<'a>(Pair<'a>);
+/// The effort of moving samples.
+struct Effort<'a> {
+    /// At both cut-offs.
+    pair: Pair<'a>,
+    /// When the nearest outsiders may come in.
+    outsiders: Outsiders,
+}
+
+/// When the nearest outsiders may come in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outsiders {
+    /// Where no listed effect is accepted any more.
+    Last,
+    /// Where they beat every listed effect of the round.
+    Compete,
+}
 
 /// Forward selection from the declared model, and removal of what is superfluous in the end.
 /// `progress` hears of every effect.
 pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&Step)) -> Selection {
+    let mut selected = |outsiders: Outsiders| {
+        let output = Effort { pair, outsiders };
+        select_on(&output, start.clone(), progress)
+    };
+    let listed_first = selected(Outsiders::Last);
+    if !has_outsider(&listed_first.model) {
+        return listed_first;
+    }
+    let together = selected(Outsiders::Compete);
+    if beats(pair.bench, &listed_first.model, &together.model) {
+        listed_first
+    } else {
+        together
+    }
+}
+
+fn select_on(output: &Effort<'_>, start: Model, progress: &mut dyn FnMut(&Step)) -> Selection {
     let mut heard = |scored: &Scored| {
         progress(&Step::Found {
             effect: scored.effect.to_string(),
@@ -35,16 +72,30 @@ pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&Ste
             round: scored.round,
         });
     };
-    let mut selection = selection::select(&Effort(pair), start, &mut heard);
-    remove(pair.bench, &mut selection.model);
+    let mut selection = selection::select(output, start, &mut heard);
+    remove(output.pair.bench, &mut selection.model);
     selection
+}
+
+fn has_outsider(model: &Model) -> bool {
+    let found = |part: &&Part| part.origin == Origin::Found;
+    let mut found = model.parts.iter().filter(found);
+    found.any(|part| part.effect.is_nearest_outsider())
+}
+
+/// Whether a model beats another as an effect beats no effect.
+fn beats(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
+    is_enough(&Gain::of(
+        &bench.cross_validate(other),
+        &bench.cross_validate(model),
+    ))
 }
 
 impl Output for Effort<'_> {
     type Model = Model;
 
     fn candidates(&self, model: &Model, round: usize) -> Vec<Candidate<Model>> {
-        let bench = self.0.bench;
+        let bench = self.pair.bench;
         let base = bench.cross_validate(model);
         let residual = bench.residual(&Fitted::new(model.clone(), &base.coefficients));
         let setting = Setting {
@@ -53,7 +104,7 @@ impl Output for Effort<'_> {
         };
         let open = |effect: &&'static dyn Effect| effect.repeats() || !model.has(effect.called());
         let candidate = |effect: &&'static dyn Effect| {
-            let extended = tuning::extended(self.0, model, *effect, &setting)?;
+            let extended = tuning::extended(self.pair, model, *effect, &setting)?;
             Some(self.judged(model, &base, extended, round))
         };
         let all: Vec<&'static dyn Effect> = LIBRARY.into_iter().filter(open).collect();
@@ -70,11 +121,32 @@ impl Output for Effort<'_> {
             && is_large
             && is_enough(&scored.gain)
             && self.is_beyond_rounding(&scored.gain)
-            && (scored.gain.t >= CERTAIN_T || is_certain(self.0.bench, &candidate.model))
+            && (scored.gain.t >= CERTAIN_T || is_certain(self.pair.bench, &candidate.model))
+    }
+
+    fn best(&self, candidates: &[Candidate<Model>]) -> Option<usize> {
+        let of = |outsider: bool| {
+            let is_one = move |place: &usize| is_outsider(&candidates[*place]) == outsider;
+            let places = (0..candidates.len()).filter(is_one);
+            places.filter(|place| self.accepts(&candidates[*place]))
+        };
+        let listed = of(false).next();
+        match (self.outsiders, listed) {
+            (Outsiders::Last, Some(_)) => listed,
+            (Outsiders::Last, None) => of(true).next(),
+            (Outsiders::Compete, _) => {
+                let wins = |place: &usize| {
+                    let rival = listed.map(|listed| &candidates[listed].model);
+                    let own = &candidates[*place].model;
+                    rival.is_none_or(|rival| beats(self.pair.bench, own, rival))
+                };
+                of(true).find(wins).or(listed)
+            }
+        }
     }
 
     fn refined(&self, mut model: Model) -> Model {
-        tuning::refine(self.0, &mut model);
+        tuning::refine(self.pair, &mut model);
         model
     }
 }
@@ -84,7 +156,7 @@ impl Effort<'_> {
     fn is_beyond_rounding(&self, gain: &Gain) -> bool {
         let Bench {
             dataset, motion, ..
-        } = self.0.bench;
+        } = self.pair.bench;
         let rows = motion.fitted.iter().filter(|inside| **inside).count() as f64;
         let rounding = rounding::rms(rounding::step(&dataset.train.effort));
         gain.removed >= rows * rounding.powi(2)
@@ -92,7 +164,7 @@ impl Effort<'_> {
 
     /// Judges a model with one part more than another.
     fn judged(&self, model: &Model, base: &Fit, extended: Model, round: usize) -> Candidate<Model> {
-        let fit = self.0.bench.cross_validate(&extended);
+        let fit = self.pair.bench.cross_validate(&extended);
         let fitted = Fitted::new(extended, &fit.coefficients);
         let extended = fitted.model();
         let (effect, parameter) = last(extended);
@@ -104,7 +176,8 @@ impl Effort<'_> {
             effect: effect.called(),
             parameter,
             gain,
-            physical: is_physical(effect, parameter, &fitted),
+            physical: is_physical(effect, parameter, &fitted)
+                && self.is_named_after(model, extended),
             accepted: false,
             round,
         };
@@ -114,11 +187,24 @@ impl Effort<'_> {
         }
     }
 
+    /// Whether the last part of a model shows what it is named after: it beats the same part
+    /// without that.
+    fn is_named_after(&self, model: &Model, extended: &Model) -> bool {
+        let (effect, parameter) = last(extended);
+        let rest = effect.without_its_name();
+        let without = rest.map(|rest| model.with(Part::found(rest, parameter)));
+        without.is_none_or(|without| beats(self.pair.bench, extended, &without))
+    }
+
     fn gain_at_low_cutoff(&self, model: &Model, extended: &Model, effect: &dyn Effect) -> Gain {
-        let low = self.0.low;
+        let low = self.pair.low;
         let extended = tuning::settled(low, extended.clone(), effect);
         Gain::of(&low.cross_validate(model), &low.cross_validate(&extended))
     }
+}
+
+fn is_outsider(candidate: &Candidate<Model>) -> bool {
+    last(&candidate.model).0.is_nearest_outsider()
 }
 
 /// Effect and nonlinear parameter of the part that came in last.
@@ -138,6 +224,7 @@ fn is_physical(effect: &dyn Effect, parameter: f64, fitted: &Fitted) -> bool {
     effect.is_physical(&effects::Fitted {
         parameter,
         own,
+        inertia: first(EffectName::Inertia),
         coulomb: first(EffectName::Coulomb),
         viscous: first(EffectName::Viscous),
     })
@@ -257,6 +344,11 @@ mod tests {
     };
 
     const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
+
+    const fn effort(pair: Pair<'_>) -> Effort<'_> {
+        let outsiders = Outsiders::Last;
+        Effort { pair, outsiders }
+    }
 
     /// An axis with 60 N s/m more in one direction than in the other.
     fn asymmetric() -> Axis {
@@ -388,7 +480,7 @@ mod tests {
         let (bench, other) = (late.bench(), prompt.bench());
         let declared = model(&DECLARED);
         let share = |low: &Bench<'_>| {
-            let output = Effort(Pair { bench: &bench, low });
+            let output = effort(Pair { bench: &bench, low });
             let extended = declared.with(found(Delay, 3.0e-3));
             let base = bench.cross_validate(&declared);
             let judged = output.judged(&declared, &base, extended, 2);
@@ -422,7 +514,7 @@ mod tests {
     fn a_candidate_is_accepted_where_it_is_physical_enough_and_certain() {
         let axis = asymmetric();
         let bench = axis.bench();
-        let output = Effort(Pair {
+        let output = effort(Pair {
             bench: &bench,
             low: &bench,
         });
@@ -435,7 +527,7 @@ mod tests {
         assert!(accepts(ViscousAsymmetry, 0.5, 2.4, true));
         let nothing = self::axis(usual);
         let bench = nothing.bench();
-        let output = Effort(Pair {
+        let output = effort(Pair {
             bench: &bench,
             low: &bench,
         });
@@ -449,7 +541,7 @@ mod tests {
     fn a_structure_without_a_name_needs_a_larger_share() {
         let axis = asymmetric();
         let bench = axis.bench();
-        let output = Effort(Pair {
+        let output = effort(Pair {
             bench: &bench,
             low: &bench,
         });

@@ -49,6 +49,11 @@ pub(crate) trait Output {
     /// Whether a candidate is worth a name.
     fn accepts(&self, candidate: &Candidate<Self::Model>) -> bool;
 
+    /// Place of the candidate that comes in, among all of a round in the order of their shares.
+    fn best(&self, candidates: &[Candidate<Self::Model>]) -> Option<usize> {
+        candidates.iter().position(|one| self.accepts(one))
+    }
+
     /// The model after an effect came in.
     fn refined(&self, model: Self::Model) -> Self::Model {
         model
@@ -107,7 +112,7 @@ pub(crate) fn select<O: Output>(
         let mut candidates = output.candidates(&model, round);
         let share = |candidate: &Candidate<O::Model>| candidate.scored.gain.share;
         candidates.sort_by(|a, b| share(b).total_cmp(&share(a)));
-        let best = candidates.iter().position(|one| output.accepts(one));
+        let best = output.best(&candidates);
         if let Some(best) = best {
             candidates[best].scored.accepted = true;
             heard(&candidates[best].scored);

@@ -20,6 +20,9 @@ use crate::simulate::gap::{Side, rebound};
 /// the bounces would take less than the gap's thousandth part.
 const SETTLED: f64 = 1.0e-3;
 
+/// What a search tries may put down more mass than there is; so much of it stays.
+const LEAST_SHARE: f64 = 1.0e-2;
+
 /// A gap between motor and load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gap {
@@ -60,6 +63,8 @@ pub(crate) struct Acting {
     pub load: f64,
     /// Friction level.
     pub level: f64,
+    /// Mass that moves with the load beside its own.
+    pub mass: f64,
 }
 
 /// Where the axis stands.
@@ -97,7 +102,7 @@ impl Mechanics {
         Push {
             force: acting.motor - acting.load,
             level: acting.level,
-            mass: self.mass,
+            mass: (self.mass + acting.mass).max(LEAST_SHARE * self.mass),
             step_s,
         }
     }
@@ -190,7 +195,8 @@ impl Axis {
             return self;
         }
         let side = Side::of(lag);
-        let (m1, m2, mass) = (stretch.m1(), stretch.m2(), stretch.mechanics.mass);
+        let (m1, m2) = (stretch.m1(), stretch.m2());
+        let mass = m1 + m2;
         let excess = lag - side.sign() * half;
         self.motor.x -= excess * m2 / mass;
         self.load.x += excess * m1 / mass;
@@ -203,7 +209,8 @@ impl Axis {
 
     /// The impact: momentum is kept, the bodies part by Newton's law or stay in contact.
     fn hit(&mut self, side: Side, closing: f64, stretch: &Stretch<'_>) {
-        let (m1, m2, mass) = (stretch.m1(), stretch.m2(), stretch.mechanics.mass);
+        let (m1, m2) = (stretch.m1(), stretch.m2());
+        let mass = m1 + m2;
         let common = (m1 * self.motor.v + m2 * self.load.v) / mass;
         let parting = rebound(stretch.gap.restitution, closing);
         self.motor.v = common - side.sign() * parting * m2 / mass;
@@ -217,11 +224,12 @@ impl Axis {
 
 impl Stretch<'_> {
     fn m1(&self) -> f64 {
-        self.mechanics.mass - self.m2()
+        (1.0 - self.gap.load_share) * self.mechanics.mass
     }
 
     fn m2(&self) -> f64 {
-        self.gap.load_share * self.mechanics.mass
+        let own = self.gap.load_share * self.mechanics.mass;
+        (own + self.acting.mass).max(LEAST_SHARE * own)
     }
 
     /// Friction level on the motor side.
@@ -250,7 +258,9 @@ impl Stretch<'_> {
     /// Force through the contact where both go from one motion to another as one body: what the
     /// load needs; at rest, what the motor's friction leaves of the effort.
     fn transmitted(&self, before: Body, after: Body) -> f64 {
-        let Acting { motor, load, level } = self.acting;
+        let Acting {
+            motor, load, level, ..
+        } = self.acting;
         if after.v == 0.0 && before.v == 0.0 {
             let held = self.motor_level().max(0.0);
             return motor - motor.clamp(-held, held);
@@ -312,7 +322,44 @@ mod tests {
     }
 
     fn acting(motor: f64, load: f64, level: f64) -> Acting {
-        Acting { motor, load, level }
+        Acting {
+            motor,
+            load,
+            level,
+            mass: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_mass_that_moves_along_slows_the_axis_and_is_on_the_load_of_a_gap() {
+        let loaded = Acting {
+            mass: 2.0,
+            ..acting(12.0, 0.0, 0.0)
+        };
+        let one = Mechanics {
+            mass: 4.0,
+            ..Mechanics::default()
+        };
+        let after = Axis::at(0.0, 0.0).after(&one, loaded, 1.0e-3);
+        assert!(
+            (after.motor.v - 2.0e-3).abs() < 1.0e-12,
+            "{}",
+            after.motor.v
+        );
+        let gap = Gap {
+            width: 1.0e-3,
+            load_share: 0.5,
+            ..Gap::default()
+        };
+        let stretch = |mass: f64| Stretch {
+            mechanics: &one,
+            gap,
+            acting: Acting { mass, ..loaded },
+            step_s: 1.0e-3,
+        };
+        assert_eq!((stretch(2.0).m1(), stretch(2.0).m2()), (2.0, 4.0));
+        // More is put down than there is.
+        assert_eq!(stretch(-3.0).m2(), 0.02);
     }
 
     #[test]

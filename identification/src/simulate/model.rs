@@ -140,6 +140,7 @@ impl Simulated {
 impl Acting {
     fn add(&mut self, action: Action, on_motor: bool) {
         self.level += action.level;
+        self.mass += action.mass;
         if on_motor {
             self.motor -= action.force;
         } else {
@@ -208,6 +209,7 @@ mod tests {
             motor: 60.0,
             load: 23.0,
             level: 25.0,
+            mass: 0.0,
         };
         assert_eq!(acting, wanted);
     }
@@ -218,6 +220,7 @@ mod tests {
             motor: 60.0,
             load: 23.0,
             level: 25.0,
+            mass: 0.0,
         };
         for (velocity, wanted) in [(0.1, 48.0), (-0.1, -2.0), (0.0, 60.0)] {
             assert_eq!(acting.resistance(velocity), wanted, "{velocity} m/s");

@@ -47,6 +47,7 @@ impl Effect for FrictionDrift {
         Action {
             level: own[0] * fall,
             force: own[1] * fall * at.velocity,
+            ..Action::default()
         }
     }
 

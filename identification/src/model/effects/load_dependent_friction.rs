@@ -130,6 +130,10 @@ impl Effect for LoadDependentFriction {
         true
     }
 
+    fn is_nearest_outsider(&self) -> bool {
+        true
+    }
+
     /// From `u = M a + R + μ s |Q|` and `Q = (1 − r) M a + R`, with the motor's share r and the
     /// resistance R: `Q = A − (1 − r) μ s |Q|`, `A = (1 − r) u + r R`.
     fn action(&self, at: &Instant, motor_share: f64, own: &[f64]) -> Action {
@@ -257,6 +261,7 @@ mod tests {
             LoadDependentFriction.is_physical(&Fitted {
                 parameter: MOTOR_SHARE,
                 own: &[ratio],
+                inertia: 90.0,
                 coulomb,
                 viscous,
             })
