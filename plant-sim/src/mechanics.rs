@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; brake on the shaft
-//! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table, M2 its own mass and what is added
+//! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table and what is added to it
 //! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: it only pushes where there is
 //!                                                     a gap, and damps in contact only
 //! ```
