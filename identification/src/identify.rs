@@ -106,7 +106,7 @@ fn on_effort(
     validate: &Kinematics,
     progress: &mut dyn FnMut(&Step),
 ) -> Selection {
-    let mut selected = effort::select(pair, declared.clone(), progress);
+    let mut selected = effort::select(pair, declared, progress);
     let other = Bench::new(pair.bench.dataset, validate);
     effort::veto(pair.bench, &other, &mut selected);
     selected

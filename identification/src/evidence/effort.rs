@@ -47,7 +47,7 @@ enum Outsiders {
 
 /// Forward selection from the declared model, and removal of what is superfluous in the end.
 /// `progress` hears of every effect.
-pub(crate) fn select(pair: Pair<'_>, start: Model, progress: &mut dyn FnMut(&Step)) -> Selection {
+pub(crate) fn select(pair: Pair<'_>, start: &Model, progress: &mut dyn FnMut(&Step)) -> Selection {
     let mut selected = |outsiders: Outsiders| {
         let output = Effort { pair, outsiders };
         select_on(&output, start.clone(), progress)
@@ -416,7 +416,7 @@ mod tests {
             low: &bench,
         };
         let (mut said, mut percents) = (Vec::new(), Vec::new());
-        let selection = select(pair, model(&DECLARED), &mut |step| {
+        let selection = select(pair, &model(&DECLARED), &mut |step| {
             said.push(step.to_string());
             if let Step::Found { percent, round, .. } = step {
                 percents.push((*percent, *round));
