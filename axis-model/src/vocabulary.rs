@@ -184,6 +184,19 @@ vocabulary! {
         phase: ANGLE, -1.0e3 => 1.0e3,
     }
 
+    /// delivered effort that ripples with position, u (1 + c sin(2 pi x / period + phase))
+    torque_constant_ripple: TorqueConstantRipple, MovingEffort, {
+        /// c
+        torque_constant_ripple: RATIO, 0.0 => 0.5,
+    } optional {
+        /// periods per revolution of the motor
+        order: PER_REVOLUTION, 1.0e-3 => 1.0e4,
+        /// way from one period to the next
+        period: POSITION, 1.0e-6 => 1.0e3,
+        /// phase at position zero
+        phase: ANGLE, -1.0e3 => 1.0e3,
+    }
+
     /// delivered effort that falls behind the commanded one as it grows, u / (1 + k abs(u))
     torque_saturation: TorqueSaturation, MovingEffort, {
         /// k
@@ -194,6 +207,12 @@ vocabulary! {
     delay: Delay, MovingEffort, {
         /// the time
         delay: TIME, 0.0 => 1.0e-3,
+    } optional {}
+
+    /// effort that acted earlier than the record says: the log is late, not the axis
+    logged_late: LoggedLate, MovingEffort, {
+        /// the time
+        logged_late: TIME, 0.0 => 0.1,
     } optional {}
 }
 

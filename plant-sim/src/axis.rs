@@ -242,7 +242,10 @@ impl Axis {
         let before = self.force_n;
         self.force_n += lag * (target_n - self.force_n);
         let mean_n = target_n + (before - target_n) * mean_share(lag);
-        let at = self.instant(dt_s);
+        let at = Instant {
+            delivered_n: mean_n,
+            ..self.instant(dt_s)
+        };
         let effects = &self.parameters.effects;
         let drive = Drive {
             motor_n: mean_n + disturbance_n + effects.motor_n(&at),
@@ -267,6 +270,7 @@ impl Axis {
             time_s: self.time_s,
             lead_m: parameters.lead_m_per_rev,
             transmitted_n: parameters.mechanics.transmitted_n(motion),
+            ..Instant::default()
         }
     }
 

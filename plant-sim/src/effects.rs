@@ -21,6 +21,7 @@ mod payload;
 mod pitch_error;
 mod position_dependent_friction;
 mod position_dependent_inertia;
+mod torque_constant_ripple;
 mod torque_ripple;
 mod torque_saturation;
 
@@ -40,6 +41,8 @@ pub struct Instant {
     pub time_s: f64,
     /// Travel per motor revolution, m.
     pub lead_m: f64,
+    /// Force that the drive delivers to the motor, before any ripple, N.
+    pub delivered_n: f64,
     /// Force that the screw transmits to the table, N.
     pub transmitted_n: f64,
 }
@@ -103,6 +106,7 @@ fn simulated(effect: &Effect) -> Option<&dyn Simulated> {
         Effect::LoadDependentFriction(own) => Some(own),
         Effect::Payload(own) => Some(own),
         Effect::PositionDependentInertia(own) => Some(own),
+        Effect::TorqueConstantRipple(own) => Some(own),
         Effect::TorqueSaturation(own) => Some(own),
         Effect::Delay(own) => Some(own),
         _ => None,
@@ -206,6 +210,7 @@ const fn elsewhere(effect: EffectName) -> &'static str {
         EffectName::Inertia => "give motor_inertia_kg and table_mass_kg in [axis.mechanics]",
         EffectName::Backlash => "give backlash_m in [axis.mechanics]",
         EffectName::Compliance => "give screw_stiffness_n_per_m in [axis.mechanics]",
+        EffectName::LoggedLate => "the log is late, not the axis; leave it out",
         _ => "the simulator has no such effect; leave it out",
     }
 }
@@ -221,6 +226,7 @@ mod tests {
         table_m_per_s: 0.0,
         time_s: 0.0,
         lead_m: 0.01,
+        delivered_n: 0.0,
         transmitted_n: 0.0,
     };
 

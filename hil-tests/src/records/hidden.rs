@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 
 use axis_model::{
     Delay, Effect, EffectName, FrictionDrift, LoadDependentFriction, Payload, PitchError,
-    PositionDependentFriction, PositionDependentInertia, TorqueRipple, TorqueSaturation,
+    PositionDependentFriction, PositionDependentInertia, TorqueConstantRipple, TorqueRipple,
+    TorqueSaturation,
 };
 use plant_sim::axis::AxisParameters;
 use plant_sim::friction::{Law, Sliding};
@@ -58,10 +59,14 @@ pub enum Hidden {
     Payload { kg: f64, at_s: f64 },
     /// Amplitude and period of a mass over position.
     PositionDependentInertia { kg: f64, period_m: f64 },
+    /// Share by which the torque constant swings, and how often in a revolution.
+    TorqueConstantRipple { share: f64, order_per_rev: f64 },
     /// Share of the effort that is lost at 1 kN.
     TorqueSaturation { share: f64 },
     /// Effort that acts late.
     Delay { delay_s: f64 },
+    /// A log that says what the effort was some time before. The axis does not know of it.
+    LoggedLate { late_s: f64 },
     /// What the vocabulary has no name for.
     Foreign(Foreign),
 }
@@ -96,6 +101,8 @@ impl Hidden {
             Self::LoadDependentFriction { .. } => EffectName::LoadDependentFriction,
             Self::Payload { .. } => EffectName::Payload,
             Self::PositionDependentInertia { .. } => EffectName::PositionDependentInertia,
+            Self::TorqueConstantRipple { .. } => EffectName::TorqueConstantRipple,
+            Self::LoggedLate { .. } => EffectName::LoggedLate,
             Self::TorqueSaturation { .. } => EffectName::TorqueSaturation,
             Self::Delay { .. } => EffectName::Delay,
             Self::Foreign(_) => return None,
@@ -134,12 +141,13 @@ impl Hidden {
             | Self::LoadDependentFriction { .. }
             | Self::Payload { .. }
             | Self::PositionDependentInertia { .. }
+            | Self::TorqueConstantRipple { .. }
             | Self::TorqueSaturation { .. }
             | Self::Delay { .. } => {
                 let added = self.further().map(|effect| axis.effects.add(effect));
                 added.transpose().expect("the simulator has it");
             }
-            Self::Foreign(_) => {}
+            Self::LoggedLate { .. } | Self::Foreign(_) => {}
         }
     }
 
@@ -194,6 +202,15 @@ impl Hidden {
                     phase: Some(WAVE_PHASE_RAD),
                 })
             }
+            Self::TorqueConstantRipple {
+                share,
+                order_per_rev,
+            } => Effect::TorqueConstantRipple(TorqueConstantRipple {
+                torque_constant_ripple: share,
+                order: Some(order_per_rev),
+                period: None,
+                phase: Some(WAVE_PHASE_RAD),
+            }),
             Self::TorqueSaturation { share } => Effect::TorqueSaturation(TorqueSaturation {
                 torque_saturation: SATURATION_PER_N * share / (1.0 - share),
             }),
@@ -219,6 +236,15 @@ impl Foreign {
             Self::CubicDrag { n_s3_per_m3 } => -n_s3_per_m3 * table.table_m_per_s.powi(3),
         }
     }
+}
+
+/// By how much the log of the effort is late, s.
+pub(super) fn logged_late_s(hidden: &[Hidden]) -> f64 {
+    let late = hidden.iter().map(|hidden| match hidden {
+        Hidden::LoggedLate { late_s } => *late_s,
+        _ => 0.0,
+    });
+    late.sum()
 }
 
 /// Force of what the simulator has no name for, N.

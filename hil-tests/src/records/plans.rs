@@ -5,9 +5,10 @@
 
 use super::hidden::Foreign::{CubicDrag, Hum, Spring};
 use super::hidden::Hidden::{
-    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, LoadDependentFriction, Payload,
-    PitchError, PositionDependentFriction, PositionDependentInertia, Presliding, QuadraticDrag,
-    Stribeck, TorqueRipple, TorqueSaturation, ViscousAsymmetry,
+    self, Backlash, Compliance, Delay, Foreign, FrictionDrift, LoadDependentFriction, LoggedLate,
+    Payload, PitchError, PositionDependentFriction, PositionDependentInertia, Presliding,
+    QuadraticDrag, Stribeck, TorqueConstantRipple, TorqueRipple, TorqueSaturation,
+    ViscousAsymmetry,
 };
 use super::plan::{Plan, Positions};
 
@@ -122,6 +123,15 @@ const CHANGING_MASS: &[Case] = &[
             ViscousAsymmetry { share: 0.2 }]),
 ];
 
+#[rustfmt::skip] // As above.
+const OTHER_EFFORT: &[Case] = &[
+    motor(&[TorqueConstantRipple { share: 0.06, order_per_rev: 6.0 }]),
+    motor(&[TorqueConstantRipple { share: 0.1, order_per_rev: 1.0 },
+            Stribeck { ratio: 1.4, velocity_m_per_s: 4.0e-3 }]),
+    motor(&[LoggedLate { late_s: 1.3e-3 }]),
+    motor(&[LoggedLate { late_s: 4.0e-3 }, ViscousAsymmetry { share: 0.2 }]),
+];
+
 /// All plans, in a fixed order.
 #[must_use]
 pub fn plans() -> Vec<Plan> {
@@ -129,7 +139,8 @@ pub fn plans() -> Vec<Plan> {
         let case = if index % 2 == 0 { scale } else { motor };
         case(&[])
     });
-    let hidden = [ALONE, PAIRS, OUTSIDE, FOLLOWING_LOAD, CHANGING_MASS].concat();
+    let later = [FOLLOWING_LOAD, CHANGING_MASS, OTHER_EFFORT].concat();
+    let hidden = [ALONE, PAIRS, OUTSIDE, &later].concat();
     let cases = empty.chain(hidden).enumerate();
     cases.map(|(index, case)| plan(index, case)).collect()
 }
@@ -149,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_are_70_plans_and_every_seed_is_its_own() {
+    fn there_are_74_plans_and_every_seed_is_its_own() {
         let plans = plans();
         let hides = |count: usize| {
             plans
@@ -157,9 +168,9 @@ mod tests {
                 .filter(|plan| plan.hidden.len() == count)
                 .count()
         };
-        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 35, 15));
+        assert_eq!((hides(0), hides(1), hides(2)), (EMPTY, 37, 17));
         let seeds: Vec<u64> = plans.iter().map(|plan| plan.seed).collect();
-        assert_eq!(seeds, (1000..1070).collect::<Vec<_>>());
+        assert_eq!(seeds, (1000..1074).collect::<Vec<_>>());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::control::{
     Controller, INTEGRAL_PER_S, POSITION_GAIN_PER_S, VELOCITY_FILTER, velocity_gain_n_s_per_m,
 };
 use super::draws::Draws;
-use super::hidden::foreign_n;
+use super::hidden::{foreign_n, logged_late_s};
 use super::motion;
 use super::plan::{Plan, Positions, Sensor};
 use super::{LEAD_M, PERIOD_S};
@@ -39,12 +39,13 @@ fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], draws: &mut Dr
     let seed = draws.between(0.0, 1.0e9) as u64;
     let mut axis = Axis::new(parameters.clone(), seed);
     let mut controller = Controller::new(mass_kg(parameters));
+    let mut log = EffortLog::new(logged_late_s(&plan.hidden));
     let mut text = head(plan.positions);
     for row in 0..path.len() {
         let time_s = PERIOD_S * row as f64;
         let measured = Measured::of(&mut axis);
         let force_n = controller.step(path, row, measured.at(plan.closed_on));
-        let recorded_n = force_n + plan.noise_n * draws.normal();
+        let recorded_n = log.shows(force_n) + plan.noise_n * draws.normal();
         let load = load_cell(plan.positions, measured.load_m);
         writeln!(
             text,
@@ -56,6 +57,32 @@ fn record(plan: &Plan, parameters: &AxisParameters, path: &[f64], draws: &mut Dr
         axis.advance(force_n + foreign_n, PERIOD_S);
     }
     text
+}
+
+/// A log of the effort that may be late: it says what was held a time before, as the mean over a
+/// cycle.
+struct EffortLog {
+    newest_first: Vec<f64>,
+    share: f64,
+}
+
+impl EffortLog {
+    fn new(late_s: f64) -> Self {
+        let rows = late_s / PERIOD_S;
+        Self {
+            newest_first: vec![0.0; rows as usize + 2],
+            share: rows.fract(),
+        }
+    }
+
+    /// What stands in the row of a new effort.
+    fn shows(&mut self, force_n: f64) -> f64 {
+        self.newest_first.rotate_right(1);
+        self.newest_first[0] = force_n;
+        let oldest = self.newest_first.len() - 1;
+        let (later, earlier) = (self.newest_first[oldest - 1], self.newest_first[oldest]);
+        (1.0 - self.share) * later + self.share * earlier
+    }
 }
 
 fn head(positions: Positions) -> String {
@@ -120,6 +147,17 @@ mod tests {
         let parameters = axis::parameters(&plan, &mut draws);
         let path = motion::path(plan.rows, &mut draws);
         record(&plan, &parameters, &path, &mut draws)
+    }
+
+    #[test]
+    fn a_late_log_shows_what_was_before_and_a_prompt_one_what_is() {
+        let shown = |late_s: f64| {
+            let mut log = EffortLog::new(late_s);
+            [1.0, 2.0, 4.0, 8.0].map(|force_n| log.shows(force_n))
+        };
+        assert_eq!(shown(0.0), [1.0, 2.0, 4.0, 8.0]);
+        assert_eq!(shown(2.0 * PERIOD_S), [0.0, 0.0, 1.0, 2.0]);
+        assert_eq!(shown(1.5 * PERIOD_S), [0.0, 0.5, 1.5, 3.0]);
     }
 
     #[test]

@@ -15,7 +15,8 @@ use axis_model::EffectName;
 
 use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, Vetoed, is_enough};
 use crate::evidence::thresholds::{
-    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, VETO_PART, VETO_RATIO,
+    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, OUTSIDER, VETO_PART,
+    VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
@@ -102,7 +103,7 @@ impl Output for Effort<'_> {
             dataset: bench.dataset,
             residual: &residual,
         };
-        let open = |effect: &&'static dyn Effect| effect.repeats() || !model.has(effect.called());
+        let open = |effect: &&'static dyn Effect| model.is_open_to(*effect);
         let candidate = |effect: &&'static dyn Effect| {
             let extended = tuning::extended(self.pair, model, *effect, &setting)?;
             Some(self.judged(model, &base, extended, round))
@@ -117,6 +118,7 @@ impl Output for Effort<'_> {
     fn accepts(&self, candidate: &Candidate<Model>) -> bool {
         let scored = &candidate.scored;
         let is_large = scored.effect.name().is_some() || scored.gain.share >= NAMELESS_SHARE;
+        let is_large = is_large && (!is_outsider(candidate) || is_large_outside(&scored.gain));
         scored.physical
             && is_large
             && is_enough(&scored.gain)
@@ -201,6 +203,12 @@ impl Effort<'_> {
         let extended = tuning::settled(low, extended.clone(), effect);
         Gain::of(&low.cross_validate(model), &low.cross_validate(&extended))
     }
+}
+
+/// Whether a gain is large enough for a name outside the list.
+fn is_large_outside(gain: &Gain) -> bool {
+    let (share, percent) = OUTSIDER;
+    gain.share >= share && gain.percent >= percent
 }
 
 fn is_outsider(candidate: &Candidate<Model>) -> bool {

@@ -36,6 +36,10 @@ pub(crate) const CERTAIN_T: f64 = 2.5;
 /// is what it leads to.
 pub(crate) const NAMELESS_SHARE: f64 = UNEXPLAINED_SHARE;
 
+/// Smallest share and size (percent of the effort) of a nearest outsider: twice those of a listed
+/// effect. It has what the list leaves, and a listed effect of a slightly other shape leaves some.
+pub(crate) const OUTSIDER: (f64, f64) = (2.0 * EFFORT_SHARE, 2.0 * EFFORT_PERCENT);
+
 /// Largest error on another record with an effect over that without it. Chosen: what holds on one
 /// record only is no effect of the axis, but a little more error is no proof of that.
 pub(crate) const VETO_RATIO: f64 = 1.05;

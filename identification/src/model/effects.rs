@@ -11,6 +11,7 @@ use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 
+pub(crate) mod by_motion;
 pub(crate) mod coulomb;
 pub(crate) mod delay;
 pub(crate) mod friction_drift;
@@ -18,6 +19,7 @@ pub(crate) mod hum;
 pub(crate) mod inertia;
 pub(crate) mod load_dependent_friction;
 pub(crate) mod load_inertia;
+pub(crate) mod logged_late;
 pub(crate) mod offset;
 pub(crate) mod payload;
 pub(crate) mod polynomial;
@@ -26,6 +28,7 @@ pub(crate) mod position_dependent_inertia;
 pub(crate) mod quadratic_drag;
 pub(crate) mod spring;
 pub(crate) mod stribeck;
+pub(crate) mod torque_constant_ripple;
 pub(crate) mod torque_ripple;
 pub(crate) mod torque_saturation;
 pub(crate) mod trend;
@@ -332,7 +335,7 @@ pub(crate) trait Effect: Sync {
 }
 
 /// Every effect of the inverse model; the first four are the usual declared ones.
-pub(crate) static LIBRARY: [&dyn Effect; 18] = [
+pub(crate) static LIBRARY: [&dyn Effect; 20] = [
     &inertia::Inertia,
     &viscous::Viscous,
     &coulomb::Coulomb,
@@ -346,10 +349,12 @@ pub(crate) static LIBRARY: [&dyn Effect; 18] = [
     &load_dependent_friction::LoadDependentFriction,
     &payload::Payload,
     &position_dependent_inertia::PositionDependentInertia,
+    &torque_constant_ripple::TorqueConstantRipple,
     &spring::Spring,
     &hum::Hum,
     &trend::Trend,
     &delay::Delay,
+    &logged_late::LoggedLate,
     &torque_saturation::TorqueSaturation,
 ];
 
@@ -374,9 +379,9 @@ mod tests {
     use super::*;
     use crate::fit::made::{axis, usual};
     use EffectName::{
-        Coulomb, Delay, FrictionDrift, Inertia, Offset, Payload, PositionDependentFriction,
-        PositionDependentInertia, QuadraticDrag, Stribeck, TorqueRipple, TorqueSaturation, Viscous,
-        ViscousAsymmetry,
+        Coulomb, Delay, FrictionDrift, Inertia, LoggedLate, Offset, Payload,
+        PositionDependentFriction, PositionDependentInertia, QuadraticDrag, Stribeck,
+        TorqueConstantRipple, TorqueRipple, TorqueSaturation, Viscous, ViscousAsymmetry,
     };
     use std::f64::consts::PI;
 
@@ -384,7 +389,7 @@ mod tests {
     fn parameter(effect: &dyn Effect) -> f64 {
         match effect.called() {
             Called::Effect(Stribeck) => 0.02,
-            Called::Effect(TorqueRipple) => 120.0,
+            Called::Effect(TorqueRipple | TorqueConstantRipple) => 120.0,
             Called::Effect(PositionDependentInertia) => 12.0,
             Called::Effect(FrictionDrift) => 2.0,
             Called::Structure("force over time") => 3.0,
@@ -595,6 +600,11 @@ mod tests {
             (Delay, 1.01e-4, &[], true),
             (Delay, 0.99e-4, &[], false),
             (Delay, -2.0e-3, &[], false),
+            (LoggedLate, 1.51e-4, &[], true),
+            (LoggedLate, 1.49e-4, &[], false),
+            (LoggedLate, -2.0e-3, &[], false),
+            (TorqueConstantRipple, 100.0, &[0.3, 0.39], true),
+            (TorqueConstantRipple, 100.0, &[0.3, 0.41], false),
             (TorqueSaturation, 1.0e-6, &[], true),
             (TorqueSaturation, 0.0, &[], false),
             (TorqueRipple, 100.0, &[-1.0, 2.0], true),

@@ -3,7 +3,7 @@
 //! ```text
 //! q = Σ θ · column          wanted effort: the parts that are forces
 //! u = q / (1 − k |q|)       commanded effort of a drive that falls behind (torque saturation)
-//! u(t) acts at t + delay    (delay)
+//! u(t) acts at t + delay    (delay; below zero: logged late)
 //! ```
 //!
 //! All of them are parts of one list. A part that is a force has columns and one coefficient each;
@@ -12,7 +12,7 @@
 use axis_model::EffectName;
 
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Effect, LIBRARY};
+use crate::model::effects::{Effect, LIBRARY, Stage};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -122,11 +122,30 @@ impl Model {
         self.parts.iter().any(|part| part.called() == called)
     }
 
-    /// The recorded effort acts this much later than the record says, s.
+    /// The recorded effort acts this much later than the record says, s; below zero where it was
+    /// logged late.
     #[must_use]
     pub(crate) fn delay_s(&self) -> f64 {
-        self.of(EffectName::Delay)
-            .map_or(0.0, |part| part.parameter)
+        self.time_of(EffectName::Delay) - self.logged_late_s()
+    }
+
+    /// The recorded effort was logged so late, s.
+    #[must_use]
+    pub(crate) fn logged_late_s(&self) -> f64 {
+        self.time_of(EffectName::LoggedLate)
+    }
+
+    fn time_of(&self, name: EffectName) -> f64 {
+        self.of(name).map_or(0.0, |part| part.parameter)
+    }
+
+    /// Whether an effect can come in besides: one that is not there yet, or may be there several
+    /// times. A record has one shift of time.
+    #[must_use]
+    pub(crate) fn is_open_to(&self, effect: &dyn Effect) -> bool {
+        let shifts = |part: &Part| part.effect.stage() == Stage::Time;
+        let is_shifted = effect.stage() == Stage::Time && self.parts.iter().any(shifts);
+        effect.repeats() || !(is_shifted || self.has(effect.called()))
     }
 
     /// The actuator; an ideal one where it does not saturate.
@@ -189,8 +208,9 @@ impl Model {
 mod tests {
     use super::*;
     use crate::fit::made::{found, model};
+    use crate::model::effects::find;
     use EffectName::{
-        Coulomb, CoulombAsymmetry, Delay, FrictionDrift, Inertia, Offset,
+        Coulomb, CoulombAsymmetry, Delay, FrictionDrift, Inertia, LoggedLate, Offset,
         PositionDependentFriction, Presliding, Stribeck, TorqueRipple, TorqueSaturation, Viscous,
     };
 
@@ -260,6 +280,20 @@ mod tests {
             names(&full.without(&full.parts[1])),
             ["inertia", "torque_saturation"]
         );
+    }
+
+    #[test]
+    fn a_late_log_is_a_delay_below_zero_and_a_model_has_one_of_the_two() {
+        let plain = model(&[Inertia]);
+        let late = plain.with(found(LoggedLate, 2.0e-3));
+        assert_eq!((late.delay_s(), late.logged_late_s()), (-2.0e-3, 2.0e-3));
+        let open = |model: &Model, name| model.is_open_to(find(name).unwrap());
+        for name in [Delay, LoggedLate] {
+            assert!(open(&plain, name));
+            assert!(!open(&late, name) && !open(&plain.with(found(Delay, 1.0e-3)), name));
+        }
+        assert!(!open(&late, Inertia) && open(&late, Stribeck));
+        assert!(open(&late.with(found(TorqueRipple, 100.0)), TorqueRipple));
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! The controller of the record, where it is known. Where it is not, the recorded effort is
 //! applied, and a soft controller of our own keeps the simulation near the record:
 //! `u = u_rec + m ω² (q_rec − q) + 2 ζ m ω (v_rec − v)`, with ω = 60 rad/s and ζ = 0.7. That is
-//! good enough to compare structures, but no free run, and not reported as one.
+//! good enough to compare structures, but no free run, and not reported as one. An effort that was
+//! logged late is read ahead by that time.
 
 use crate::record::samples::Record;
 use crate::simulate::axis::Axis;
@@ -31,6 +32,8 @@ pub(crate) struct Driving<'a> {
     drive: &'a Drive,
     record: &'a Record,
     mass: f64,
+    /// Rows by which the recorded effort was logged late.
+    late_rows: f64,
     memory: Memory,
 }
 
@@ -41,9 +44,15 @@ impl Drive {
         controller.law().map_or(Self::Followed, Self::Known)
     }
 
-    /// The drive at the start of a record, for an axis of a mass.
+    /// The drive at the start of a record, for an axis of a mass; the recorded effort was logged
+    /// late by a time.
     #[must_use]
-    pub(crate) fn along<'a>(&'a self, record: &'a Record, mass: f64) -> Driving<'a> {
+    pub(crate) fn along<'a>(
+        &'a self,
+        record: &'a Record,
+        mass: f64,
+        logged_late_s: f64,
+    ) -> Driving<'a> {
         let memory = match self {
             Self::Known(law) => law.start(record),
             Self::Followed => Memory::default(),
@@ -52,6 +61,7 @@ impl Drive {
             drive: self,
             record,
             mass,
+            late_rows: logged_late_s / record.period_s,
             memory,
         }
     }
@@ -73,9 +83,18 @@ impl Driving<'_> {
     fn followed(&self, row: usize, axis: &Axis) -> f64 {
         let stiffness = self.mass * SOFT_BANDWIDTH.powi(2);
         let damping = SOFT_DAMPING * self.mass * SOFT_BANDWIDTH;
-        self.record.effort[row]
+        self.recorded(row)
             + stiffness * (self.record.position[row] - axis.motor.x)
             + damping * (velocity(self.record, row) - axis.motor.v)
+    }
+
+    /// The recorded effort that acted at a row, between two rows by their distance.
+    fn recorded(&self, row: usize) -> f64 {
+        let efforts = &self.record.effort;
+        let from = row + self.late_rows.floor() as usize;
+        let at = |row: usize| efforts.get(row).or(efforts.last()).copied().unwrap_or(0.0);
+        let share = self.late_rows.fract();
+        (1.0 - share) * at(from) + share * at(from + 1)
     }
 }
 
@@ -107,6 +126,21 @@ mod tests {
     }
 
     #[test]
+    fn an_effort_that_was_logged_late_is_read_ahead_between_two_rows() {
+        let record = Record {
+            effort: vec![1.0, 3.0, 7.0, 8.0],
+            ..record()
+        };
+        let effort = |row, logged_late_s| {
+            let driving = Drive::Followed.along(&record, 2.0, logged_late_s);
+            driving.recorded(row)
+        };
+        assert_eq!((effort(0, 0.0), effort(1, 0.0)), (1.0, 3.0));
+        assert_eq!((effort(0, 0.5), effort(0, 0.75)), (3.0, 5.0));
+        assert_eq!(effort(3, 0.75), 8.0);
+    }
+
+    #[test]
     fn the_recorded_velocity_is_a_difference_over_the_rows_that_are_there() {
         let velocities = [0, 1, 2, 3].map(|row| velocity(&record(), row));
         assert_eq!(velocities, [2.0, 4.0, 3.0, 0.0]);
@@ -115,7 +149,7 @@ mod tests {
     #[test]
     fn the_soft_controller_adds_a_spring_and_a_damper_to_the_recorded_effort() {
         let record = record();
-        let mut driving = Drive::Followed.along(&record, 2.0);
+        let mut driving = Drive::Followed.along(&record, 2.0, 0.0);
         // On the record: 1 at 4 units a second.
         assert_eq!(driving.effort(1, &Axis::at(1.0, 4.0)), 5.0);
         // 2·60² = 7200 a unit behind, 1.4·2·60 = 168 a unit a second too slow.
@@ -139,7 +173,7 @@ mod tests {
                 misfit: 0.0,
             };
             let drive = Drive::Known(law);
-            let mut driving = drive.along(&record, 2.0);
+            let mut driving = drive.along(&record, 2.0, 0.0);
             // 10 (4 (1 − q) − (q − q two rows ago)/1 s); the record came from −2, then −1.
             assert_eq!(
                 driving.effort(0, &axis),

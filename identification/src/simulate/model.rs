@@ -41,6 +41,8 @@ pub(crate) struct Simulated {
     pub saturation: Saturation,
     /// Delay beyond the hold, s.
     pub delay_s: f64,
+    /// By how much the recorded effort was logged late, s.
+    pub logged_late_s: f64,
     /// Middle and half of the travel of the training record.
     travel: (f64, f64),
     /// Duration of the training record, s.
@@ -91,6 +93,7 @@ impl Simulated {
             forces: forces.collect(),
             saturation: fitted.model().saturation(),
             delay_s: delay_s.max(0.0),
+            logged_late_s: fitted.model().logged_late_s(),
             travel: dataset.travel(),
             duration_s: dataset.train.duration_s(),
         })

@@ -62,7 +62,7 @@ pub(crate) fn simulate(model: &Simulated, drive: &Drive, record: &Record) -> Run
 fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     let first = |values: &[f64]| values.first().copied().unwrap_or(0.0);
     let mut axis = Axis::at(first(&record.position), velocity(record, 0));
-    let mut driving = drive.along(record, model.mechanics.mass);
+    let mut driving = drive.along(record, model.mechanics.mass, model.logged_late_s);
     let mut efforts = HeldEfforts::new(first(&record.effort), record.period_s, model.delay_s);
     let steps = SubSteps::of(record.period_s);
     let row = |row: usize| {

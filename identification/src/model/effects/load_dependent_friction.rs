@@ -11,11 +11,9 @@
 //! is the nonlinear parameter. The friction is written with Q, the force by motion: to the order of
 //! μ² it is the transmitted force F, and with it the effort is linear in μ.
 //!
-//! The effort itself would be a noisy regressor. The column would hold the noise of the target,
-//! with the same sign wherever the motor drives: the fit would explain noise by itself and find the
-//! effect on every axis that hardly brakes. So Q is computed from the motion, with the four
-//! coefficients of the usual model beside this column, fitted to the record once more after each
-//! step of σ. Five numbers from thousands of rows hold no noise of a row.
+//! The effort itself would be a noisy regressor: its noise has the same sign as the target's
+//! wherever the motor drives, and the effect would be found on every axis that hardly brakes. So Q
+//! is computed from the motion ([`ByMotion`]), once more after each step of σ.
 //!
 //! What is found is friction only where the friction without load is: an unphysical split of the
 //! usual columns could have any ratio.
@@ -24,8 +22,8 @@
 //! ones, and the record cannot show the effect.
 
 use axis_model::EffectName;
-use nalgebra::{SMatrix, SVector};
 
+use super::by_motion::{ByMotion, Usual};
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
@@ -46,19 +44,6 @@ const FITS: usize = 4;
 /// As in the vocabulary; from 1 on an axis would lock itself.
 const LARGEST_RATIO: f64 = 0.9;
 
-/// Acceleration, velocity, direction, one.
-type Usual = [f64; 4];
-
-/// What Q is made of at a row.
-fn usual(motion: &Kinematics, acceleration: &[f64], row: usize) -> Usual {
-    [
-        acceleration[row],
-        motion.velocity_lp[row],
-        motion.direction[row],
-        1.0,
-    ]
-}
-
 /// Force by motion, without the share of the inertia that is the motor's own.
 fn force(coefficients: Usual, motor_share: f64, at: Usual) -> f64 {
     let [mass, viscous, coulomb, offset] = coefficients;
@@ -66,41 +51,19 @@ fn force(coefficients: Usual, motor_share: f64, at: Usual) -> f64 {
 }
 
 /// |Q| sign(v) at the coefficients of a fit.
-fn column(motion: &Kinematics, acceleration: &[f64], coefficients: Usual, share: f64) -> Vec<f64> {
-    let at = |row| usual(motion, acceleration, row);
-    let size = |row| force(coefficients, share, at(row)).abs();
+fn column(motion: &Kinematics, by_motion: &ByMotion<'_>, usual: Usual, share: f64) -> Vec<f64> {
+    let size = |row| force(usual, share, by_motion.at(row)).abs();
     let rows = 0..motion.len();
     rows.map(|row| motion.direction[row] * size(row)).collect()
 }
 
-/// Coefficients of the usual columns beside another, by least squares over the fitted samples.
-fn coefficients(motion: &Kinematics, usual: &[Vec<f64>; 4], beside: &[f64]) -> Usual {
-    let (mut gram, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
-    for row in (0..motion.len()).filter(|row| motion.fitted[*row]) {
-        let [a, v, s, one] = usual.each_ref().map(|column| column[row]);
-        let at = SVector::from([a, v, s, one, beside[row]]);
-        gram += at * at.transpose();
-        right += at * motion.effort_lp[row];
-    }
-    // A column of zeros, or one that repeats others, gets no coefficient.
-    let solution = gram.svd(true, true).solve(&right, 1.0e-12 * gram.norm());
-    let solution = solution.unwrap_or_else(|_| SVector::zeros());
-    [solution[0], solution[1], solution[2], solution[3]]
-}
-
 /// The column that agrees with the coefficients that are fitted beside it.
 fn consistent(motion: &Kinematics, share: f64) -> Vec<f64> {
-    let acceleration = motion.low_passed(&motion.acceleration);
-    let low_passed = [
-        acceleration.clone(),
-        motion.velocity_lp.clone(),
-        motion.low_passed(&motion.direction),
-        vec![1.0; motion.len()],
-    ];
+    let by_motion = ByMotion::of(motion);
     let mut own = vec![0.0; motion.len()];
     for _ in 0..FITS {
-        let fitted = coefficients(motion, &low_passed, &motion.low_passed(&own));
-        own = column(motion, &acceleration, fitted, share);
+        let (usual, _) = by_motion.fit(&[own]);
+        own = column(motion, &by_motion, usual, share);
     }
     own
 }

@@ -1,0 +1,195 @@
+//! Ripple of the torque constant: of an effort u the motor delivers `q = u (1 + w)`,
+//! `w = c cos(2π k x + φ)`.
+//!
+//! The recorded effort carries the wave with the other sign, weighted with itself: `u = q − u w`.
+//! That tells it from [`super::torque_ripple`], a wave that is there at any effort: this one changes
+//! its sign with the effort and is nothing where there is none.
+//!
+//! The columns are −u cos and −u sin. The u in them is computed from the motion ([`ByMotion`]), and
+//! with its own wave: with q in its place the second order would look like a ripple of twice the
+//! wave number.
+
+use axis_model::EffectName;
+
+use super::by_motion::{ByMotion, Usual};
+use super::wave::{self, Names, Weight};
+use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
+use crate::model::name::Called;
+use crate::record::dataset::Dataset;
+
+/// −u (a cos(2π k x) + b sin(2π k x)).
+pub(crate) struct TorqueConstantRipple;
+
+/// At least so many periods within the travel: fewer are no period yet, and the wave would be taken
+/// for a part of the effort itself.
+const FEWEST_PERIODS: f64 = 3.0;
+/// Half the torque: no motor is made so.
+const LARGEST: f64 = 0.5;
+/// Rounds in which the effort and its wave are made to agree: each leaves a tenth of the error, as
+/// the wave is a tenth of the effort.
+const ROUNDS: usize = 3;
+
+/// The effort by the motion, with the coefficients of a fit.
+fn effort(by_motion: &ByMotion<'_>, usual: Usual, row: usize) -> f64 {
+    let pairs = usual.into_iter().zip(by_motion.at(row));
+    pairs.map(|(coefficient, value)| coefficient * value).sum()
+}
+
+/// Effort of each row by the motion, and the effort with its wave, `q / (1 + w)`.
+fn consistent(motion: &Kinematics, k: f64) -> Vec<f64> {
+    let by_motion = ByMotion::of(motion);
+    let (mut usual, mut own) = by_motion.fit(&[]);
+    let mut efforts = Vec::new();
+    for round in 0..=ROUNDS {
+        let with_wave = |row: usize| {
+            let wave = match own[..] {
+                [a, b] => wave::value(&[a, b], k, motion.position_lp[row]),
+                _ => 0.0,
+            };
+            effort(&by_motion, usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
+        };
+        efforts = (0..motion.len()).map(with_wave).collect();
+        if round < ROUNDS {
+            (usual, own) = by_motion.fit(&columns(motion, k, &efforts));
+        }
+    }
+    efforts
+}
+
+fn columns(motion: &Kinematics, k: f64, efforts: &[f64]) -> Vec<Vec<f64>> {
+    wave::columns(motion, k, |row| Weight {
+        wave: -efforts[row],
+        half_slope: 0.0,
+    })
+}
+
+impl Effect for TorqueConstantRipple {
+    fn called(&self) -> Called {
+        EffectName::TorqueConstantRipple.into()
+    }
+
+    fn equation(&self) -> &'static str {
+        "-u (a cos(2 pi k x) + b sin(2 pi k x)), u = effort by motion"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
+        columns(motion, k, &consistent(motion, k))
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn is_nearest_outsider(&self) -> bool {
+        true
+    }
+
+    fn acts_on_motor(&self) -> bool {
+        true
+    }
+
+    fn follows_load(&self) -> bool {
+        true
+    }
+
+    fn repeats(&self) -> bool {
+        true
+    }
+
+    fn against(&self) -> Against {
+        Against::Period
+    }
+
+    fn action(&self, at: &Instant, k: f64, own: &[f64]) -> Action {
+        Action::force(-at.effort * wave::value(own, k, at.position))
+    }
+
+    fn start(&self, dataset: &Dataset) -> f64 {
+        dataset.lead_m_per_rev.map_or(100.0, |lead| 1.0 / lead)
+    }
+
+    fn least_distance(&self, motion: &Kinematics) -> f64 {
+        wave::of_periods(motion, 2.0)
+    }
+
+    fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
+        let by_motion = ByMotion::of(motion);
+        let (usual, _) = by_motion.fit(&[]);
+        let efforts: Vec<f64> = (0..motion.len()).map(|row| effort(&by_motion, usual, row)).collect();
+        wave::strongest(motion, setting, FEWEST_PERIODS, |row| Weight {
+            wave: -efforts[row],
+            half_slope: 0.0,
+        })
+    }
+
+    fn first_step(&self, motion: &Kinematics, _: f64) -> f64 {
+        wave::of_periods(motion, 0.05)
+    }
+
+    fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
+        (wave::of_periods(motion, FEWEST_PERIODS), f64::MAX)
+    }
+
+    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
+        wave::amplitude(fitted.own) < LARGEST
+    }
+
+    fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
+        let name = EffectName::TorqueConstantRipple.as_str();
+        let names = Names {
+            amplitude: name,
+            rest: name,
+        };
+        wave::named(naming, &names, String::new())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, found, model, usual};
+    use EffectName::{Coulomb, Inertia, Offset, TorqueRipple, Viscous};
+
+    const K: f64 = 160.0;
+    const OWN: [f64; 2] = [0.09, -0.05];
+
+    fn rippled() -> Axis {
+        axis(|motion, row| {
+            usual(motion, row) / (1.0 + wave::value(&OWN, K, motion.position_lp[row]))
+        })
+    }
+
+    #[test]
+    fn the_wave_of_a_torque_constant_comes_back_and_nothing_of_the_second_order_is_left() {
+        let axis = rippled();
+        let bench = axis.bench();
+        let declared = model(&[Inertia, Viscous, Coulomb, Offset]);
+        let error = |name: EffectName| {
+            let fitted = bench.fit(&declared.with(found(name, K)));
+            (fitted.of(name).unwrap().to_vec(), bench.force_error_percent(&fitted))
+        };
+        let (own, left) = error(EffectName::TorqueConstantRipple);
+        for (own, wanted) in own.iter().zip(OWN) {
+            assert!((own - wanted).abs() < 0.002, "{own} {wanted}");
+        }
+        assert!(left < 0.4, "{left}");
+        assert!(error(TorqueRipple).1 > 5.0 * left);
+    }
+
+    #[test]
+    fn a_simulated_motor_delivers_more_or_less_of_its_effort_by_position() {
+        let at = Instant {
+            position: 0.25 / K,
+            effort: 40.0,
+            ..Instant::default()
+        };
+        let action = TorqueConstantRipple.action(&at, K, &OWN);
+        // A quarter of a period on: the sine alone, −5 %, so that 2 N act against motion.
+        assert!((action.force - 2.0).abs() < 1.0e-9, "{}", action.force);
+        assert_eq!(action.level, 0.0);
+    }
+}
