@@ -54,8 +54,16 @@ impl<'a> ByMotion<'a> {
     /// fitted samples.
     #[must_use]
     pub(crate) fn fit(&self, beside: &[Vec<f64>]) -> (Usual, Vec<f64>) {
-        let low_passed: Vec<Vec<f64>> = beside.iter().map(|own| self.motion.low_passed(own)).collect();
-        let columns: Vec<&[f64]> = self.columns.iter().chain(&low_passed).map(Vec::as_slice).collect();
+        let low_passed: Vec<Vec<f64>> = beside
+            .iter()
+            .map(|own| self.motion.low_passed(own))
+            .collect();
+        let columns: Vec<&[f64]> = self
+            .columns
+            .iter()
+            .chain(&low_passed)
+            .map(Vec::as_slice)
+            .collect();
         let solution = least_squares(self.motion, &columns);
         let (usual, own) = solution.split_at(self.columns.len());
         ([usual[0], usual[1], usual[2], usual[3]], own.to_vec())

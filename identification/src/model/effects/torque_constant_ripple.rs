@@ -119,7 +119,9 @@ impl Effect for TorqueConstantRipple {
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
         let by_motion = ByMotion::of(motion);
         let (usual, _) = by_motion.fit(&[]);
-        let efforts: Vec<f64> = (0..motion.len()).map(|row| effort(&by_motion, usual, row)).collect();
+        let efforts: Vec<f64> = (0..motion.len())
+            .map(|row| effort(&by_motion, usual, row))
+            .collect();
         wave::strongest(motion, setting, FEWEST_PERIODS, |row| Weight {
             wave: -efforts[row],
             half_slope: 0.0,
@@ -170,7 +172,10 @@ mod tests {
         let declared = model(&[Inertia, Viscous, Coulomb, Offset]);
         let error = |name: EffectName| {
             let fitted = bench.fit(&declared.with(found(name, K)));
-            (fitted.of(name).unwrap().to_vec(), bench.force_error_percent(&fitted))
+            (
+                fitted.of(name).unwrap().to_vec(),
+                bench.force_error_percent(&fitted),
+            )
         };
         let (own, left) = error(EffectName::TorqueConstantRipple);
         for (own, wanted) in own.iter().zip(OWN) {
