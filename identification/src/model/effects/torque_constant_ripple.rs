@@ -2,8 +2,8 @@
 //! `w = c cos(2π k x + φ)`.
 //!
 //! The recorded effort carries the wave with the other sign, weighted with itself: `u = q − u w`.
-//! A torque ripple ([`super::torque_ripple`]) is there at any effort. This one changes its sign with
-//! the effort, and where there is none it is nothing.
+//! A torque ripple ([`super::torque_ripple`]) is there at any effort. This one changes its sign
+//! with the effort, and where there is none it is nothing.
 //!
 //! The columns are −u cos and −u sin. The u in them is computed from the motion ([`ByMotion`]), and
 //! with its own wave: with q in its place the second order would look like a ripple of twice the
