@@ -179,7 +179,7 @@ impl Effort<'_> {
             parameter,
             gain,
             physical: is_physical(effect, parameter, &fitted)
-                && self.is_named_after(model, extended),
+                && self.beats_look_alikes(model, extended),
             accepted: false,
             round,
         };
@@ -189,13 +189,14 @@ impl Effort<'_> {
         }
     }
 
-    /// Whether the last part of a model shows what it is named after: it beats the same part
-    /// without that.
-    fn is_named_after(&self, model: &Model, extended: &Model) -> bool {
+    /// Whether the last part of a model beats everything that nearly looks like it.
+    fn beats_look_alikes(&self, model: &Model, extended: &Model) -> bool {
         let (effect, parameter) = last(extended);
-        let rest = effect.without_its_name();
-        let without = rest.map(|rest| model.with(Part::found(rest, parameter)));
-        without.is_none_or(|without| beats(self.pair.bench, extended, &without))
+        let mut others = effect.look_alikes().iter();
+        others.all(|other| {
+            let with_other = model.with(Part::found(*other, parameter));
+            beats(self.pair.bench, extended, &with_other)
+        })
     }
 
     fn gain_at_low_cutoff(&self, model: &Model, extended: &Model, effect: &dyn Effect) -> Gain {

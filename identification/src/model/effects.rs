@@ -288,10 +288,10 @@ pub(crate) trait Effect: Sync {
         true
     }
 
-    /// The same effect without what it is named after, where it has more than that: the evidence
-    /// must be for the name.
-    fn without_its_name(&self) -> Option<&'static dyn Effect> {
-        None
+    /// What it must beat by the rule of the evidence, at the same nonlinear parameter: itself without
+    /// what it is named after, and other causes that nearly look like it.
+    fn look_alikes(&self) -> &'static [&'static dyn Effect] {
+        &[]
     }
 
     /// Whether it is one of the nearest outsiders of the list: a name that comes in only where no

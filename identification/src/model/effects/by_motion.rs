@@ -50,6 +50,21 @@ impl<'a> ByMotion<'a> {
         ]
     }
 
+    /// Effort of a row with the coefficients of a fit.
+    #[must_use]
+    pub(crate) fn effort(&self, usual: Usual, row: usize) -> f64 {
+        let pairs = usual.into_iter().zip(self.at(row));
+        pairs.map(|(coefficient, value)| coefficient * value).sum()
+    }
+
+    /// Efforts of all rows by the usual columns alone.
+    #[must_use]
+    pub(crate) fn efforts(&self) -> Vec<f64> {
+        let (usual, _) = self.fit(&[]);
+        let rows = 0..self.motion.len();
+        rows.map(|row| self.effort(usual, row)).collect()
+    }
+
     /// Coefficients of the usual columns and of others beside them, by least squares over the
     /// fitted samples.
     #[must_use]

@@ -4,12 +4,14 @@
 //! What makes it a payload is the inertia. A part on a vertical axis brings its weight too, a part
 //! on a slide presses on the guide. But friction or a force that change at a time without inertia
 //! are something else (a brake that drags, an axis that tilts), so the three columns must beat the
-//! two without inertia ([`StepOfForce`]).
+//! two without inertia ([`StepOfForce`]). A drive that delivers more or less from a time on changes
+//! the whole effort by a share, inertia and friction alike ([`StrongerDrive`]); that is none either.
 //!
 //! Time counts from the start of a record, as with `friction_drift`.
 
 use axis_model::EffectName;
 
+use super::by_motion::ByMotion;
 use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
@@ -19,6 +21,9 @@ pub(crate) struct Payload;
 
 /// The same without inertia.
 pub(crate) struct StepOfForce;
+
+/// A share of the effort that the motion predicts, from a time on.
+pub(crate) struct StrongerDrive;
 
 /// Times that are tried, over the duration: every fiftieth part, as long as a twentieth of the
 /// record is left on both sides.
@@ -74,8 +79,8 @@ impl Effect for Payload {
         true
     }
 
-    fn without_its_name(&self) -> Option<&'static dyn Effect> {
-        Some(&StepOfForce)
+    fn look_alikes(&self) -> &'static [&'static dyn Effect] {
+        &[&StepOfForce, &StrongerDrive]
     }
 
     fn repeats(&self) -> bool {
@@ -158,6 +163,25 @@ impl Effect for StepOfForce {
 
     fn is_tuned(&self) -> bool {
         true
+    }
+
+    fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
+        Vec::new()
+    }
+}
+
+impl Effect for StrongerDrive {
+    fn called(&self) -> Called {
+        Called::Structure("share of the effort from a time on")
+    }
+
+    fn equation(&self) -> &'static str {
+        "c u, from a time on, u = effort by motion"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, from_s: f64) -> Vec<Vec<f64>> {
+        let efforts = ByMotion::of(motion).efforts();
+        vec![from_then_on(motion, from_s, |row| efforts[row])]
     }
 
     fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {

@@ -24,6 +24,12 @@ use crate::record::dataset::Dataset;
 /// m(x) a + ½ m'(x) v², without the mean of m.
 pub(crate) struct PositionDependentInertia;
 
+/// m(x) a + m'(x) v²: what an encoder that is off periodically makes of a constant inertia.
+///
+/// Where it shows x and the motor is at x + e(x), the acceleration is a (1 + e') + e'' v². With
+/// m = M e' that is twice the force by velocity of an inertia that changes.
+pub(crate) struct EncoderError;
+
 /// Periods within the travel that are tried in any case: the projection of a residual does not see
 /// slow waves, because most of them is in the inertia's own column.
 const SLOW: [f64; 10] = [0.25, 0.35, 0.5, 0.7, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
@@ -63,6 +69,10 @@ impl Effect for PositionDependentInertia {
 
     fn is_nearest_outsider(&self) -> bool {
         true
+    }
+
+    fn look_alikes(&self) -> &'static [&'static dyn Effect] {
+        &[&EncoderError]
     }
 
     fn against(&self) -> Against {
@@ -111,6 +121,31 @@ impl Effect for PositionDependentInertia {
         };
         let unit = naming.effort_unit(&format!(" s2/{}", naming.length()));
         wave::named(naming, &names, unit)
+    }
+}
+
+impl Effect for EncoderError {
+    fn called(&self) -> Called {
+        Called::Structure("error of the motor's encoder")
+    }
+
+    fn equation(&self) -> &'static str {
+        "m a + m' v^2, m = a cos(2 pi k x) + b sin(2 pi k x)"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
+        wave::columns(motion, k, |row| Weight {
+            wave: motion.acceleration[row],
+            half_slope: 2.0 * motion.velocity_lp[row].powi(2),
+        })
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
+        Vec::new()
     }
 }
 

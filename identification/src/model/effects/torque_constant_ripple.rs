@@ -11,7 +11,7 @@
 
 use axis_model::EffectName;
 
-use super::by_motion::{ByMotion, Usual};
+use super::by_motion::ByMotion;
 use super::wave::{self, Names, Weight};
 use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
@@ -29,12 +29,6 @@ const LARGEST: f64 = 0.5;
 /// the wave is a tenth of the effort.
 const ROUNDS: usize = 3;
 
-/// The effort by the motion, with the coefficients of a fit.
-fn effort(by_motion: &ByMotion<'_>, usual: Usual, row: usize) -> f64 {
-    let pairs = usual.into_iter().zip(by_motion.at(row));
-    pairs.map(|(coefficient, value)| coefficient * value).sum()
-}
-
 /// Effort of each row by the motion, and the effort with its wave, `q / (1 + w)`.
 fn consistent(motion: &Kinematics, k: f64) -> Vec<f64> {
     let by_motion = ByMotion::of(motion);
@@ -46,7 +40,7 @@ fn consistent(motion: &Kinematics, k: f64) -> Vec<f64> {
                 [a, b] => wave::value(&[a, b], k, motion.position_lp[row]),
                 _ => 0.0,
             };
-            effort(&by_motion, usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
+            by_motion.effort(usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
         };
         efforts = (0..motion.len()).map(with_wave).collect();
         if round < ROUNDS {
@@ -117,11 +111,7 @@ impl Effect for TorqueConstantRipple {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        let by_motion = ByMotion::of(motion);
-        let (usual, _) = by_motion.fit(&[]);
-        let efforts: Vec<f64> = (0..motion.len())
-            .map(|row| effort(&by_motion, usual, row))
-            .collect();
+        let efforts = ByMotion::of(motion).efforts();
         wave::strongest(motion, setting, FEWEST_PERIODS, |row| Weight {
             wave: -efforts[row],
             half_slope: 0.0,
