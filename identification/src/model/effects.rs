@@ -288,8 +288,8 @@ pub(crate) trait Effect: Sync {
         true
     }
 
-    /// What it must beat by the rule of the evidence, at the same nonlinear parameter: itself without
-    /// what it is named after, and other causes that nearly look like it.
+    /// What it must beat by the rule of the evidence, at the same nonlinear parameter: itself
+    /// without what it is named after, and other causes that nearly look like it.
     fn look_alikes(&self) -> &'static [&'static dyn Effect] {
         &[]
     }

@@ -4,8 +4,8 @@
 //! What makes it a payload is the inertia. A part on a vertical axis brings its weight too, a part
 //! on a slide presses on the guide. But friction or a force that change at a time without inertia
 //! are something else (a brake that drags, an axis that tilts), so the three columns must beat the
-//! two without inertia ([`StepOfForce`]). A drive that delivers more or less from a time on changes
-//! the whole effort by a share, inertia and friction alike ([`StrongerDrive`]); that is none either.
+//! two without inertia ([`StepOfForce`]). A drive that delivers more or less from a time on is no
+//! payload either: it changes the whole effort by a share, friction too ([`StrongerDrive`]).
 //!
 //! Time counts from the start of a record, as with `friction_drift`.
 
