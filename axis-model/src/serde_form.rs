@@ -301,7 +301,10 @@ mod tests {
         );
         let wrong_unit = error("delay_ms = 0.1");
         assert!(wrong_unit.starts_with("unknown effect `delay_ms`; known: inertia_n_s2_per_m,"));
-        assert!(wrong_unit.contains("stribeck = { … }") && wrong_unit.contains("delay_s, logged_late_s;"));
+        assert!(
+            wrong_unit.contains("stribeck = { … }")
+                && wrong_unit.contains("delay_s, logged_late_s;")
+        );
         assert!(error("offset_n = \"25 N\"").contains("a number for offset_n"));
         assert!(error("stribeck = 3.0").contains("the parameters of stribeck"));
     }
