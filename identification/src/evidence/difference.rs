@@ -10,6 +10,7 @@
 //! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
 mod columns;
+mod edges;
 mod flanks;
 mod left;
 mod search;
@@ -387,7 +388,7 @@ impl Difference {
 
 #[cfg(test)]
 mod tests {
-    use super::flanks::Flanks;
+    use super::edges::Flanks;
     use super::*;
     use crate::fit::made::{Axis, on, usual};
     use crate::record::units::EffortHold;

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
-use super::flanks::Flanks;
+use super::edges::Flanks;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;

@@ -19,6 +19,7 @@
 //! Units: m or rad, s, unit of the effort.
 
 use super::columns::{Apart, of_motor};
+use super::edges::Flanks;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::search::descend;
@@ -36,40 +37,6 @@ const EDGE_STEP: f64 = 0.04;
 const DESCENTS: i32 = 3;
 /// Share of the samples that lie beyond the range at either end: impacts.
 const BEYOND: f64 = 0.005;
-
-/// The edges of a gap in motor − load: the flanks are in contact beyond them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Flanks {
-    /// Motor − load where the load is pushed backwards.
-    pub low: f64,
-    /// Motor − load where it is pushed forwards.
-    pub high: f64,
-    /// Stiffness of both flanks, as the force shows it.
-    pub stiffness: f64,
-}
-
-impl Flanks {
-    /// Width of the gap.
-    pub(crate) const fn gap(self) -> f64 {
-        self.high - self.low
-    }
-
-    /// Motor − load within the gap, about its middle: what of it is no wind-up.
-    pub(crate) fn lag(self, difference: &[f64]) -> Vec<f64> {
-        let middle = 0.5 * (self.low + self.high);
-        let within = |d: &f64| d.max(self.low).min(self.high) - middle;
-        difference.iter().map(within).collect()
-    }
-
-    /// Wind-up of the flanks.
-    fn wind_up(self, d: f64) -> f64 {
-        (d - self.high).max(0.0) + (d - self.low).min(0.0)
-    }
-
-    fn touches(self, d: f64) -> bool {
-        !(self.low..self.high).contains(&d)
-    }
-}
 
 /// Flanks with what speaks for a gap between them.
 #[derive(Clone, Copy, Debug)]
