@@ -75,10 +75,10 @@ fn findings<'a>(
     progress(&Step::Declared);
     let declared = declared(pair);
     progress(&Step::Candidates);
-    let effort = on_effort(pair, &declared, &motions.validate, progress);
-    let fitted = bench.fit(&effort.model);
+    let mut effort = on_effort(pair, &declared, &motions.validate, progress);
     progress(&Step::MotorAndLoad);
-    let difference = on_difference(bench, &fitted);
+    let difference = beside_the_load(bench, &mut effort);
+    let fitted = bench.fit(&effort.model);
     let reversals = ReversalStage::of(bench, &fitted, difference.as_ref(), progress);
     let mut stages = Stages {
         effort,
@@ -110,6 +110,17 @@ fn on_effort(
     let other = Bench::new(pair.bench.dataset, validate);
     effort::veto(pair.bench, &other, &mut selected);
     selected
+}
+
+/// Motor − load, where there is a load scale. Where it shows that the load moves otherwise, the
+/// effort is asked again what it lacks beside the load's own inertia.
+fn beside_the_load(bench: &Bench<'_>, effort: &mut Selection) -> Option<Difference> {
+    let judged = |effort: &Selection| on_difference(bench, &bench.fit(&effort.model));
+    let difference = judged(effort)?;
+    if difference.moves_apart() && effort::remove_beside_load(bench, &mut effort.model) {
+        return judged(effort);
+    }
+    Some(difference)
 }
 
 /// Motor − load, where there is a load scale.

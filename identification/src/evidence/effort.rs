@@ -337,6 +337,17 @@ pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
     }
 }
 
+/// Drops what the load's own inertia makes superfluous; says whether anything went. A load that
+/// moves otherwise than its motor looks like a shift in time until its inertia is in the model.
+pub(crate) fn remove_beside_load(bench: &Bench<'_>, model: &mut Model) -> bool {
+    let before = model.parts.len();
+    let error = |model: &Model| bench.cross_validate(&with_load_inertia(bench, model));
+    prune(model, &|full, without| {
+        is_worth_keeping(&Gain::of(&error(without), &error(full)))
+    });
+    model.parts.len() < before
+}
+
 /// Whether the load's own inertia lowers the error enough to come in.
 fn moves_otherwise(gain: &Gain) -> bool {
     let (share, t) = LOAD_INERTIA;
@@ -392,6 +403,24 @@ mod tests {
             .with(found(QuadraticDrag, 0.0));
         remove(&axis.bench(), &mut full);
         assert_eq!(full.found(), [ViscousAsymmetry]);
+    }
+
+    #[test]
+    fn what_only_stands_for_a_load_that_moves_otherwise_goes() {
+        let mut axis = asymmetric();
+        // The load swings about the motor, with 40 of 90 kg.
+        let swing = |row: usize| 3.0 * (50.0 * 1.0e-3 * row as f64).sin();
+        axis.motion.load_acceleration = Some((0..axis.motion.len()).map(swing).collect());
+        axis.put(|motion, row| {
+            let asymmetry = 60.0 * motion.velocity[row].abs();
+            usual(motion, row) + asymmetry + 40.0 * swing(row)
+        });
+        let mut full = model(&DECLARED)
+            .with(found(ViscousAsymmetry, 0.0))
+            .with(found(QuadraticDrag, 0.0));
+        assert!(remove_beside_load(&axis.bench(), &mut full));
+        assert_eq!(full.found(), [ViscousAsymmetry]);
+        assert!(!remove_beside_load(&axis.bench(), &mut full));
     }
 
     #[test]
