@@ -133,7 +133,8 @@ mod tests {
         assert_eq!(machine.axes.len(), 14);
         let mut outside = machine.axes[9].clone();
         assert_eq!(outside.name, "outside20");
-        assert_eq!(outside.actual.mechanics.backlash_m, 20.0e-6);
+        let gap_um = 1.0e6 * outside.actual.mechanics.backlash_m;
+        assert!((gap_um - 20.0).abs() < 1.0e-9, "{gap_um}");
         assert_eq!(outside.gains.position_sensor, PositionSensor::Motor);
         outside.actual.mechanics.backlash_m = 0.0;
         assert_eq!(outside.actual, reference.actual);
