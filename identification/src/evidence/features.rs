@@ -26,8 +26,6 @@ pub(crate) struct Family {
     pub over: &'static str,
     /// What that looks like, and what to do next.
     pub looks_like: &'static str,
-    /// Whether a gap excuses it: impacts leave forces that go with these and that no column has.
-    pub is_like_an_impact: bool,
     columns: fn(&Scene<'_>) -> Vec<Vec<f64>>,
 }
 
@@ -95,7 +93,6 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "acceleration times position",
         looks_like: "inertia that changes with position: declare position_dependent_inertia, or record shorter strokes at several places",
-        is_like_an_impact: false,
         columns: |scene| {
             let inertia = scene.times(|row| scene.acceleration(row), &scene.u, &[1, 2, 3]);
             let slope = scene.times(|row| scene.velocity(row).powi(2), &scene.u, &[0, 1, 2]);
@@ -105,13 +102,11 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "acceleration times time",
         looks_like: "inertia that changes during the record: declare payload, or record one load at a time",
-        is_like_an_impact: false,
         columns: |scene| scene.times(|row| scene.acceleration(row), &scene.s, &[1, 2, 3]),
     },
     Family {
         over: "the size of the acceleration",
         looks_like: "a force that acceleration and braking share: a drive or gear that gives less one way, or an inclined load",
-        is_like_an_impact: true,
         columns: |scene| {
             let size = |row| scene.acceleration(row).abs();
             let resisting = scene.each(|row| size(row) * scene.direction(row));
@@ -121,7 +116,6 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "the transmitted force by direction",
         looks_like: "friction that grows with load: declare load_dependent_friction",
-        is_like_an_impact: true,
         columns: |scene| {
             let friction = |row: usize| scene.direction(row) * scene.force[row].abs();
             let over_time = scene.times(friction, &scene.s, &[1]);
@@ -131,7 +125,6 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "the rate of the acceleration",
         looks_like: "a current loop or a time shift that depends on the motion: check the time stamps, or record the current instead of the command",
-        is_like_an_impact: true,
         columns: |scene| {
             let rate = rate(
                 scene.motion,
@@ -143,7 +136,6 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "velocity times position or time",
         looks_like: "viscous friction that changes with position or time: record at one temperature and place",
-        is_like_an_impact: false,
         columns: |scene| {
             let velocity = |row| scene.velocity(row);
             let over_position = scene.times(velocity, &scene.u, &[1, 2]);
@@ -153,19 +145,16 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "direction times position",
         looks_like: "friction that changes with position otherwise than by a parabola: record the travel in parts",
-        is_like_an_impact: false,
         columns: |scene| scene.times(|row| scene.direction(row), &scene.u, &[1, 2, 3]),
     },
     Family {
         over: "direction times time",
         looks_like: "friction that changes during the record: record a warm axis, or declare friction_drift",
-        is_like_an_impact: false,
         columns: |scene| scene.times(|row| scene.direction(row), &scene.s, &[1, 2, 3]),
     },
     Family {
         over: "velocity by direction",
         looks_like: "friction of another law over velocity: record more speeds, both ways",
-        is_like_an_impact: true,
         columns: |scene| {
             let motion = scene.motion;
             [1.0, -1.0]
@@ -177,13 +166,11 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "position",
         looks_like: "a force over position: a spring, a balance, a cable; record slow strokes over the whole travel",
-        is_like_an_impact: true,
         columns: |scene| hats(&scene.motion.position_lp, scene.motion, 12),
     },
     Family {
         over: "time",
         looks_like: "a force that drifts: something else acts on the axis during the record",
-        is_like_an_impact: true,
         columns: |scene| hats(&scene.motion.time_s, scene.motion, 8),
     },
 ];

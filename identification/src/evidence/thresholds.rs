@@ -70,9 +70,11 @@ pub(crate) const WHITE_SHARE: f64 = EFFORT_SHARE;
 /// what an accepted effect needs.
 pub(crate) const UNEXPLAINED_SHARE: f64 = 0.15;
 
-/// Structure below this much of the effort of motion does not matter to the axis, percent: three
-/// times the smallest effect that is named.
-pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.5;
+/// Structure below this much of the effort of motion does not matter to the axis, percent: twice
+/// the smallest effect that is named. What a cubic drag leaves of a quadratic one on a seeded
+/// record is
+/// 0.4 %, and has to count.
+pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.3;
 
 /// A shift in time below this is told and does not count, s: a sixth of the period at which drives
 /// usually record, the part of it by which a measured effort and a position may stand apart in it.
