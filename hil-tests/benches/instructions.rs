@@ -45,7 +45,7 @@ use recording::{Class, Event, Events, FRAME};
 
 /// The drive board's target, and the profile that its image ships with.
 const TARGET: &str = "thumbv7em-none-eabihf";
-const PROFILE: &str = "release";
+const PROFILE: &str = "firmware";
 /// R 10 F 1000 at 1 kHz: X reverses after 1.9 s and after 3.8 s.
 const CYCLES: u32 = 4000;
 /// An instruction takes 1 ns of virtual time (`-icount shift=0`), a tick of SysTick 40 ns (25 MHz).

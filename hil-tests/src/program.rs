@@ -8,7 +8,7 @@ use scope::Scope;
 
 /// Builds the program into a target folder, the one of the running tests; gives its path.
 ///
-/// `certify` takes the release build that a user runs: 85 s on two cores, mostly its link. The
+/// `certify` takes the release build that a user runs. The
 /// other scopes take the program that `cargo test` has built for the workbench's own tests
 /// (2026-11-21: 0.2 s): asking for one of those tests selects the same features, so nothing is
 /// compiled twice.

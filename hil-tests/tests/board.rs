@@ -83,7 +83,7 @@ fn check(what: &str, used: u64, budget: &Budget) {
 
 #[test]
 fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
-    let image = build("board-g431", "thumbv7em-none-eabihf", "release");
+    let image = build("board-g431", "thumbv7em-none-eabihf", "firmware");
     let bytes = std::fs::read(&image).unwrap();
     let file = object::File::parse(&*bytes).unwrap();
     let (mut flash, mut ram) = (0, 0);
