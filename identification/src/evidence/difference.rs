@@ -16,6 +16,7 @@ mod left;
 mod search;
 
 use std::cell::OnceCell;
+use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
@@ -34,6 +35,10 @@ use crate::fit::blocks::{Fit, Gain};
 use crate::fit::plain::Plain;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
+use crate::record::units::AxisKind;
+
+/// Least travel, in turns, over which a period of a turn is told from wind-up and a constant.
+const FEWEST_TURNS: f64 = 0.75;
 
 /// The effects that stand between motor and load, in the order in which they are tried.
 const EFFECTS: [EffectName; 3] = [
@@ -76,6 +81,7 @@ pub(crate) fn difference(
         count: dataset.resolution.max(dataset.load_resolution),
         before: 0.0,
         springy: OnceCell::new(),
+        is_rotary: dataset.kind == AxisKind::Rotary,
     };
     let declared = output.declared(dataset);
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
@@ -102,6 +108,8 @@ struct MotorLoad<'a> {
     springy: OnceCell<Option<Judged>>,
     /// Moved mass as the plain model sees it: a motor's own mass is less.
     inertia: f64,
+    /// Whether positions are angles of a turn.
+    is_rotary: bool,
 }
 
 impl Output for MotorLoad<'_> {
@@ -159,11 +167,10 @@ impl MotorLoad<'_> {
 
     /// The way of an effect that leaves least beside others.
     fn best(&self, name: EffectName, ways: &[Way]) -> Option<Way> {
-        let apart = &self.apart;
         match name {
             EffectName::Compliance => Some(self.best_wind_up(ways)),
             EffectName::Backlash => Some(self.best_gap(ways)),
-            EffectName::PitchError => best_pitch(apart, &apart.fit(ways)),
+            EffectName::PitchError => self.best_pitch(ways),
             _ => None,
         }
     }
@@ -193,6 +200,25 @@ impl MotorLoad<'_> {
             || best_gap(&self.apart, ways, self.count),
             |judged| Way::Flanks(judged.flanks),
         )
+    }
+
+    /// A pitch error beside other ways: of the strongest period within the travel, or of an angle
+    /// encoder that sits off its centre (one period a turn) or between two heads (two).
+    fn best_pitch(&self, ways: &[Way]) -> Option<Way> {
+        let apart = &self.apart;
+        let scanned = best_pitch(apart, &apart.fit(ways));
+        let (low, high) = apart.motion.span();
+        let turns: &[f64] = if self.is_rotary && high - low >= FEWEST_TURNS * TAU {
+            &[1.0, 2.0]
+        } else {
+            &[]
+        };
+        let of_turns = turns.iter().map(|periods| Way::Pitch {
+            per_length: periods / TAU,
+        });
+        let left = |way: &Way| apart.blocks(&[ways, &[*way]].concat()).fit().sse;
+        let all = scanned.into_iter().chain(of_turns);
+        all.min_by(|a, b| left(a).total_cmp(&left(b)))
     }
 
     /// What the motor's balance says of a gap, where it shows the flanks.
@@ -541,6 +567,7 @@ mod tests {
             count,
             before: 100.0,
             springy: OnceCell::new(),
+            is_rotary: false,
             inertia: 90.0,
         }
     }
