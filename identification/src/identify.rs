@@ -18,7 +18,6 @@ use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
 use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::Model;
-use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::{self, Motions};
 use crate::progress::Step;
 use crate::record::dataset::Dataset;
@@ -75,11 +74,12 @@ fn findings<'a>(
     progress(&Step::Declared);
     let declared = declared(pair);
     progress(&Step::Candidates);
-    let mut effort = on_effort(pair, &declared, &motions.validate, progress);
+    let other = Bench::new(dataset, &motions.validate);
+    let mut effort = on_effort(pair, &declared, &other, progress);
     progress(&Step::MotorAndLoad);
     let difference = beside_the_load(bench, &mut effort);
     let fitted = bench.fit(&effort.model);
-    let reversals = ReversalStage::of(bench, &fitted, difference.as_ref(), progress);
+    let reversals = ReversalStage::of([bench, &other], &fitted, difference.as_ref(), progress);
     let mut stages = Stages {
         effort,
         difference,
@@ -89,7 +89,8 @@ fn findings<'a>(
     let models = models(pair, declared, &stages);
     stages.ripple = slow_ripple(dataset, &motions.train, models.declared.fitted.model());
     progress(&Step::Validating);
-    Findings::of(dataset, [&motions.train, &motions.validate], stages, models)
+    let motions = [&motions.train, &motions.train_low, &motions.validate];
+    Findings::of(dataset, motions, stages, models)
 }
 
 /// The declared model, its nonlinear parameters fitted.
@@ -103,12 +104,12 @@ fn declared(pair: Pair<'_>) -> Model {
 fn on_effort(
     pair: Pair<'_>,
     declared: &Model,
-    validate: &Kinematics,
+    other: &Bench<'_>,
     progress: &mut dyn FnMut(&Step),
 ) -> Selection {
-    let mut selected = effort::select(pair, declared, progress);
-    let other = Bench::new(pair.bench.dataset, validate);
-    effort::veto(pair.bench, &other, &mut selected);
+    let start = effort::with_declared_load(pair.bench, declared);
+    let mut selected = effort::select(pair, &start, progress);
+    effort::veto(pair.bench, other, &mut selected);
     selected
 }
 

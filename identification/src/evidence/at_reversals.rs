@@ -14,7 +14,7 @@
 
 use crate::evidence::free_run::Summary;
 use crate::evidence::reversal::Presliding;
-use crate::evidence::thresholds::{BRISTLE_TIE_RATIO, GAP_TIE_RATIO, SUSPICION_RATIO};
+use crate::evidence::thresholds::{BRISTLE_TIE_RATIO, GAP_TIE_RATIO};
 
 /// What the witnesses say about reversals; `None` where one is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,11 +66,8 @@ impl Witnesses {
         self.inverse.is_some_and(|inverse| inverse.accepted)
     }
 
-    /// A bristle leaves less than rigid friction, but not so much less that it is one.
     fn is_suspicious(&self) -> bool {
-        self.inverse.is_some_and(|inverse| {
-            !inverse.accepted && inverse.dahl < SUSPICION_RATIO * inverse.rigid
-        })
+        self.inverse.is_some_and(|inverse| inverse.is_suspicious())
     }
 
     fn by_inverse(&self, unexplained: bool) -> AtReversals {
@@ -168,6 +165,7 @@ mod tests {
             deflection: 3.0e-6,
             t: 2.0,
             accepted,
+            repeats: true,
         }
     }
 

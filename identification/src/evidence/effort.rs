@@ -322,10 +322,26 @@ fn prune(model: &mut Model, keeps: &dyn Fn(&Model, &Model) -> bool) {
 /// load moves otherwise than its motor.
 #[must_use]
 pub(crate) fn with_load_inertia(bench: &Bench<'_>, model: &Model) -> Model {
-    if bench.motion.load_acceleration.is_none() {
+    with_inertia_of_the_load(bench, model, Part::found(&LoadInertia, 0.0))
+}
+
+/// The declared model with the load's own inertia, where a load that moves otherwise than its motor
+/// is declared too: without it what fast motion lacks looks like a change of everything else.
+#[must_use]
+pub(crate) fn with_declared_load(bench: &Bench<'_>, declared: &Model) -> Model {
+    let apart = [EffectName::Compliance, EffectName::Backlash];
+    if apart.iter().any(|name| bench.dataset.declares(*name)) {
+        with_inertia_of_the_load(bench, declared, Part::declared(&LoadInertia, 0.0))
+    } else {
+        declared.clone()
+    }
+}
+
+fn with_inertia_of_the_load(bench: &Bench<'_>, model: &Model, part: Part) -> Model {
+    if bench.motion.load_acceleration.is_none() || model.has(part.called()) {
         return model.clone();
     }
-    let extended = model.with(Part::found(&LoadInertia, 0.0));
+    let extended = model.with(part);
     let gain = Gain::of(
         &bench.cross_validate(model),
         &bench.cross_validate(&extended),

@@ -17,6 +17,12 @@
 //! | friction over time | sign(v) · s, s², s³ |
 //! | velocity by direction, position, time | hats |
 
+use axis_model::EffectName::{
+    self, FrictionDrift, LoadDependentFriction, Payload, PositionDependentFriction,
+    PositionDependentInertia, Presliding, QuadraticDrag, Stribeck, TorqueSaturation,
+    ViscousAsymmetry,
+};
+
 use crate::fit::bench::Bench;
 use crate::motion::kinematics::Kinematics;
 
@@ -24,6 +30,10 @@ use crate::motion::kinematics::Kinematics;
 pub(crate) struct Family {
     /// What a residual that goes with them goes over.
     pub over: &'static str,
+    /// Effects whose own equation may leave this, where the axis has another shape of them.
+    pub shapes: &'static [EffectName],
+    /// Whether it is a shift in time of a kind.
+    pub is_shift: bool,
     /// What that looks like, and what to do next.
     pub looks_like: &'static str,
     columns: fn(&Scene<'_>) -> Vec<Vec<f64>>,
@@ -92,6 +102,8 @@ impl<'a> Scene<'a> {
 pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "acceleration times position",
+        shapes: &[PositionDependentInertia],
+        is_shift: false,
         looks_like: "inertia that changes with position: declare position_dependent_inertia, or record shorter strokes at several places",
         columns: |scene| {
             let inertia = scene.times(|row| scene.acceleration(row), &scene.u, &[1, 2, 3]);
@@ -101,11 +113,15 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "acceleration times time",
+        shapes: &[Payload],
+        is_shift: false,
         looks_like: "inertia that changes during the record: declare payload, or record one load at a time",
         columns: |scene| scene.times(|row| scene.acceleration(row), &scene.s, &[1, 2, 3]),
     },
     Family {
         over: "the size of the acceleration",
+        shapes: &[LoadDependentFriction, TorqueSaturation],
+        is_shift: false,
         looks_like: "a force that acceleration and braking share: a drive or gear that gives less one way, or an inclined load",
         columns: |scene| {
             let size = |row| scene.acceleration(row).abs();
@@ -115,6 +131,8 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "the transmitted force by direction",
+        shapes: &[LoadDependentFriction, Presliding],
+        is_shift: false,
         looks_like: "friction that grows with load: declare load_dependent_friction",
         columns: |scene| {
             let friction = |row: usize| scene.direction(row) * scene.force[row].abs();
@@ -124,6 +142,8 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "the rate of the acceleration",
+        shapes: &[Presliding],
+        is_shift: true,
         looks_like: "a current loop or a time shift that depends on the motion: check the time stamps, or record the current instead of the command",
         columns: |scene| {
             let rate = rate(
@@ -135,6 +155,8 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "velocity times position or time",
+        shapes: &[PositionDependentFriction, FrictionDrift],
+        is_shift: false,
         looks_like: "viscous friction that changes with position or time: record at one temperature and place",
         columns: |scene| {
             let velocity = |row| scene.velocity(row);
@@ -144,16 +166,22 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "direction times position",
+        shapes: &[PositionDependentFriction],
+        is_shift: false,
         looks_like: "friction that changes with position otherwise than by a parabola: record the travel in parts",
         columns: |scene| scene.times(|row| scene.direction(row), &scene.u, &[1, 2, 3]),
     },
     Family {
         over: "direction times time",
+        shapes: &[FrictionDrift],
+        is_shift: false,
         looks_like: "friction that changes during the record: record a warm axis, or declare friction_drift",
         columns: |scene| scene.times(|row| scene.direction(row), &scene.s, &[1, 2, 3]),
     },
     Family {
         over: "velocity by direction",
+        shapes: &[Stribeck, QuadraticDrag, ViscousAsymmetry, Presliding],
+        is_shift: false,
         looks_like: "friction of another law over velocity: record more speeds, both ways",
         columns: |scene| {
             let motion = scene.motion;
@@ -165,11 +193,15 @@ pub(crate) static FAMILIES: [Family; 11] = [
     },
     Family {
         over: "position",
+        shapes: &[],
+        is_shift: false,
         looks_like: "a force over position: a spring, a balance, a cable; record slow strokes over the whole travel",
         columns: |scene| hats(&scene.motion.position_lp, scene.motion, 12),
     },
     Family {
         over: "time",
+        shapes: &[],
+        is_shift: false,
         looks_like: "a force that drifts: something else acts on the axis during the record",
         columns: |scene| hats(&scene.motion.time_s, scene.motion, 8),
     },

@@ -12,7 +12,7 @@ use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
-use crate::evidence::residual::{self, ResidualStructure};
+use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::signs;
@@ -82,7 +82,6 @@ impl Stages {
         let mut reasons: Vec<Reason> = nameless
             .map(|called| Reason::unexplained(format!("a {called}")))
             .collect();
-        reasons.extend(self.effort.vetoed.iter().map(residual::of_a_veto));
         let strange = self.reversals.decided.unexplained;
         reasons.extend(strange.then(|| {
             Reason::unexplained(
@@ -122,10 +121,11 @@ pub(crate) struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
-    /// Judges both models on both records, and draws the conclusions.
+    /// Judges both models on both records, and draws the conclusions. The motion of the training
+    /// record comes at both cut-offs.
     pub(crate) fn of(
         dataset: &'a Dataset,
-        [motion, validation]: [&'a Kinematics; 2],
+        [motion, low, validation]: [&'a Kinematics; 3],
         stages: Stages,
         models: Compared<InverseDynamics>,
     ) -> Self {
@@ -133,12 +133,14 @@ impl<'a> Findings<'a> {
         let validate = models.each(|model| model.on(dataset, validation));
         let found = Found::of(&stages, &dataset.declared);
         let scored = &stages.effort.scored;
-        let residual = ResidualStructure::of(dataset, motion, &models, scored);
+        let residual = ResidualStructure::of(dataset, [motion, low], &models, scored);
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
         // What has happened to the record says why everything after it is there.
         let causes = causes::of(dataset, found.names()).into_iter();
         let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
         reasons.extend(stages.reasons());
+        let vetoed = stages.effort.vetoed.iter();
+        reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
         reasons.extend(residual.reasons(has_gap));
         reasons.extend(signs::reasons(dataset, motion, &models.extended));
         let verdict = Verdict::of(reasons);
@@ -207,7 +209,7 @@ pub(crate) mod tests {
             extended: model(scene, &[Inertia, Viscous, Coulomb, Offset]),
         };
         let Scene { dataset, motion } = scene;
-        Findings::of(dataset, [motion, motion], stages, models)
+        Findings::of(dataset, [motion; 3], stages, models)
     }
 
     #[test]

@@ -5,7 +5,9 @@
 //! blocks, one family at a time: all at once they over-fit on clean records into negative shares.
 //! What the model itself spans, and a small shift in time of either sign, is taken from residual
 //! and features first. So a feature is judged by what it adds, and a record whose effort is an
-//! eighth of a millisecond early is not called an effect.
+//! eighth of a millisecond early is not called an effect. And what counts must be there at the lower
+//! cut-off too, that of the delay search: a controller gives back what an encoder rounds and a drive shakes,
+//! as effort that goes with the measured motion, its rate above all.
 //!
 //! Three things count. Structure is `unexplained` where it is a large share of the residual and
 //! large beside the effort of motion (the effort without its mean: gravity is not motion). Whatever
@@ -13,11 +15,14 @@
 //! than the low-pass makes noise. And so is a candidate of the library that would remove much and
 //! was not certain enough for a name.
 
+use axis_model::EffectName;
+
 use crate::evidence::features::{FAMILIES, Family, Scene, rate};
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::selection::{Scored, Vetoed, is_certain};
 use crate::evidence::thresholds::{
-    LEFT_PERCENT, NOISE_SLOWNESS, SHIFT_S, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, WHITE_SHARE,
+    FED_BACK_PERCENT, LEFT_PERCENT, NOISE_SLOWNESS, SHAPE_PART, SHIFT_S, UNEXPLAINED_PERCENT,
+    UNEXPLAINED_SHARE, UNEXPLAINED_T, WHITE_SHARE,
 };
 use crate::evidence::verdict::Reason;
 use crate::fit::bench::Bench;
@@ -34,8 +39,12 @@ use crate::record::rounding;
 pub(crate) struct Structure {
     /// The family.
     pub family: &'static Family,
-    /// What it removes from the residual on held-out blocks.
+    /// What it removes from the residual on held-out blocks; its size in percent of the effort of
+    /// motion.
     pub gain: Gain,
+    /// Up to here it does not count, percent of the same: another shape of an effect that the model
+    /// has, or a shift in time that is only told.
+    pub allowed_percent: f64,
 }
 
 /// What a model leaves of a record.
@@ -45,19 +54,36 @@ pub(crate) struct Remainder {
     pub structures: Vec<Structure>,
     /// Time by which the effort is later than the model has it, s; negative where it is earlier.
     pub late_s: f64,
-    /// What that shift removes from the residual on held-out blocks.
+    /// What that shift removes from the residual on held-out blocks; its size as for a structure.
     pub shift: Gain,
     /// Rms of the residual, percent of the effort without its mean.
     pub percent: f64,
     /// Rms of what the rounding of the effort may leave, percent of the same.
     pub rounding_percent: f64,
+    /// Rms of the effort over that without its mean.
+    pub whole: f64,
     /// Correlation time of the residual over that of low-passed white noise.
     pub slowness: f64,
 }
 
 impl Remainder {
-    /// What a fitted model leaves on its bench.
-    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Self {
+    /// What a model leaves of a motion.
+    fn of_model(dataset: &Dataset, motion: &Kinematics, model: &InverseDynamics) -> Self {
+        let seen = model.motion(motion);
+        let bench = Bench::new(dataset, &seen);
+        let plain = Bench::new(dataset, motion);
+        let bristle_rms = model.deflection.map_or(0.0, |_| {
+            let without = plain.residual(&plain.fit(model.fitted.model()));
+            let [without, with] = [&without, &bench.residual(&model.fitted)]
+                .map(|residual| rms(residual, &motion.fitted).powi(2));
+            (without - with).max(0.0).sqrt()
+        });
+        Self::of(&bench, &model.fitted, bristle_rms)
+    }
+
+    /// What a fitted model leaves on its bench. What a bristle in place of the sign takes away is
+    /// the size of that effect.
+    fn of(bench: &Bench<'_>, fitted: &Fitted, bristle_rms: f64) -> Self {
         let motion = bench.motion;
         let (force, residual) = (bench.predict_lp(fitted), bench.residual(fitted));
         let mut span = Span::of(bench.design(fitted.model()).into_columns(), &motion.fitted);
@@ -66,23 +92,65 @@ impl Remainder {
         span.add(&rate);
         let rest = span.outside(&residual);
         let scene = Scene::of(bench, &force);
+        let moved = about_mean(&motion.effort_lp, &motion.fitted).max(f64::MIN_POSITIVE);
+        let percent = 100.0 * rms(&residual, &motion.fitted) / moved;
+        let shift_rms = SHIFT_S * rms(&rate, &motion.fitted);
         let judged = |family: &&'static Family| {
             let gain = in_family(motion, &span, &rest, &scene.columns(family));
-            Structure { family, gain }
+            let parts_rms = effect_rms(bench, fitted, family.shapes);
+            Structure {
+                family,
+                gain: sized(gain, percent),
+                allowed_percent: 100.0 / moved * allowed(family, parts_rms, bristle_rms, shift_rms),
+            }
         };
         let families: Vec<&'static Family> = FAMILIES.iter().collect();
         let mut structures = side_by_side(&families, judged);
         structures.sort_by(|a, b| b.gain.share.total_cmp(&a.gain.share));
-        let moved = about_mean(&motion.effort_lp, &motion.fitted).max(f64::MIN_POSITIVE);
         let rounding = rounding::rms(rounding::step(&bench.dataset.train.effort));
         Self {
             structures,
             late_s: -shift.1,
-            shift: shift.0,
-            percent: 100.0 * rms(&residual, &motion.fitted) / moved,
+            shift: sized(shift.0, percent),
+            percent,
+            whole: rms(&motion.effort_lp, &motion.fitted) / moved,
             rounding_percent: 100.0 * rounding / moved,
             slowness: correlation_rows(&residual, &motion.fitted) / noise_rows(motion),
         }
+    }
+
+    /// The same, but with every structure only as far as it is there at a lower cut-off too, unless
+    /// it is larger than what a controller gives back.
+    fn slow_too(mut self, low: &Self) -> Self {
+        for one in &mut self.structures {
+            let is_same = |other: &&Structure| std::ptr::eq(other.family, one.family);
+            if let Some(other) = low.structures.iter().find(is_same) {
+                one.gain = smaller(one.gain, &other.gain);
+            }
+        }
+        self.structures
+            .sort_by(|a, b| b.gain.share.total_cmp(&a.gain.share));
+        self.shift = smaller(self.shift, &low.shift);
+        self
+    }
+
+    /// Whether anything of it counts.
+    fn has_structure(&self) -> bool {
+        let gains = self.structures.iter().map(|one| &one.gain);
+        gains.chain([&self.shift]).any(|gain| self.matters(gain))
+    }
+
+    /// Up to which size, percent of the effort of motion, an effect that the model does not have may
+    /// be another shape of one that it has.
+    fn allowed_to(&self, effect: EffectName) -> f64 {
+        let of_its_kind = |one: &&Structure| one.family.shapes.contains(&effect);
+        let allowed = self.structures.iter().filter(of_its_kind);
+        allowed.fold(0.0, |most, one| one.allowed_percent.max(most))
+    }
+
+    /// Whether a structure matters, and is more than may be left of its kind.
+    fn counts(&self, one: &Structure) -> bool {
+        self.matters(&one.gain) && one.gain.percent >= one.allowed_percent
     }
 
     /// The largest share of the residual that a family or the shift explains; none is negative.
@@ -92,18 +160,18 @@ impl Remainder {
     }
 
     /// Whether a gain on the residual is a large share of it, large beside the motion and beside
-    /// the rounding of the effort, and certain.
+    /// the rounding of the effort, and not plain chance.
     fn matters(&self, gain: &Gain) -> bool {
-        let percent = self.percent * gain.share.max(0.0).sqrt();
         gain.share >= UNEXPLAINED_SHARE
-            && percent >= UNEXPLAINED_PERCENT.max(self.rounding_percent)
-            && is_certain(gain)
+            && gain.percent >= UNEXPLAINED_PERCENT.max(self.rounding_percent)
+            && gain.t >= UNEXPLAINED_T
     }
 
     fn reasons(&self, has_gap: bool) -> Vec<Reason> {
+        let counts = |one: &Structure| self.counts(one) && !has_gap;
+        let is_seen = |one: &Structure| one.gain.share >= WHITE_SHARE && is_certain(&one.gain);
         let seen = self.structures.iter();
-        let seen = seen.filter(|one| one.gain.share >= WHITE_SHARE && is_certain(&one.gain));
-        let counts = |one: &Structure| self.matters(&one.gain) && !has_gap;
+        let seen = seen.filter(|one| is_seen(one) || counts(one));
         let mut reasons: Vec<Reason> = self.of_the_shift(has_gap).into_iter().collect();
         // The largest that counts, else the largest that is seen.
         let first = seen
@@ -177,13 +245,18 @@ impl ResidualStructure {
     /// What the declared and the extended model leave of the training record.
     pub(crate) fn of(
         dataset: &Dataset,
-        motion: &Kinematics,
+        [motion, low]: [&Kinematics; 2],
         models: &Compared<InverseDynamics>,
         scored: &[Scored],
     ) -> Self {
+        let remainder = |motion, model| Remainder::of_model(dataset, motion, model);
         let left = models.each(|model| {
-            let seen = model.motion(motion);
-            Remainder::of(&Bench::new(dataset, &seen), &model.fitted)
+            let left = remainder(motion, model);
+            if left.has_structure() {
+                left.slow_too(&remainder(low, model))
+            } else {
+                left
+            }
         });
         let last = scored.iter().map(|scored| scored.round).max().unwrap_or(0);
         let share = |remainder: &Remainder, round: usize| {
@@ -210,7 +283,12 @@ impl ResidualStructure {
         let left = &self.left.extended;
         let mut reasons = left.reasons(has_gap);
         let candidate = self.candidate.as_ref();
-        let counts = candidate.filter(|one| left.matters(&one.gain) && !has_gap);
+        let matters = |one: &&Scored| {
+            let gain = sized(one.gain, left.percent);
+            let allowed = one.effect.name().map_or(0.0, |name| left.allowed_to(name));
+            left.matters(&gain) && gain.percent >= allowed
+        };
+        let counts = candidate.filter(|one| matters(one) && !has_gap);
         reasons.extend(counts.map(|one| {
             let percent = 100.0 * one.gain.share;
             let effect = one.effect.as_str();
@@ -221,23 +299,31 @@ impl ResidualStructure {
         reasons
     }
 
+    /// What a veto says: an effect that one record shows and another contradicts. It counts where it
+    /// is large, and no other shape of an effect that stayed.
+    pub(crate) fn of_a_veto(&self, vetoed: &Vetoed) -> Reason {
+        let gain = &vetoed.gain;
+        let words = format!(
+            "{} on the training record ({:.0} % of the residual), which the validation record contradicts",
+            vetoed.effect.as_str(),
+            100.0 * gain.share
+        );
+        let left = &self.left.extended;
+        let allowed = vetoed
+            .effect
+            .name()
+            .map_or(0.0, |name| left.allowed_to(name));
+        let limit = UNEXPLAINED_PERCENT.max(allowed);
+        if gain.share >= UNEXPLAINED_SHARE && gain.percent * left.whole >= limit {
+            Reason::unexplained(words + ": record both again in one state of the axis")
+        } else {
+            Reason::told(words)
+        }
+    }
+
     /// Whether too little is left to speak of.
     pub(crate) fn is_white(&self) -> Compared<bool> {
         self.share.each(|share| *share < WHITE_SHARE)
-    }
-}
-
-/// What a veto says: an effect that one record shows and another contradicts.
-pub(crate) fn of_a_veto(vetoed: &Vetoed) -> Reason {
-    let percent = 100.0 * vetoed.gain.share;
-    let words = format!(
-        "{} on the training record ({percent:.0} % of the residual), which the validation record contradicts",
-        vetoed.effect.as_str()
-    );
-    if vetoed.gain.share >= UNEXPLAINED_SHARE && vetoed.gain.percent >= UNEXPLAINED_PERCENT {
-        Reason::unexplained(words + ": record both again in one state of the axis")
-    } else {
-        Reason::told(words)
     }
 }
 
@@ -259,6 +345,27 @@ fn in_family(motion: &Kinematics, span: &Span<'_>, rest: &[f64], columns: &[Vec<
     one(motion, rest, &wider.beyond(known)).0
 }
 
+/// Up to where a structure is another shape of an effect that is there, or a shift that is told.
+fn allowed(family: &Family, parts_rms: f64, bristle_rms: f64, shift_rms: f64) -> f64 {
+    let has_bristle = family.shapes.contains(&EffectName::Presliding);
+    let effect_rms = parts_rms.max(if has_bristle { bristle_rms } else { 0.0 });
+    let shift_rms = if family.is_shift { shift_rms } else { 0.0 };
+    shift_rms.max(SHAPE_PART * effect_rms)
+}
+
+/// Rms of the largest of some effects that a fit has, as far as its other parts cannot take its
+/// place.
+fn effect_rms(bench: &Bench<'_>, fitted: &Fitted, effects: &[EffectName]) -> f64 {
+    let model = fitted.model();
+    let parts = model.parts.iter();
+    let parts = parts.filter(|part| effects.iter().any(|name| part.is(*name)));
+    let rows = bench.motion.fitted.iter().filter(|inside| **inside);
+    let rows = rows.count().max(1) as f64;
+    parts
+        .map(|part| (bench.adds(fitted, &model.without(part)) / rows).sqrt())
+        .fold(0.0, f64::max)
+}
+
 /// Gain of columns over nothing on held-out blocks, and the first coefficient.
 fn one(motion: &Kinematics, rest: &[f64], columns: &[&[f64]]) -> (Gain, f64) {
     let blocks = Blocks::new(columns, rest, &motion.fitted, motion.period_s);
@@ -270,6 +377,24 @@ fn one(motion: &Kinematics, rest: &[f64], columns: &[&[f64]]) -> (Gain, f64) {
     };
     let first = fit.coefficients.first().copied().unwrap_or(0.0);
     (Gain::of(&nothing, &fit), first)
+}
+
+/// A gain on a residual with its size, by that of the residual.
+fn sized(gain: Gain, residual_percent: f64) -> Gain {
+    let percent = residual_percent * gain.share.max(0.0).sqrt();
+    Gain { percent, ..gain }
+}
+
+/// A gain as far as another one is there too, where it may be fed back.
+fn smaller(gain: Gain, other: &Gain) -> Gain {
+    if gain.percent >= FED_BACK_PERCENT {
+        return gain;
+    }
+    let percent = gain.percent.min(other.percent);
+    Gain {
+        percent,
+        ..gain.smaller(other)
+    }
 }
 
 fn rms(signal: &[f64], mask: &[bool]) -> f64 {
@@ -320,17 +445,15 @@ const IMPULSE_ROWS: usize = 4001;
 
 #[cfg(test)]
 mod tests {
-    use axis_model::EffectName;
-
     use super::*;
-    use crate::fit::made::{Axis, axis, model, usual};
-    use EffectName::{Coulomb, Inertia, Offset, Viscous};
+    use crate::fit::made::{Axis, axis, found, model, usual};
+    use EffectName::{Coulomb, Inertia, Offset, Viscous, ViscousAsymmetry};
 
     const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
 
     fn left_of(axis: &Axis) -> Remainder {
         let bench = axis.bench();
-        Remainder::of(&bench, &bench.fit(&model(&DECLARED)))
+        Remainder::of(&bench, &bench.fit(&model(&DECLARED)), 0.0)
     }
 
     /// What is left of an axis with a force more than the usual ones.
@@ -454,48 +577,115 @@ mod tests {
             let gain = Gain {
                 removed: 1.0,
                 share,
-                percent: 1.0,
+                percent,
                 t: 9.0,
             };
             let left = Remainder {
                 structures: vec![Structure {
                     family: &FAMILIES[0],
                     gain,
+                    allowed_percent: 0.0,
                 }],
-                percent,
                 ..left(|_, _| 0.0)
             };
             let reasons = left.reasons(has_gap);
             reasons.iter().any(|reason| reason.counts)
         };
         assert!(counts(0.15, 9.0, false) && !counts(0.149, 9.0, false));
-        // √0.25 of 0.6 % are 0.3 % of the effort.
-        assert!(counts(0.25, 0.6, false) && !counts(0.25, 0.59, false));
+        assert!(counts(0.25, 0.3, false) && !counts(0.25, 0.299, false));
         assert!(!counts(0.5, 9.0, true));
-        let late = Remainder {
-            percent: 50.0,
-            ..shifted(2)
-        };
+        let late = shifted(2);
         let counts = |has_gap| late.of_the_shift(has_gap).unwrap().counts;
         assert!(counts(false) && !counts(true));
+    }
+
+    #[test]
+    fn another_shape_of_an_effect_that_is_there_is_allowed_a_sixth_of_its_size() {
+        let force = |m: &Kinematics, row: usize| {
+            let v = m.velocity[row];
+            usual(m, row) + 60.0 * v.abs() + 15.0 * (40.0 * v).sin().abs()
+        };
+        let axis = axis(force);
+        let bench = axis.bench();
+        let with = model(&DECLARED).with(found(ViscousAsymmetry, 0.0));
+        let left = Remainder::of(&bench, &bench.fit(&with), 0.0);
+        let one = left.structures[0];
+        assert_eq!(one.family.over, "velocity by direction");
+        assert!(left.matters(&one.gain) && one.allowed_percent > 0.0);
+        let size = effect_rms(&bench, &bench.fit(&with), &[ViscousAsymmetry]);
+        let moved = about_mean(&axis.motion.effort_lp, &axis.motion.fitted);
+        assert!((one.allowed_percent / (100.0 * SHAPE_PART * size / moved) - 1.0).abs() < 1.0e-9);
+        let counts = |times: f64| {
+            left.counts(&Structure {
+                allowed_percent: times * one.gain.percent,
+                ..one
+            })
+        };
+        assert!(counts(0.999) && !counts(1.001));
+        // Without the effect there is nothing that it could be a shape of; a shift is always told.
+        let without = left_of(&self::axis(force));
+        for one in &without.structures {
+            assert_eq!(one.allowed_percent > 0.0, one.family.is_shift);
+        }
+    }
+
+    #[test]
+    fn a_bristle_has_other_shapes_over_force_and_velocity_and_not_over_position() {
+        let of = |over: &str| {
+            let family = FAMILIES.iter().find(|family| family.over == over).unwrap();
+            allowed(family, 0.0, 6.0, 0.5)
+        };
+        let force = of("the transmitted force by direction");
+        assert!((force / (6.0 * SHAPE_PART) - 1.0).abs() < 1.0e-12);
+        assert_eq!(of("velocity by direction"), force);
+        assert_eq!(of("the rate of the acceleration"), force);
+        assert_eq!(of("position"), 0.0);
+        let rate = FAMILIES.iter().find(|family| family.is_shift).unwrap();
+        assert_eq!(allowed(rate, 0.0, 0.0, 0.5), 0.5);
     }
 
     #[test]
     fn a_structure_below_the_rounding_of_the_effort_does_not_count() {
         let matters = |rounding_percent: f64| {
             let left = Remainder {
-                percent: 4.0,
                 rounding_percent,
                 ..left(|_, _| 0.0)
             };
             left.matters(&Gain {
                 removed: 1.0,
                 share: 0.25,
-                percent: 1.0,
+                percent: 2.0,
                 t: 9.0,
             })
         };
         assert!(matters(2.0) && !matters(2.01));
+    }
+
+    #[test]
+    fn a_structure_is_as_large_as_it_is_at_both_cutoffs() {
+        let whole = left(|m, row| 0.5 * m.direction[row] * (m.time_s[row] - 3.0));
+        let kept = whole.clone().slow_too(&whole);
+        let gains = |left: &Remainder| {
+            left.structures
+                .iter()
+                .map(|one| one.gain)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(gains(&kept), gains(&whole));
+        assert!(kept.has_structure());
+        let mut half = whole.clone();
+        let percent = whole.structures[0].gain.percent;
+        half.structures[0].gain.percent = 0.5 * percent;
+        let lost = whole.clone().slow_too(&half);
+        let first = |left: &Remainder| left.structures[0].gain;
+        assert_eq!(first(&lost).percent, 0.5 * percent);
+        assert_eq!(first(&lost).share, first(&whole).share);
+        let nothing = left(|_, _| 0.0);
+        assert!(!whole.clone().slow_too(&nothing).has_structure());
+        // What is larger than anything that is fed back counts as it is.
+        let mut large = whole;
+        large.structures[0].gain.percent = FED_BACK_PERCENT;
+        assert!(large.slow_too(&nothing).has_structure());
     }
 
     fn scored(round: usize, share: f64, physical: bool) -> Scored {
@@ -528,18 +718,36 @@ mod tests {
 
     #[test]
     fn what_a_record_shows_and_another_contradicts_counts_where_it_is_large() {
-        let counts = |share, percent| {
-            of_a_veto(&Vetoed {
-                effect: EffectName::Stribeck.into(),
-                gain: Gain {
-                    removed: 1.0,
-                    share,
-                    percent,
-                    t: 9.0,
-                },
-            })
-            .counts
+        let vetoed = |effect: EffectName, share, percent| Vetoed {
+            effect: effect.into(),
+            gain: Gain {
+                removed: 1.0,
+                share,
+                percent,
+                t: 9.0,
+            },
         };
-        assert!(counts(0.15, 0.3) && !counts(0.149, 9.0) && !counts(0.9, 0.29));
+        // An effect of 3 % over velocity by direction has other shapes of half a percent.
+        let mut left = Remainder {
+            whole: 2.0,
+            ..left(|_, _| 0.0)
+        };
+        let is_friction = |one: &&mut Structure| one.family.over == "velocity by direction";
+        let one = left.structures.iter_mut().find(is_friction).unwrap();
+        one.allowed_percent = SHAPE_PART * 3.0;
+        let residual = ResidualStructure {
+            left: Compared {
+                declared: left.clone(),
+                extended: left,
+            },
+            candidate: None,
+            share: Compared::default(),
+        };
+        let counts =
+            |effect, share, percent| residual.of_a_veto(&vetoed(effect, share, percent)).counts;
+        let payload = |share, percent| counts(EffectName::Payload, share, percent);
+        assert!(payload(0.15, 0.15) && !payload(0.149, 9.0) && !payload(0.9, 0.149));
+        let stribeck = |percent| counts(EffectName::Stribeck, 0.5, percent);
+        assert!(stribeck(0.251) && !stribeck(0.249));
     }
 }

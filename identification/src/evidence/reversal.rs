@@ -11,7 +11,9 @@ pub(crate) mod stick;
 
 use axis_model::EffectName;
 
-use crate::evidence::thresholds::{BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS};
+use crate::evidence::thresholds::{
+    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SUSPICION_RATIO,
+};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
 use crate::motion::kinematics::Kinematics;
@@ -42,12 +44,18 @@ pub(crate) struct Presliding {
     pub t: f64,
     /// Whether presliding is accepted.
     pub accepted: bool,
+    /// Whether the same bristle leaves less of another record too.
+    pub repeats: bool,
 }
 
-/// Judges presliding for a model; `None` where the model has no Coulomb friction or the record no
-/// reversals.
+/// Judges presliding for a model, on its record and on another one; `None` where the model has no
+/// Coulomb friction or the record no reversals.
 #[must_use]
-pub(crate) fn presliding(bench: &Bench<'_>, fitted: &Fitted) -> Option<Presliding> {
+pub(crate) fn presliding(
+    bench: &Bench<'_>,
+    other: &Bench<'_>,
+    fitted: &Fitted,
+) -> Option<Presliding> {
     let motion = bench.motion;
     if motion.slow.iter().filter(|slow| **slow).count() < FEWEST_REVERSAL_ROWS {
         return None;
@@ -62,11 +70,18 @@ pub(crate) fn presliding(bench: &Bench<'_>, fitted: &Fitted) -> Option<Preslidin
         deflection,
         t,
         accepted: false,
+        repeats: leaves_less(other, &other.fit(fitted.model()), deflection),
     };
     Some(Presliding {
         accepted: seen.is_clear(resolution(bench.dataset)),
         ..seen
     })
+}
+
+/// Whether a bristle leaves less of a record than rigid friction, by what counts as suspicious.
+fn leaves_less(bench: &Bench<'_>, fitted: &Fitted, deflection: f64) -> bool {
+    let left = [None, Some(deflection)].map(|width| error_rms(bench, fitted, width));
+    matches!(left, [Some(rigid), Some(dahl)] if dahl < SUSPICION_RATIO * rigid)
 }
 
 impl Presliding {
@@ -76,6 +91,15 @@ impl Presliding {
         self.dahl <= BRISTLE_RATIO * self.rigid
             && self.t >= BRISTLE_T
             && self.deflection >= smallest
+    }
+
+    /// Whether a bristle leaves less, at enough reversals of both records, but not so much less that
+    /// it is one.
+    pub(crate) fn is_suspicious(&self) -> bool {
+        !self.accepted
+            && self.repeats
+            && self.t >= BRISTLE_T
+            && self.dahl < SUSPICION_RATIO * self.rigid
     }
 }
 
@@ -210,7 +234,8 @@ mod tests {
         let dataset = declared(record(Some(DEFLECTION_M)));
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let bench = Bench::new(&dataset, &motion);
-        let seen = presliding(&bench, &fitted).unwrap();
+        let seen = presliding(&bench, &bench, &fitted).unwrap();
+        assert!(seen.repeats);
         assert!(seen.accepted && seen.t > BRISTLE_T, "{seen:?}");
         assert!(
             (seen.deflection / DEFLECTION_M - 1.0).abs() < 0.01,
@@ -228,8 +253,10 @@ mod tests {
         assert!(left(Some(DEFLECTION_M)) < 1.0e-6 * seen.rigid);
         let dataset = declared(record(None));
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
-        let seen = presliding(&Bench::new(&dataset, &motion), &fitted).unwrap();
+        let rigid = Bench::new(&dataset, &motion);
+        let seen = presliding(&rigid, &rigid, &fitted).unwrap();
         assert!(!seen.accepted && seen.rigid < seen.dahl, "{seen:?}");
+        assert!(!presliding(&bench, &rigid, &fitted).unwrap().repeats);
     }
 
     #[test]
@@ -238,9 +265,35 @@ mod tests {
         let mut speaks = |rows: usize| {
             axis.motion.slow.fill(false);
             axis.motion.slow[1000..1000 + rows].fill(true);
-            presliding(&axis.bench(), &fitted(&USUAL)).is_some()
+            presliding(&axis.bench(), &axis.bench(), &fitted(&USUAL)).is_some()
         };
         assert!(!speaks(0) && !speaks(199) && speaks(200) && speaks(300));
+    }
+
+    const ACCEPTED: Presliding = Presliding {
+        rigid: 2.0,
+        dahl: 1.0,
+        deflection: 1.0e-5,
+        t: 9.0,
+        accepted: true,
+        repeats: true,
+    };
+
+    #[test]
+    fn what_both_records_show_at_enough_reversals_is_suspicious_where_it_is_no_bristle() {
+        let suspicious = |dahl, t, repeats, accepted| {
+            let seen = Presliding {
+                dahl,
+                t,
+                repeats,
+                accepted,
+                ..ACCEPTED
+            };
+            seen.is_suspicious()
+        };
+        assert!(suspicious(1.69, 1.2, true, false));
+        assert!(!suspicious(1.7, 9.0, true, false) && !suspicious(0.1, 1.19, true, false));
+        assert!(!suspicious(0.1, 9.0, false, false) && !suspicious(0.1, 9.0, true, true));
     }
 
     #[test]
@@ -251,7 +304,7 @@ mod tests {
                 dahl,
                 deflection,
                 t,
-                accepted: false,
+                ..ACCEPTED
             };
             seen.is_clear(3.0e-6)
         };

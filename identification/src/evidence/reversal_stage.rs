@@ -22,14 +22,15 @@ pub(crate) struct ReversalStage {
 }
 
 impl ReversalStage {
-    /// Asks all witnesses about a fitted model of the training record.
+    /// Asks all witnesses about a fitted model of the training record; the other record is asked
+    /// whether it shows the same.
     pub(crate) fn of(
-        bench: &Bench<'_>,
+        [bench, other]: [&Bench<'_>; 2],
         fitted: &Fitted,
         difference: Option<&Difference>,
         progress: &mut dyn FnMut(&Step),
     ) -> Self {
-        let inverse = reversal::presliding(bench, fitted);
+        let inverse = reversal::presliding(bench, other, fitted);
         let mut free_run = free_run::reversals(bench.dataset, fitted, progress);
         let load_scale = difference.map(|found| LoadScale {
             gap: found.gap.is_some(),
@@ -89,7 +90,7 @@ mod tests {
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let bench = Bench::new(&dataset, &motion);
         let fitted = bench.fit(&Model::declared(&dataset));
-        ReversalStage::of(&bench, &fitted, difference, &mut |_| ())
+        ReversalStage::of([&bench, &bench], &fitted, difference, &mut |_| ())
     }
 
     #[test]

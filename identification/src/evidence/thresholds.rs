@@ -70,11 +70,26 @@ pub(crate) const WHITE_SHARE: f64 = EFFORT_SHARE;
 /// what an accepted effect needs.
 pub(crate) const UNEXPLAINED_SHARE: f64 = 0.15;
 
+/// And from this t on: a name asks for more, but `explained` is a claim too, and a structure that
+/// sits in few blocks may be what the axis does there.
+pub(crate) const UNEXPLAINED_T: f64 = 1.0;
+
 /// Structure below this much of the effort of motion does not matter to the axis, percent: twice
 /// the smallest effect that is named. What a cubic drag leaves of a quadratic one on a seeded
 /// record is
 /// 0.4 %, and has to count.
 pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.3;
+
+/// Structure of the kind of an effect that the model has does not count below this part of that
+/// effect's own size: the axis has another shape of it. Axes of unlike make leave up to
+/// a seventh of their effects so (exponential for Gaussian Stribeck falls, worn ways); a cubic drag
+/// leaves a fifth of a quadratic one, and has to count.
+pub(crate) const SHAPE_PART: f64 = 1.0 / 6.0;
+
+/// From this size on, percent of the effort of motion, a structure counts even where it is gone at
+/// the lower cut-off: a controller gives back less of an encoder's rounding and a drive's noise.
+/// Chosen; records of `commission` have 0.4 %, an eccentric encoder 6 %.
+pub(crate) const FED_BACK_PERCENT: f64 = 2.0;
 
 /// A shift in time below this is told and does not count, s: a sixth of the period at which drives
 /// usually record, the part of it by which a measured effort and a position may stand apart in it.
