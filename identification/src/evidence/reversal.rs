@@ -285,8 +285,8 @@ mod tests {
             let seen = Presliding {
                 dahl,
                 t,
-                repeats,
                 accepted,
+                repeats,
                 ..ACCEPTED
             };
             seen.is_suspicious()
