@@ -5,9 +5,9 @@
 //! blocks, one family at a time: all at once they over-fit on clean records into negative shares.
 //! What the model itself spans, and a small shift in time of either sign, is taken from residual
 //! and features first. So a feature is judged by what it adds, and a record whose effort is an
-//! eighth of a millisecond early is not called an effect. And what counts must be there at the lower
-//! cut-off too, that of the delay search: a controller gives back what an encoder rounds and a drive shakes,
-//! as effort that goes with the measured motion, its rate above all.
+//! eighth of a millisecond early is not called an effect. And what counts must be there at the
+//! lower cut-off too, that of the delay search: a controller gives back what an encoder rounds and
+//! a drive shakes, as effort that goes with the measured motion, its rate above all.
 //!
 //! Three things count. Structure is `unexplained` where it is a large share of the residual and
 //! large beside the effort of motion (the effort without its mean: gravity is not motion). Whatever
@@ -140,8 +140,8 @@ impl Remainder {
         gains.chain([&self.shift]).any(|gain| self.matters(gain))
     }
 
-    /// Up to which size, percent of the effort of motion, an effect that the model does not have may
-    /// be another shape of one that it has.
+    /// Up to which size, percent of the effort of motion, an effect that the model does not have
+    /// may be another shape of one that it has.
     fn allowed_to(&self, effect: EffectName) -> f64 {
         let of_its_kind = |one: &&Structure| one.family.shapes.contains(&effect);
         let allowed = self.structures.iter().filter(of_its_kind);
@@ -299,8 +299,8 @@ impl ResidualStructure {
         reasons
     }
 
-    /// What a veto says: an effect that one record shows and another contradicts. It counts where it
-    /// is large, and no other shape of an effect that stayed.
+    /// What a veto says: an effect that one record shows and another contradicts. It counts where
+    /// it is large, and no other shape of an effect that stayed.
     pub(crate) fn of_a_veto(&self, vetoed: &Vetoed) -> Reason {
         let gain = &vetoed.gain;
         let words = format!(

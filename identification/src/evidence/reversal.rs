@@ -93,8 +93,8 @@ impl Presliding {
             && self.deflection >= smallest
     }
 
-    /// Whether a bristle leaves less, at enough reversals of both records, but not so much less that
-    /// it is one.
+    /// Whether a bristle leaves less, at enough reversals of both records, but not so much less
+    /// that it is one.
     pub(crate) fn is_suspicious(&self) -> bool {
         !self.accepted
             && self.repeats
