@@ -7,3 +7,4 @@ pub(crate) mod kinematics;
 pub(crate) mod lag;
 pub(crate) mod mask;
 pub(crate) mod motions;
+pub(crate) mod shift;
