@@ -193,6 +193,7 @@ mod tests {
         Record {
             period_s: 1.0e-3,
             load: None,
+            velocity: None,
             reference: None,
             rows: time_s.iter().copied().zip(effort.iter().copied()).collect(),
             effort,

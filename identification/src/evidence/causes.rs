@@ -76,6 +76,7 @@ fn of_setpoint(dataset: &Dataset) -> Option<Reading> {
     let record = Record {
         position: dataset.train.reference.clone()?,
         load: None,
+        velocity: None,
         ..dataset.train.clone()
     };
     let motion = slow_motion(dataset, &record)?;

@@ -203,6 +203,7 @@ mod tests {
             period_s: 1.0e-3,
             load: Some(position.iter().map(|x| x - 1.0e-4).collect()),
             position,
+            velocity: None,
             reference: None,
             effort: time_s.iter().map(|t| (3.0 * t).cos()).collect(),
             rows: Vec::new(),

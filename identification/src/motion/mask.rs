@@ -97,6 +97,7 @@ mod tests {
             period_s: 1.0e-3,
             position: vec![0.0; rows],
             load: None,
+            velocity: None,
             reference: None,
             time_s: vec![0.0; rows],
             rows: Vec::new(),

@@ -181,6 +181,7 @@ mod tests {
             period_s: 1.0e-3,
             position: (0..rows).map(at).collect(),
             load: None,
+            velocity: None,
             reference: None,
             effort: vec![0.0; rows],
             rows: Vec::new(),

@@ -140,6 +140,7 @@ mod tests {
             period_s: 1.0e-3,
             position: (0..rows).map(at).collect(),
             load: None,
+            velocity: None,
             reference: None,
             effort: vec![0.0; rows],
             time_s: (0..rows).map(|row| 1.0e-3 * row as f64).collect(),

@@ -217,6 +217,7 @@ mod tests {
         Rows {
             time_s: (0..ROWS).map(|row| PERIOD_S * row as f64).collect(),
             load: Some(position.iter().map(|x| x - 2.0e-5).collect()),
+            velocity: None,
             reference: None,
             left_out: vec![false; ROWS],
             position,

@@ -10,7 +10,7 @@ use crate::record::outliers::{self, Outliers};
 use crate::record::samples::Record;
 use crate::record::table::Table;
 use crate::record::time_base::{Clock, Rows, uniform};
-use crate::record::units::Effort;
+use crate::record::units::{AxisKind, Effort};
 
 type Outcome<T> = Result<T, IdentificationError>;
 
@@ -39,6 +39,7 @@ pub(crate) fn read(path: &Path, form: &DatasetForm, purpose: Purpose) -> Outcome
         effort: table.take_required(which.column())?,
         position: table.take_required(&format!("position_{unit}"))?,
         load: table.take(&format!("load_position_{unit}")),
+        velocity: velocity(&mut table, form.axis.kind)?,
         reference: table.take(&format!("reference_{unit}")),
     };
     checks::effort(&table.path, which, &rows.effort)?;
@@ -69,6 +70,19 @@ fn table(path: &Path, form: &DatasetForm) -> Outcome<Table> {
     match &form.bus {
         Some(bus) if is_log => bus_log::read(path, bus, &form.columns, form.sample_period_s),
         _ => Table::read(path)?.mapped(&form.columns),
+    }
+}
+
+/// The drive's velocity, where it was recorded, under either of its names.
+fn velocity(table: &mut Table, kind: AxisKind) -> Outcome<Option<Vec<f64>>> {
+    let names = kind.velocity_columns();
+    match names.map(|name| table.take(name)) {
+        [Some(_), Some(_)] => Err(IdentificationError::new(format!(
+            "{}:1: more than one velocity column; keep one of {}",
+            table.path,
+            names.join(", ")
+        ))),
+        [one, other] => Ok(one.or(other)),
     }
 }
 
@@ -117,6 +131,24 @@ mod tests {
         );
         assert_eq!(record.reference.unwrap()[10], 30.0);
         assert_eq!((record.load, record.time_s[0]), (None, 0.0));
+    }
+
+    #[test]
+    fn a_velocity_is_taken_under_either_name_in_the_unit_of_the_axis() {
+        let velocity = |column: &str| {
+            let header = format!("time_s,position_m,{column},force_n");
+            let reading = read_header(&header, &DatasetForm::default());
+            reading.map(|reading| reading.record.velocity.map(|own| own[10]))
+        };
+        assert_eq!(velocity("velocity_m_s").unwrap(), Some(20.0));
+        assert_eq!(velocity("velocity_m_per_s").unwrap(), Some(20.0));
+        assert_eq!(velocity("velocity_rad_s").unwrap(), None);
+        let both = velocity("velocity_m_s,velocity_m_per_s").unwrap_err();
+        let both = both.to_string();
+        assert!(
+            both.contains("train.csv:1: more than one velocity column"),
+            "{both}"
+        );
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct Record {
     pub position: Vec<f64>,
     /// Load position, if it was measured.
     pub load: Option<Vec<f64>>,
+    /// Velocity of the motor as the drive gives it, if it was recorded.
+    pub velocity: Option<Vec<f64>>,
     /// Setpoint, if it was recorded.
     pub reference: Option<Vec<f64>>,
     /// Effort.
@@ -91,6 +93,7 @@ impl Record {
             period_s: self.period_s,
             position: cut(&self.position),
             load: self.load.as_deref().map(cut),
+            velocity: self.velocity.as_deref().map(cut),
             reference: self.reference.as_deref().map(cut),
             effort: cut(&self.effort),
             time_s: cut(&self.time_s),
@@ -112,6 +115,7 @@ impl Record {
             period_s: self.period_s,
             position: self.position.split_off(sample),
             load: self.load.as_mut().map(|load| load.split_off(sample)),
+            velocity: self.velocity.as_mut().map(|own| own.split_off(sample)),
             reference: self.reference.as_mut().map(|path| path.split_off(sample)),
             effort: self.effort.split_off(sample),
             time_s: self.time_s.split_off(sample),
@@ -134,6 +138,7 @@ impl Record {
             period_s: self.period_s,
             position: join(&self.position, &next.position),
             load: both(&self.load, &next.load),
+            velocity: both(&self.velocity, &next.velocity),
             reference: both(&self.reference, &next.reference),
             effort: join(&self.effort, &next.effort),
             time_s: join(&self.time_s, &next.time_s),
@@ -196,6 +201,7 @@ mod tests {
             period_s: 0.1,
             position: ramp(10, 1.0),
             load: Some(ramp(10, 2.0)),
+            velocity: Some(ramp(10, 3.0)),
             reference: None,
             effort: ramp(10, -1.0),
             rows: rows.iter().map(|t| (3.001 + t, 7.0 * t)).collect(),

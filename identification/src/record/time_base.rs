@@ -12,6 +12,8 @@ pub(crate) struct Rows {
     pub position: Vec<f64>,
     /// Load position, if it was measured.
     pub load: Option<Vec<f64>>,
+    /// Velocity of the motor as the drive gives it, if it was recorded.
+    pub velocity: Option<Vec<f64>>,
     /// Setpoint, if it was recorded.
     pub reference: Option<Vec<f64>>,
     /// Effort.
@@ -81,6 +83,7 @@ fn as_it_stands(rows: Rows, period_s: f64, origin_s: f64) -> Record {
         time_s: rows.time_s.into_iter().map(|t| t - origin_s).collect(),
         position: rows.position,
         load: rows.load,
+        velocity: rows.velocity,
         reference: rows.reference,
         effort: rows.effort,
         jittered: false,
@@ -100,6 +103,7 @@ fn interpolated(rows: &Rows, period_s: f64, median: f64, origin_s: f64) -> Recor
         interpolated: bridged(rows, &at, HOLE_PERIODS * median),
         position: on_base(&rows.position),
         load: rows.load.as_deref().map(on_base),
+        velocity: rows.velocity.as_deref().map(on_base),
         reference: rows.reference.as_deref().map(on_base),
         effort: on_base(&rows.effort),
         jittered: jitters(&rows.time_s, median),
@@ -163,6 +167,7 @@ mod tests {
         let position: Vec<f64> = time_s.iter().map(|t| 2.0 * t).collect();
         Rows {
             load: None,
+            velocity: Some(time_s.iter().map(|t| 3.0 - t).collect()),
             reference: Some(position.clone()),
             effort: time_s.iter().map(|t| -t).collect(),
             left_out: vec![false; time_s.len()],
@@ -217,6 +222,10 @@ mod tests {
         assert!(record.jittered && !record.interpolated.contains(&true));
         for (t, x) in record.time_s.iter().zip(&record.position) {
             assert!((x - 2.0 * (t + 1.0)).abs() < 1.0e-9, "{t}: {x}");
+        }
+        let velocity = record.velocity.as_deref().unwrap();
+        for (t, v) in record.time_s.iter().zip(velocity) {
+            assert!((v - (2.0 - t)).abs() < 1.0e-9, "{t}: {v}");
         }
     }
 

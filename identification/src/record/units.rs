@@ -33,6 +33,15 @@ impl AxisKind {
         }
     }
 
+    /// Names of the column of the drive's velocity, the usual one first.
+    #[must_use]
+    pub(crate) const fn velocity_columns(self) -> [&'static str; 2] {
+        match self {
+            Self::Linear => ["velocity_m_s", "velocity_m_per_s"],
+            Self::Rotary => ["velocity_rad_s", "velocity_rad_per_s"],
+        }
+    }
+
     /// Millionths of the position's unit: what position errors are told in.
     #[must_use]
     pub const fn millionths(self) -> &'static str {

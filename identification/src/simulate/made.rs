@@ -17,6 +17,7 @@ pub(crate) fn record(period_s: f64, position: Vec<f64>) -> Record {
         period_s,
         position,
         load: None,
+        velocity: None,
         reference: None,
         effort: vec![0.0; rows],
         time_s: (0..rows).map(|row| period_s * row as f64).collect(),
