@@ -8,6 +8,7 @@
 //! | free-run position | [`free_run`] | presliding, backlash |
 //! | motor − load | [`difference`] | backlash, compliance, pitch error |
 //!
+//! [`velocity`] comes first: whether positions or the drive's velocity say how a record moves.
 //! [`selection`] is the one forward selection that judges share, [`thresholds`] has every limit.
 //! [`reversal_stage`] asks the witnesses of a reversal and [`at_reversals`] decides. [`findings`]
 //! puts together what was found, [`signs`] says what of it is impossible, and [`verdict`] says
@@ -31,4 +32,5 @@ pub(crate) mod selection;
 pub(crate) mod signs;
 pub(crate) mod slow_ripple;
 pub(crate) mod thresholds;
+pub(crate) mod velocity;
 pub(crate) mod verdict;

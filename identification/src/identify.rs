@@ -14,6 +14,7 @@ use crate::evidence::plausibility;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
+use crate::evidence::velocity;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
 use crate::fit::tuning::{self, Pair};
@@ -45,6 +46,7 @@ fn identify_excerpt(
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     plausibility::check_rows(dataset)?;
+    let dataset = &*velocity::decided(dataset, size);
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
@@ -160,6 +162,7 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
 /// # Errors
 /// Where the declared model has no Coulomb friction, or the record leaves nothing to fit.
 pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
+    let dataset = &*velocity::decided(dataset, EXCERPT);
     let motion = motions::of_training(dataset)?;
     let fitted = Bench::new(dataset, &motion).fit(&Model::declared(dataset));
     let own = fitted.of(EffectName::Coulomb).and_then(<[f64]>::first);
@@ -230,6 +233,7 @@ mod tests {
             train: record(0.0),
             validate: record(1.0),
             held_back: false,
+            full_band: false,
             notes: Vec::new(),
         }
     }

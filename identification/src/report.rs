@@ -93,7 +93,7 @@ fn report(findings: &Findings<'_>) -> Report {
         residual: residual(findings),
         free_run: None,
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
-        cutoff_hz: filter::fit_cutoff_hz(&dataset.train),
+        cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
         parameters: parameters.estimates,
         parameters_from: parameters.from,

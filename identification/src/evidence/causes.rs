@@ -49,7 +49,7 @@ pub(crate) fn of(dataset: &Dataset, found: &[EffectName]) -> Vec<String> {
 
 /// The motion below the cut-off of the delay search: noise and resonances lie above it.
 fn slow_motion(dataset: &Dataset, record: &Record) -> Option<Kinematics> {
-    let cutoff_hz = tuning::delay_cutoff_hz(record.period_s).min(fit_cutoff_hz(record));
+    let cutoff_hz = tuning::delay_cutoff_hz(record.period_s).min(fit_cutoff_hz(dataset, record));
     Kinematics::with_cutoff(dataset, record, cutoff_hz)
 }
 

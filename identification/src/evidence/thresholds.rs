@@ -226,3 +226,28 @@ pub(crate) const LONGEST_M: f64 = 100.0;
 
 /// Fastest motion of a linear axis, m/s.
 pub(crate) const FASTEST_M_PER_S: f64 = 50.0;
+
+// ---- The drive's own velocity: `velocity` ----
+
+/// Measured velocity over derivative of the position: other factors are a unit, a gear or another
+/// axis.
+pub(crate) const VELOCITY_SLOPE: std::ops::Range<f64> = LOAD_SLOPE;
+
+/// Smallest correlation of the two below 20 Hz. Chosen: below it noise alone would change the slope
+/// by a fifth, which is where the range of the slope ends.
+pub(crate) const VELOCITY_CORRELATION: f64 = 0.9;
+
+/// Latest velocity that is shifted back, in periods of the low-pass: three rows at 1 kHz. Chosen: a
+/// filter that comes later than that takes away what is to be used.
+pub(crate) const VELOCITY_LATE: f64 = 0.3;
+
+/// A measured velocity is used where it leaves at most so much of the error that the derivative of
+/// the position leaves. Chosen: less gain is no reason to leave the position, which is what
+/// everything else goes by.
+pub(crate) const VELOCITY_WORTH: f64 = 0.9;
+
+/// A jittered record keeps the low-pass of the errors where the declared model leaves at most this
+/// part of the effort in the band that the lower one takes away; mean squares. Chosen: a good
+/// acceleration explains most of it (0.03 on a made clock that is off by a fifth of its period).
+/// One that jitter spoils makes it 24 times as large (`bldc_cogging`).
+pub(crate) const FULL_BAND: f64 = 0.5;

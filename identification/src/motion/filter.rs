@@ -2,6 +2,7 @@
 
 use butterworth::{Cutoff, Filter};
 
+use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 
 /// Rows trimmed at each end of a filtered record, by definition of the errors.
@@ -31,9 +32,9 @@ const JITTERED_CUTOFF_HZ: f64 = 20.0;
 
 /// Cut-off with which a record is fitted.
 #[must_use]
-pub(crate) fn fit_cutoff_hz(record: &Record) -> f64 {
+pub(crate) fn fit_cutoff_hz(dataset: &Dataset, record: &Record) -> f64 {
     let defined = cutoff_hz(record.period_s);
-    if record.jittered {
+    if record.jittered && !dataset.full_band {
         defined.min(JITTERED_CUTOFF_HZ)
     } else {
         defined

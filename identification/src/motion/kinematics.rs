@@ -1,4 +1,5 @@
-//! From positions to velocity, acceleration, direction and masks, aligned with the effort.
+//! From positions (or the drive's velocity) to velocity, acceleration, direction and masks, aligned
+//! with the effort.
 //!
 //! Nonlinear columns are made from the low-passed velocity and position and then low-passed
 //! themselves, linear ones from the raw derivatives. Each piece of a record that has joints is
@@ -6,7 +7,7 @@
 
 use std::ops::Range;
 
-use crate::motion::derivatives::Derivatives;
+use crate::motion::bodies::{Bodies, minus};
 use crate::motion::filter::{LowPass, fit_cutoff_hz};
 use crate::motion::lag::acting_effort;
 use crate::motion::mask;
@@ -60,7 +61,7 @@ impl Kinematics {
     /// room for the low-pass.
     #[must_use]
     pub(crate) fn new(dataset: &Dataset, record: &Record) -> Option<Self> {
-        Self::with_cutoff(dataset, record, fit_cutoff_hz(record))
+        Self::with_cutoff(dataset, record, fit_cutoff_hz(dataset, record))
     }
 
     /// The same with another cut-off.
@@ -82,35 +83,34 @@ impl Kinematics {
 
     fn of_piece(dataset: &Dataset, record: &Record, filter: LowPass) -> Self {
         let (period_s, hold) = (record.period_s, dataset.hold);
-        let motor = Derivatives::new(&record.position, period_s, hold);
-        let load = record.load.as_deref();
-        let load_motion = load.map(|load| Derivatives::new(load, period_s, hold));
-        let friction = load_motion.as_ref().unwrap_or(&motor);
+        let bodies = Bodies::of(record, hold);
+        let friction = bodies.with_friction();
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, hold);
         let velocity_lp = filter.apply(&friction.velocity);
         let limit = dataset.kind.moving_velocity();
-        let motor_lp = filter.apply(&motor.velocity);
+        let motor_lp = filter.apply(&bodies.motor.velocity);
         let (moving, slow) = mask::moving_and_slow(&motor_lp, limit, period_s);
         let spoilt = mask::spoilt(record, dataset.effort_limit);
         Self {
             period_s,
             time_s: record.time_s.clone(),
-            load_acceleration: load_motion
-                .as_ref()
-                .map(|load| minus(&load.acceleration, &motor.acceleration)),
-            position_lp: filter.apply(&motor.position),
+            position_lp: filter.apply(&bodies.motor.position),
             direction: velocity_lp.iter().map(|v| v.signum()).collect(),
             friction_position: friction.position.clone(),
             velocity_lp,
             effort_lp: filter.apply(&effort),
-            difference: load.map(|load| minus(&record.position, load)),
+            difference: record
+                .load
+                .as_deref()
+                .map(|load| minus(&record.position, load)),
             fitted: mask::without(&moving, &spoilt),
             slow: mask::without(&slow, &spoilt),
             moving,
             pieces: record.pieces(),
             duration_s: record.duration_s(),
-            acceleration: motor.acceleration,
-            velocity: motor.velocity,
+            load_acceleration: bodies.load_acceleration,
+            acceleration: bodies.motor.acceleration,
+            velocity: bodies.motor.velocity,
             effort,
             filter,
         }
@@ -180,10 +180,6 @@ impl Kinematics {
     }
 }
 
-fn minus(one: &[f64], other: &[f64]) -> Vec<f64> {
-    one.iter().zip(other).map(|(a, b)| a - b).collect()
-}
-
 fn extend(values: &mut Option<Vec<f64>>, more: Option<Vec<f64>>) {
     if let (Some(values), Some(more)) = (values, more) {
         values.extend(more);
@@ -227,6 +223,7 @@ mod tests {
             train: record.clone(),
             validate: record,
             held_back: false,
+            full_band: false,
             notes: Vec::new(),
         }
     }

@@ -45,6 +45,9 @@ pub struct Dataset {
     pub validate: Record,
     /// Whether the validation record is the last part of the training record's file.
     pub held_back: bool,
+    /// Whether a record with a jittered clock is fitted with the low-pass of the errors all the
+    /// same: the drive's velocity showed that the jitter does no harm there.
+    pub full_band: bool,
     /// What is odd in `dataset.toml` or in the records but no reason to refuse them.
     pub notes: Vec<String>,
 }
@@ -111,6 +114,7 @@ impl Dataset {
             train: records.train,
             validate: records.validate,
             held_back: records.held_back,
+            full_band: false,
             notes,
         }
     }
@@ -133,6 +137,27 @@ impl Dataset {
             validate,
             ..*self
         }
+    }
+
+    /// The same axis without the drive's velocity.
+    #[must_use]
+    pub(crate) fn without_velocity(self) -> Self {
+        let without = |record: Record| Record {
+            velocity: None,
+            ..record
+        };
+        Self {
+            train: without(self.train),
+            validate: without(self.validate),
+            ..self
+        }
+    }
+
+    /// The same axis with a remark more.
+    #[must_use]
+    pub(crate) fn with_note(mut self, note: String) -> Self {
+        self.notes.push(note);
+        self
     }
 
     /// Middle and half of the travel of the training record.

@@ -53,7 +53,7 @@ pub(crate) fn refitted(findings: &Findings<'_>, whole: &Kinematics) -> Errors {
 /// Errors with the defined low-pass, where the fit used another: training and validation record.
 pub(crate) fn as_defined(findings: &Findings<'_>) -> Option<[Errors; 2]> {
     let dataset = findings.dataset;
-    if !dataset.train.jittered {
+    if !dataset.train.jittered || dataset.full_band {
         return None;
     }
     let on = |record: &Record| {

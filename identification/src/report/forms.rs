@@ -221,7 +221,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slow_ripple: Option<SlowRipple>,
     /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of
-    /// the sample rate, but 20 Hz where the clock jittered.
+    /// the sample rate, but 20 Hz where the clock jittered and that spoils the acceleration.
     pub cutoff_hz: f64,
     /// Where that is not the defined one: errors with the defined low-pass.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -45,6 +45,7 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
         validate: train.clone(),
         train,
         held_back: false,
+        full_band: false,
         notes: Vec::new(),
     }
 }
