@@ -237,9 +237,10 @@ pub(crate) const VELOCITY_SLOPE: std::ops::Range<f64> = LOAD_SLOPE;
 /// by a fifth, which is where the range of the slope ends.
 pub(crate) const VELOCITY_CORRELATION: f64 = 0.9;
 
-/// Latest velocity that is shifted back, in periods of the low-pass: three rows at 1 kHz. Chosen: a
-/// filter that comes later than that takes away what is to be used.
-pub(crate) const VELOCITY_LATE: f64 = 0.3;
+/// Latest velocity that is shifted back, in rows. A difference of positions comes half a row late,
+/// and one that is logged a cycle early or late a row. What comes later went through a filter, whose
+/// delay is another at each frequency: a shift does not give back what it took.
+pub(crate) const VELOCITY_LATE_ROWS: f64 = 1.0;
 
 /// A measured velocity is used where it leaves at most so much of the error that the derivative of
 /// the position leaves. Chosen: less gain is no reason to leave the position, which is what

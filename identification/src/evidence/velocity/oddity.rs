@@ -3,9 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::evidence::thresholds::{
-    STANDSTILL_SLOPE, VELOCITY_CORRELATION, VELOCITY_LATE, VELOCITY_SLOPE,
+    STANDSTILL_SLOPE, VELOCITY_CORRELATION, VELOCITY_LATE_ROWS, VELOCITY_SLOPE,
 };
-use crate::motion::filter::cutoff_hz;
 use crate::motion::measured_velocity::Relation;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
@@ -37,7 +36,7 @@ pub(crate) fn oddity(dataset: &Dataset, record: &Record, relation: Relation) -> 
             "it is {slope:.4} times the derivative of {position}: {looks}; scale it in [columns] of dataset.toml"
         ));
     }
-    let latest_s = VELOCITY_LATE / cutoff_hz(record.period_s);
+    let latest_s = VELOCITY_LATE_ROWS * record.period_s;
     (late_s.abs() > latest_s).then(|| {
         let when = if late_s > 0.0 { "after" } else { "before" };
         format!(
@@ -152,10 +151,10 @@ mod tests {
     }
 
     #[test]
-    fn three_rows_late_are_shifted_and_more_are_told() {
+    fn a_row_late_is_shifted_and_more_is_told() {
         let late = |late_s: f64| said(AxisKind::Linear, [1.0, late_s, 1.0]);
-        assert_eq!(late(2.9e-3), "");
-        assert!(late(3.1e-3).contains("3.1 ms after position_m, and 3.0 ms is the most"));
+        assert_eq!(late(0.9e-3), "");
+        assert!(late(1.8e-3).contains("1.8 ms after position_m, and 1.0 ms is the most"));
         assert!(late(-4.0e-3).contains("4.0 ms before position_m"));
     }
 
