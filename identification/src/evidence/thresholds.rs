@@ -238,8 +238,8 @@ pub(crate) const VELOCITY_SLOPE: std::ops::Range<f64> = LOAD_SLOPE;
 pub(crate) const VELOCITY_CORRELATION: f64 = 0.9;
 
 /// Latest velocity that is shifted back, in rows. A difference of positions comes half a row late,
-/// and one that is logged a cycle early or late a row. What comes later went through a filter, whose
-/// delay is another at each frequency: a shift does not give back what it took.
+/// and one that is logged a cycle early or late a row. What comes later went through a filter,
+/// whose delay is another at each frequency: a shift does not give back what it took.
 pub(crate) const VELOCITY_LATE_ROWS: f64 = 1.0;
 
 /// A measured velocity is used where it leaves at most so much of the error that the derivative of

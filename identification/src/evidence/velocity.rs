@@ -5,9 +5,9 @@
 //! inertia comes out small. The drive has measured the velocity itself and often better. But its
 //! column may be in another unit, of another axis, filtered and late. So three questions are asked.
 //!
-//! 1. Is it the derivative of the position ([`mod@oddity`])? Its slope and its delay are found. What
-//!    is no velocity of this axis, or comes too late, is not used. What is a little late or a little
-//!    large is put right, because the position is the truth in size and in time.
+//! 1. Is it the derivative of the position ([`mod@oddity`])? Its slope and its delay are found.
+//!    What is no velocity of this axis, or comes too late, is not used. What is a little late or a
+//!    little large is put right, because the position is the truth in size and in time.
 //! 2. Where the clock jitters: does that do harm ([`both_ways`])? The declared model is fitted with
 //!    the low-pass of the errors and with the lower one.
 //! 3. Is it better? The declared model is fitted with either source, and the measured velocity must
