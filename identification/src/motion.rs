@@ -1,6 +1,7 @@
 //! What a record says about motion: derivatives, the one low-pass, which samples move.
 
 pub(crate) mod bodies;
+pub(crate) mod butterworth;
 pub(crate) mod derivatives;
 pub(crate) mod excitation;
 pub(crate) mod filter;

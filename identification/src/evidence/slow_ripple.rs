@@ -129,12 +129,12 @@ impl Output for SlowEffort<'_> {
     type Model = Model;
 
     fn candidates(&self, model: &Model, round: usize) -> Vec<Candidate<Model>> {
-        let (base, design) = (self.bench.cross_validate(model), self.bench.design(model));
+        let (base, fixed) = (self.bench.cross_validate(model), self.bench.gathered(model));
         let parts = (1..=HIGHEST_ORDER).map(|order| self.part(order));
         let is_open = |part: &Part| !model.parts.iter().any(|known| known.is_same(part));
         let open: Vec<Part> = parts.filter(is_open).collect();
         let judged = |part: &Part| {
-            let blocks = self.bench.blocks(&self.bench.extended_once(&design, part));
+            let blocks = self.bench.beside_once(&fixed, part);
             let scored = Scored {
                 effect: part.called(),
                 parameter: part.parameter,

@@ -10,12 +10,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::fitted::{Estimate, Fitted, Term};
+use crate::fit::rows::Rows;
 use crate::fit::span::Span;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
-use crate::motion::shift::shifted;
+use crate::motion::shift::{all_shifted, shifted};
 use crate::record::dataset::Dataset;
 
 /// Columns and target of a linear (or linearised) fit.
@@ -23,6 +24,13 @@ use crate::record::dataset::Dataset;
 pub(crate) struct Design {
     columns: Vec<Vec<f64>>,
     target: Vec<f64>,
+    slope: Option<Vec<f64>>,
+    shift_rows: f64,
+}
+
+/// A model's rows, beside which parts are tried.
+pub(crate) struct Gathered {
+    rows: Rows,
     slope: Option<Vec<f64>>,
     shift_rows: f64,
 }
@@ -104,7 +112,7 @@ impl<'a> Bench<'a> {
         for part in &model.parts {
             let own = self.columns(part);
             let from = columns.len();
-            columns.extend(own.iter().map(|column| shifted(column, shift_rows)));
+            columns.extend(all_shifted(&own, shift_rows));
             add(&mut about, &columns[from..], &part.about);
         }
         let linear = Design {
@@ -121,40 +129,40 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// A design with one more part.
+    /// The rows of a model, for parts that are tried beside it.
     #[must_use]
-    pub(crate) fn extended(&self, design: &Design, part: &Part) -> Design {
-        Self::with_columns(design, &self.columns(part))
+    pub(crate) fn gathered(&self, model: &Model) -> Gathered {
+        let design = self.design(model);
+        Gathered {
+            rows: self.rows(&design),
+            slope: design.slope,
+            shift_rows: design.shift_rows,
+        }
+    }
+
+    /// Blocks of a model with one more part.
+    #[must_use]
+    pub(crate) fn beside(&self, model: &Gathered, part: &Part) -> Blocks {
+        model.with(&self.columns(part))
     }
 
     /// The same for a part that will not be asked for again: nothing is kept.
     #[must_use]
-    pub(crate) fn extended_once(&self, design: &Design, part: &Part) -> Design {
-        Self::with_columns(design, &self.low_passed(part))
+    pub(crate) fn beside_once(&self, model: &Gathered, part: &Part) -> Blocks {
+        model.with(&self.low_passed(part))
     }
 
-    fn with_columns(design: &Design, columns: &[Vec<f64>]) -> Design {
-        let mut design = design.clone();
-        for column in columns {
-            let mut column = shifted(column, design.shift_rows);
-            if let Some(slope) = &design.slope {
-                multiply(&mut column, slope);
-            }
-            design.columns.push(column);
-        }
-        design
+    fn rows(&self, design: &Design) -> Rows {
+        let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
+        let Kinematics {
+            fitted, period_s, ..
+        } = self.motion;
+        Rows::new(&columns, &design.target, fitted, *period_s)
     }
 
     /// Gram matrices of a design over the samples that are fitted.
-    #[must_use]
-    pub(crate) fn blocks(&self, design: &Design) -> Blocks {
-        let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
-        Blocks::new(
-            &columns,
-            &design.target,
-            &self.motion.fitted,
-            self.motion.period_s,
-        )
+    fn blocks(&self, design: &Design) -> Blocks {
+        Blocks::with(&self.rows(design), &[])
     }
 
     /// A model with the coefficients that leave least.
@@ -241,8 +249,7 @@ impl<'a> Bench<'a> {
         let shift_rows = self.shift_rows(fitted.model());
         let mut wanted = vec![0.0; self.motion.len()];
         for term in fitted.terms() {
-            let columns = columns(term.part);
-            let later: Vec<Vec<f64>> = columns.iter().map(|c| shifted(c, shift_rows)).collect();
+            let later = all_shifted(&columns(term.part), shift_rows);
             add(&mut wanted, &later, term.own);
         }
         let saturation = fitted.model().saturation();
@@ -317,6 +324,17 @@ impl<'a> Bench<'a> {
             moving.map(|(value, _)| value * value).sum::<f64>().sqrt()
         };
         100.0 * norm(&residual) / norm(&self.motion.effort_lp).max(f64::MIN_POSITIVE)
+    }
+}
+
+impl Gathered {
+    /// Blocks with more low-passed columns.
+    fn with(&self, columns: &[Vec<f64>]) -> Blocks {
+        let mut more = all_shifted(columns, self.shift_rows);
+        if let Some(slope) = &self.slope {
+            more.iter_mut().for_each(|column| multiply(column, slope));
+        }
+        Blocks::with(&self.rows, &more)
     }
 }
 
@@ -448,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn a_design_with_a_part_more_is_the_design_of_the_longer_model() {
+    fn a_part_tried_beside_a_model_gives_the_fit_of_the_longer_model() {
         let axis = axis(usual);
         let bench = axis.bench();
         let mut short = model(&DECLARED)
@@ -458,14 +476,15 @@ mod tests {
             part.about = vec![about];
         }
         let part = found(Stribeck, 0.01);
-        let long = bench.design(&short.with(part.clone()));
-        let short = bench.design(&short);
-        for extended in [
-            bench.extended(&short, &part),
-            bench.extended_once(&short, &part),
+        let long = bench.cross_validate(&short.with(part.clone()));
+        let short = bench.gathered(&short);
+        for beside in [
+            bench.beside(&short, &part),
+            bench.beside_once(&short, &part),
         ] {
-            assert_eq!(extended.columns, long.columns);
-            assert_eq!(extended.target, long.target);
+            let beside = beside.cross_validate();
+            assert_eq!(beside.coefficients, long.coefficients);
+            assert_eq!(beside.held_out, long.held_out);
         }
     }
 

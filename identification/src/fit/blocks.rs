@@ -5,12 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Length of a block, s.
-const BLOCK_S: f64 = 1.0;
-/// Samples this near to a block's end are not used, s.
-const GUARD_S: f64 = 0.020;
-/// Folds of the cross-validation.
-const FOLDS: usize = 10;
+use crate::fit::rows::{FOLDS, Rows};
+
 /// Ridge, relative to the mean diagonal: keeps equal columns from blowing up.
 const RIDGE: f64 = 1.0e-12;
 
@@ -36,37 +32,21 @@ pub(crate) struct Fit {
 }
 
 impl Blocks {
-    /// Gram matrices over the samples of a mask.
+    /// Blocks of the samples of a mask.
     #[must_use]
     pub(crate) fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
-        let size = columns.len() + 1;
-        // A short record still has one block a fold.
-        let per_block = ((BLOCK_S / period_s).round() as usize)
-            .min(target.len() / FOLDS)
-            .max(1);
-        let guard = ((GUARD_S / period_s).round() as usize).min(per_block / 10);
-        let blocks = target.len().div_ceil(per_block);
-        let mut grams = vec![DMatrix::zeros(size, size); blocks];
-        let mut row = vec![0.0; size];
-        for at in (0..target.len()).filter(|at| mask[*at]) {
-            let within = at % per_block;
-            if within < guard || within + guard >= per_block {
-                continue;
-            }
-            for (value, column) in row.iter_mut().zip(columns) {
-                *value = column[at];
-            }
-            row[size - 1] = target[at];
-            let gram = &mut grams[at / per_block];
-            for i in 0..size {
-                for j in 0..=i {
-                    gram[(i, j)] += row[i] * row[j];
-                }
-            }
-        }
-        grams
-            .iter_mut()
-            .for_each(DMatrix::fill_upper_triangle_with_lower_triangle);
+        let width = columns.len() + 1;
+        Self::of(Rows::new(columns, target, mask, period_s).grams(), width)
+    }
+
+    /// Blocks of rows with more columns beside those that were gathered.
+    #[must_use]
+    pub(crate) fn with(rows: &Rows, more: &[Vec<f64>]) -> Self {
+        Self::of(rows.grams_with(more), rows.width() + more.len())
+    }
+
+    /// Blocks by the Gram matrices of so many columns, the target's last.
+    fn of(mut grams: Vec<DMatrix<f64>>, size: usize) -> Self {
         grams.retain(|gram| gram[(size - 1, size - 1)] > 0.0);
         let total = sum(&grams, size);
         // A column of zeros keeps a scale that can be divided by.

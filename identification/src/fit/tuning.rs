@@ -89,12 +89,12 @@ pub(crate) fn extended(
     setting: &Setting<'_>,
 ) -> Option<Model> {
     let bench = pair.of(effect);
-    let fixed = bench.design(model);
+    let fixed = bench.gathered(model);
     let with = |parameter: f64| model.with(Part::found(effect, parameter));
     let sse = |parameter: f64| {
         if effect.stage() == Stage::Force {
-            let design = bench.extended(&fixed, &Part::found(effect, parameter));
-            bench.blocks(&design).fit().sse
+            let part = Part::found(effect, parameter);
+            bench.beside(&fixed, &part).fit().sse
         } else {
             bench.sse(&settled(bench, with(parameter), effect))
         }

@@ -1,7 +1,6 @@
 //! The one low-pass of the error definitions: Butterworth, 4th order, forwards and backwards.
 
-use butterworth::{Cutoff, Filter};
-
+use crate::motion::butterworth::Butterworth;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
 
@@ -42,22 +41,14 @@ pub(crate) fn fit_cutoff_hz(dataset: &Dataset, record: &Record) -> f64 {
 }
 
 /// Zero-phase low-pass.
-#[derive(Clone)]
-pub(crate) struct LowPass(Filter);
-
-impl std::fmt::Debug for LowPass {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "LowPass({:?})", self.0.cutoff())
-    }
-}
+#[derive(Clone, Debug)]
+pub(crate) struct LowPass(Butterworth);
 
 impl LowPass {
     /// A low-pass for a sample period; `None` where the cut-off is not below half the sample rate.
     #[must_use]
     pub(crate) fn new(period_s: f64, cutoff_hz: f64) -> Option<Self> {
-        Filter::new(4, 1.0 / period_s, Cutoff::LowPass(cutoff_hz))
-            .ok()
-            .map(Self)
+        Butterworth::new(1.0 / period_s, cutoff_hz).map(Self)
     }
 
     /// The filtered signal, of the same length.
@@ -66,9 +57,7 @@ impl LowPass {
     /// records.
     #[must_use]
     pub(crate) fn apply(&self, signal: &[f64]) -> Vec<f64> {
-        // The crate asks for a vector.
-        let signal = signal.to_vec();
-        self.0.bidirectional(&signal).unwrap_or(signal)
+        self.0.both_ways(signal)
     }
 }
 

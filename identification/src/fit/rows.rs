@@ -1,0 +1,173 @@
+//! The rows of a record that are fitted, gathered block by block, and their Gram matrices.
+//!
+//! A search tries hundreds of columns beside the same others. Their products with each other are
+//! the same every time, so they are summed once; a column that is tried only needs those with
+//! itself. Every entry of a Gram matrix is summed over the rows in their order, with or without
+//! company: it does not depend on what was gathered and what is tried.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+/// Length of a block, s.
+const BLOCK_S: f64 = 1.0;
+/// Samples this near to a block's end are not used, s.
+const GUARD_S: f64 = 0.020;
+/// Folds of the cross-validation: a short record still has one block a fold.
+pub(crate) const FOLDS: usize = 10;
+
+/// The rows of some columns and a target.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows {
+    /// Number of columns, the target included.
+    width: usize,
+    /// `[columns, target]` of the gathered rows, one row after the other.
+    values: Vec<f64>,
+    /// Where the gathered rows stand in the record.
+    places: Vec<usize>,
+    /// The gathered rows of each block that has any.
+    blocks: Vec<Range<usize>>,
+    /// Gram matrices of `[columns, target]`, one per block.
+    grams: Vec<DMatrix<f64>>,
+}
+
+impl Rows {
+    /// The samples of a mask, without those near the ends of a block.
+    #[must_use]
+    pub(crate) fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
+        let (places, blocks) = places(mask, period_s);
+        let all: Vec<&[f64]> = columns.iter().copied().chain([target]).collect();
+        let (width, values) = (all.len(), gathered(&all, &places));
+        let gram = |block: &Range<usize>| {
+            let rows = &values[block.start * width..block.end * width];
+            products(rows, width, rows, width)
+        };
+        Self {
+            grams: blocks.iter().map(gram).collect(),
+            width,
+            values,
+            places,
+            blocks,
+        }
+    }
+
+    /// Number of columns, the target included.
+    #[must_use]
+    pub(crate) const fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Gram matrices of `[columns, target]`, one per block.
+    #[must_use]
+    pub(crate) fn grams(&self) -> Vec<DMatrix<f64>> {
+        self.grams.clone()
+    }
+
+    /// Gram matrices of `[columns, more columns, target]`, one per block.
+    #[must_use]
+    pub(crate) fn grams_with(&self, more: &[Vec<f64>]) -> Vec<DMatrix<f64>> {
+        let more: Vec<&[f64]> = more.iter().map(Vec::as_slice).collect();
+        let (width, values) = (more.len(), gathered(&more, &self.places));
+        let pairs = self.blocks.iter().zip(&self.grams);
+        pairs
+            .map(|(block, gram)| {
+                let known = &self.values[block.start * self.width..block.end * self.width];
+                let own = &values[block.start * width..block.end * width];
+                let beside = products(own, width, known, self.width);
+                let among = products(own, width, own, width);
+                inserted(gram, &beside, &among)
+            })
+            .collect()
+    }
+}
+
+/// The rows that are fitted, and which of them are those of each block.
+fn places(mask: &[bool], period_s: f64) -> (Vec<usize>, Vec<Range<usize>>) {
+    let per_block = ((BLOCK_S / period_s).round() as usize)
+        .min(mask.len() / FOLDS)
+        .max(1);
+    let guard = ((GUARD_S / period_s).round() as usize).min(per_block / 10);
+    let (mut places, mut blocks) = (Vec::new(), Vec::new());
+    for (block, inside) in mask.chunks(per_block).enumerate() {
+        let from = places.len();
+        let within = guard..inside.len().min(per_block - guard);
+        let fitted = within.filter(|row| inside[*row]);
+        places.extend(fitted.map(|row| block * per_block + row));
+        blocks.extend((places.len() > from).then_some(from..places.len()));
+    }
+    (places, blocks)
+}
+
+/// The values of columns at some places, one row after the other.
+fn gathered(columns: &[&[f64]], places: &[usize]) -> Vec<f64> {
+    let mut values = vec![0.0; columns.len() * places.len()];
+    for (at, column) in columns.iter().enumerate() {
+        let into = values.iter_mut().skip(at).step_by(columns.len());
+        into.zip(places)
+            .for_each(|(value, place)| *value = column[*place]);
+    }
+    values
+}
+
+/// Sums over the rows of the product of each column of one table with each of another.
+fn products(one: &[f64], width: usize, other: &[f64], other_width: usize) -> DMatrix<f64> {
+    let mut sums = vec![0.0; width * other_width];
+    if width > 0 {
+        for (row, other) in one.chunks_exact(width).zip(other.chunks_exact(other_width)) {
+            for (value, sums) in row.iter().zip(sums.chunks_exact_mut(other_width)) {
+                let pairs = sums.iter_mut().zip(other);
+                pairs.for_each(|(sum, other)| *sum += value * other);
+            }
+        }
+    }
+    DMatrix::from_row_slice(width, other_width, &sums)
+}
+
+/// A Gram matrix with more columns before its last one, by their products with what is there and
+/// with each other.
+fn inserted(gram: &DMatrix<f64>, beside: &DMatrix<f64>, among: &DMatrix<f64>) -> DMatrix<f64> {
+    let (last, more) = (gram.nrows() - 1, among.nrows());
+    // Where a column stood before, or which of the new ones it is.
+    let before = |place: usize| match place {
+        _ if place < last => Ok(place),
+        _ if place < last + more => Err(place - last),
+        _ => Ok(last),
+    };
+    DMatrix::from_fn(last + 1 + more, last + 1 + more, |i, j| {
+        match (before(i), before(j)) {
+            (Ok(i), Ok(j)) => gram[(i, j)],
+            (Err(i), Ok(j)) | (Ok(j), Err(i)) => beside[(i, j)],
+            (Err(i), Err(j)) => among[(i, j)],
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_has_the_same_products_whether_it_was_gathered_or_is_tried() {
+        let wave = |k: f64| -> Vec<f64> { (0..3000).map(|i| (k * f64::from(i)).sin()).collect() };
+        let [a, b, c, target] = [0.011, 0.023, 0.7, 1.3].map(wave);
+        let mask: Vec<bool> = (0..3000).map(|row| row % 7 != 0).collect();
+        let all = Rows::new(&[&a, &b, &c], &target, &mask, 1.0e-3);
+        let some = Rows::new(&[&a], &target, &mask, 1.0e-3);
+        assert_eq!(some.grams_with(&[b, c]), all.grams());
+        assert_eq!(some.grams_with(&[]), some.grams());
+        // By hand: the first block without 20 rows at each end.
+        let rows = (20..280).filter(|row| row % 7 != 0);
+        let sum: f64 = rows.map(|row| a[row] * target[row]).sum();
+        assert_eq!(all.grams().len(), 10);
+        assert!((all.grams()[0][(0, 3)] - sum).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn a_block_without_a_fitted_row_is_no_block() {
+        let (ones, mut mask) = (vec![1.0; 1000], vec![true; 1000]);
+        mask[300..400].fill(false);
+        let rows = Rows::new(&[&ones], &ones, &mask, 1.0e-3);
+        assert_eq!(rows.grams().len(), 9);
+        assert!(Rows::new(&[], &[], &[], 1.0e-3).grams().is_empty());
+    }
+}
