@@ -73,7 +73,10 @@ mod tests {
         }
         for by in [0.0, 0.25, -2.5, 100.0] {
             let one = shifted(&column, by);
-            assert_eq!(all_shifted(&[column.clone(), column.clone()], by), [&one[..], &one]);
+            assert_eq!(
+                all_shifted(&[column.clone(), column.clone()], by),
+                [&one[..], &one]
+            );
         }
         assert_eq!(all_shifted(&[], 1.0), Vec::<Vec<f64>>::new());
         assert_eq!(shifted(&column, 0.0), column);

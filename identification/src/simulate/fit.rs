@@ -5,6 +5,8 @@
 //! The Jacobian is numerical: forward differences, central ones where the cost is jagged.
 //! Intervals: a jackknife over blocks of the record, one Gauss–Newton step each.
 
+use std::sync::OnceLock;
+
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -49,6 +51,8 @@ struct Problem<'a> {
     scale: f64,
     /// Parameters as multiples of their scales.
     at: DVector<f64>,
+    /// The errors there, once they were asked for.
+    left: OnceLock<DVector<f64>>,
 }
 
 impl<'a> Problem<'a> {
@@ -62,6 +66,7 @@ impl<'a> Problem<'a> {
             at: DVector::from_iterator(parameters.len(), at),
             parameters,
             scale,
+            left: OnceLock::new(),
         }
     }
 
@@ -81,18 +86,23 @@ impl<'a> Problem<'a> {
         DVector::from_iterator(self.rows.len(), self.rows.iter().map(error))
     }
 
+    /// The errors where the parameters stand.
+    fn left(&self) -> &DVector<f64> {
+        self.left.get_or_init(|| self.residual_at(&self.at))
+    }
+
     /// Forward differences, central ones where the cost is jagged; parameters side by side.
-    fn jacobian_at(&self, at: &DVector<f64>) -> DMatrix<f64> {
-        let here = self.residual_at(at);
+    fn slopes(&self) -> DMatrix<f64> {
+        let here = self.left();
         let places: Vec<usize> = (0..self.parameters.len()).collect();
-        let columns = side_by_side(&places, |place| self.slope_at(at, *place, &here));
+        let columns = side_by_side(&places, |place| self.slope(*place, here));
         DMatrix::from_columns(&columns)
     }
 
-    fn slope_at(&self, at: &DVector<f64>, place: usize, here: &DVector<f64>) -> DVector<f64> {
+    fn slope(&self, place: usize, here: &DVector<f64>) -> DVector<f64> {
         let parameter = &self.parameters[place];
         let moved = |step: f64| {
-            let mut at = at.clone();
+            let mut at = self.at.clone();
             at[place] += step;
             self.residual_at(&at)
         };
@@ -112,6 +122,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn set_params(&mut self, at: &DVector<f64>) {
         self.at.copy_from(at);
+        self.left.take();
     }
 
     fn params(&self) -> DVector<f64> {
@@ -119,11 +130,11 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.residual_at(&self.at))
+        Some(self.left().clone())
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        Some(self.jacobian_at(&self.at))
+        Some(self.slopes())
     }
 }
 
@@ -157,8 +168,7 @@ pub(crate) fn fit(
 pub(crate) fn half_widths(model: &Simulated, drive: &Drive, record: &Record) -> Vec<f64> {
     let rows = record.settled(SETTLING_ROWS).step_by(STRIDE).collect();
     let problem = Problem::new(model, Course { drive, record }, rows, 1.0);
-    let residual = problem.residual_at(&problem.at);
-    let jacobian = problem.jacobian_at(&problem.at);
+    let (residual, jacobian) = (problem.left(), problem.slopes());
     let columns: Vec<Vec<f64>> = jacobian
         .column_iter()
         .map(|column| column.iter().copied().collect())
@@ -309,7 +319,7 @@ mod tests {
                 record: &dataset.train,
             };
             let problem = Problem::new(&truth, course, rows.clone(), 1.0);
-            problem.jacobian_at(&problem.at).column(place).into_owned()
+            problem.slopes().column(place).into_owned()
         };
         dataset.train.position = simulate(&truth, &drive, &dataset.train).motor;
         for (at, row) in rows.into_iter().enumerate() {
@@ -362,7 +372,7 @@ mod tests {
 
     /// Rows, columns and steps of the Jacobian against central differences of a step.
     fn check_jacobian(problem: &Problem<'_>, step: impl Fn(usize) -> f64, within: f64) {
-        let jacobian = problem.jacobian_at(&problem.at);
+        let jacobian = problem.slopes();
         for place in 0..problem.parameters.len() {
             let moved = |step: f64| {
                 let mut at = problem.at.clone();

@@ -12,6 +12,14 @@ pub(crate) struct HeldEfforts {
     delay_s: f64,
 }
 
+/// What a sub-step feels: the efforts of two rows, so many rows back, and the share of the first.
+/// It is the same in every row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Felt {
+    back: [usize; 2],
+    share: f64,
+}
+
 impl HeldEfforts {
     /// As if the first effort had been there for ever.
     #[must_use]
@@ -26,25 +34,35 @@ impl HeldEfforts {
 
     /// The effort of a new row.
     pub(crate) fn push(&mut self, effort: f64) {
-        self.newest_first.rotate_right(1);
+        let oldest = self.newest_first.len() - 1;
+        self.newest_first.copy_within(..oldest, 1);
         self.newest_first[0] = effort;
     }
 
-    /// Mean of what acts over a sub-step of less than a row, given by its middle after the newest
-    /// row and its length, s.
+    /// What is felt over a sub-step of less than a row, given by its middle after the newest row
+    /// and its length, s.
     #[must_use]
-    pub(crate) fn mean(&self, middle_s: f64, length_s: f64) -> f64 {
+    pub(crate) fn felt(&self, middle_s: f64, length_s: f64) -> Felt {
         let from = (middle_s - 0.5 * length_s - self.delay_s) / self.period_s;
         let length = length_s / self.period_s;
         let edge = from.floor() + 1.0;
-        let before = (edge - from).min(length) / length;
-        before * self.at(from) + (1.0 - before) * self.at(edge)
+        Felt {
+            back: [from, edge].map(|rows| self.back(rows)),
+            share: (edge - from).min(length) / length,
+        }
     }
 
-    /// What is held a number of rows after the newest one (before it: negative).
-    fn at(&self, rows: f64) -> f64 {
+    /// Mean of what is felt.
+    #[must_use]
+    pub(crate) fn mean(&self, felt: Felt) -> f64 {
+        let [before, after] = felt.back.map(|back| self.newest_first[back]);
+        felt.share * before + (1.0 - felt.share) * after
+    }
+
+    /// Where that stands which is held a number of rows after the newest one (before it: negative).
+    fn back(&self, rows: f64) -> usize {
         let back = (-rows.floor()).max(0.0) as usize;
-        self.newest_first[back.min(self.newest_first.len() - 1)]
+        back.min(self.newest_first.len() - 1)
     }
 }
 
@@ -61,18 +79,22 @@ mod tests {
         held
     }
 
+    fn mean(held: &HeldEfforts, middle_s: f64, length_s: f64) -> f64 {
+        held.mean(held.felt(middle_s, length_s))
+    }
+
     #[test]
     fn without_a_delay_the_newest_effort_acts_over_the_whole_row() {
         for middle_s in [0.125, 0.5, 0.875] {
-            assert_eq!(held(0.0).mean(middle_s, 0.25), 40.0);
+            assert_eq!(mean(&held(0.0), middle_s, 0.25), 40.0);
         }
     }
 
     #[test]
     fn a_delay_of_whole_rows_gives_the_effort_of_an_earlier_row() {
         for (delay_s, wanted) in [(1.0, 20.0), (2.0, 10.0), (3.0, 0.0)] {
-            assert_eq!(held(delay_s).mean(0.125, 0.25), wanted, "{delay_s} s");
-            assert_eq!(held(delay_s).mean(0.875, 0.25), wanted, "{delay_s} s");
+            assert_eq!(mean(&held(delay_s), 0.125, 0.25), wanted, "{delay_s} s");
+            assert_eq!(mean(&held(delay_s), 0.875, 0.25), wanted, "{delay_s} s");
         }
     }
 
@@ -86,7 +108,7 @@ mod tests {
             (0.5, 20.0),
             (1.3125, 0.25 * 10.0 + 0.75 * 20.0),
         ] {
-            let mean = held(delay_s).mean(0.375, 0.25);
+            let mean = mean(&held(delay_s), 0.375, 0.25);
             assert!((mean - wanted).abs() < 1.0e-12, "{delay_s} s: {mean}");
         }
     }
@@ -95,7 +117,7 @@ mod tests {
     fn the_mean_over_a_row_is_that_of_the_sub_steps() {
         let held = held(0.4);
         let sum: f64 = (0..4)
-            .map(|step| held.mean(0.25 * (f64::from(step) + 0.5), 0.25))
+            .map(|step| mean(&held, 0.25 * (f64::from(step) + 0.5), 0.25))
             .sum();
         assert!(
             (0.25 * sum - (0.4 * 20.0 + 0.6 * 40.0)).abs() < 1.0e-12,
@@ -107,10 +129,10 @@ mod tests {
     fn before_the_record_the_first_effort_was_held() {
         let mut held = HeldEfforts::new(7.0, 1.0, 1.5);
         held.push(8.0);
-        assert!((held.mean(0.25, 0.5) - 7.0).abs() < 1.0e-12);
-        assert!((held.mean(0.75, 0.5) - 7.0).abs() < 1.0e-12);
+        assert!((mean(&held, 0.25, 0.5) - 7.0).abs() < 1.0e-12);
+        assert!((mean(&held, 0.75, 0.5) - 7.0).abs() < 1.0e-12);
         assert_eq!(
-            [-99.0, -0.5, 0.5].map(|rows| held.at(rows)),
+            [-99.0, -0.5, 0.5].map(|rows| held.newest_first[held.back(rows)]),
             [7.0, 7.0, 8.0]
         );
         // As many rows are kept as a delay needs.

@@ -13,7 +13,7 @@ use axis_model::EffectName;
 
 use crate::fit::fitted::Fitted;
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Action, Instant, Stage};
+use crate::model::effects::{Action, Effect, Instant, Stage};
 use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
@@ -99,48 +99,99 @@ impl Simulated {
         })
     }
 
+    /// Its forces, ready to act.
+    #[must_use]
+    pub(crate) fn at_work(&self) -> Forces<'_> {
+        let of = |follows_load: bool| {
+            let is_one = move |force: &&Force| force.part.effect.follows_load() == follows_load;
+            let forces = self.forces.iter().filter(is_one);
+            forces.map(AtWork::of).collect()
+        };
+        Forces {
+            model: self,
+            by_motion: of(false),
+            by_load: of(true),
+        }
+    }
+}
+
+/// A force at work.
+struct AtWork<'a> {
+    effect: &'static dyn Effect,
+    parameter: f64,
+    own: &'a [f64],
+    on_motor: bool,
+}
+
+impl<'a> AtWork<'a> {
+    fn of(force: &'a Force) -> Self {
+        let Force { part, own } = force;
+        Self {
+            effect: part.effect,
+            parameter: part.parameter,
+            own,
+            on_motor: part.effect.acts_on_motor(),
+        }
+    }
+}
+
+/// The forces of a model, in the order in which they are known at a moment: those that follow from
+/// the motion, then those that follow the load.
+pub(crate) struct Forces<'a> {
+    model: &'a Simulated,
+    by_motion: Vec<AtWork<'a>>,
+    by_load: Vec<AtWork<'a>>,
+}
+
+impl Forces<'_> {
+    /// What they act on.
+    #[must_use]
+    pub(crate) const fn mechanics(&self) -> &Mechanics {
+        &self.model.mechanics
+    }
+
     fn instant(&self, now: Moment) -> Instant {
+        let (middle, half) = self.model.travel;
         Instant {
             position: now.position,
-            scaled: (now.position - self.travel.0) / self.travel.1,
+            scaled: (now.position - middle) / half,
             velocity: now.velocity,
             time_s: now.time_s,
-            time_share: now.time_s / self.duration_s,
+            time_share: now.time_s / self.model.duration_s,
             ..Instant::default()
         }
     }
 
-    /// What acts at a moment: first what follows from the motion, then what follows from that.
+    /// What acts at a moment.
     #[must_use]
     pub(crate) fn acting(&self, now: Moment) -> Acting {
         let instant = self.instant(now);
-        let start = Acting {
-            motor: self.saturation.delivered(now.commanded),
+        let mut acting = Acting {
+            motor: self.model.saturation.delivered(now.commanded),
             ..Acting::default()
         };
-        let by_motion = self.with_forces(start, &instant, false);
+        acting.add_all(&self.by_motion, &instant);
+        if self.by_load.is_empty() {
+            return acting;
+        }
         let loaded = Instant {
-            effort: by_motion.motor,
-            resistance: by_motion.resistance(now.velocity),
+            effort: acting.motor,
+            resistance: acting.resistance(now.velocity),
             ..instant
         };
-        self.with_forces(by_motion, &loaded, true)
-    }
-
-    /// What acts besides, by the forces that follow the load or by those that do not.
-    fn with_forces(&self, start: Acting, at: &Instant, follows_load: bool) -> Acting {
-        let follows = |force: &&Force| force.part.effect.follows_load() == follows_load;
-        let forces = self.forces.iter().filter(follows);
-        forces.fold(start, |mut acting, force| {
-            let effect = force.part.effect;
-            let action = effect.action(at, force.part.parameter, &force.own);
-            acting.add(action, effect.acts_on_motor());
-            acting
-        })
+        acting.add_all(&self.by_load, &loaded);
+        acting
     }
 }
 
 impl Acting {
+    fn add_all(&mut self, forces: &[AtWork<'_>], at: &Instant) {
+        for force in forces {
+            let action = force.effect.action(at, force.parameter, force.own);
+            self.add(action, force.on_motor);
+        }
+    }
+
     fn add(&mut self, action: Action, on_motor: bool) {
         self.level += action.level;
         self.mass += action.mass;
@@ -207,7 +258,7 @@ mod tests {
             commanded: 60.0,
             ..Moment::default()
         };
-        let acting = model(&parts).unwrap().acting(now);
+        let acting = model(&parts).unwrap().at_work().acting(now);
         let wanted = Acting {
             motor: 60.0,
             load: 23.0,
@@ -239,7 +290,7 @@ mod tests {
             commanded: 60.0,
             ..Moment::default()
         };
-        let acting = model(&parts).unwrap().acting(now);
+        let acting = model(&parts).unwrap().at_work().acting(now);
         assert!((acting.motor - 53.0).abs() < 1.0e-12 && acting.load == 0.0);
     }
 
@@ -251,7 +302,7 @@ mod tests {
                 commanded: sign * 100.0,
                 ..Moment::default()
             };
-            assert_eq!(simulated.acting(now).motor, sign * 50.0);
+            assert_eq!(simulated.at_work().acting(now).motor, sign * 50.0);
         }
     }
 
@@ -262,7 +313,7 @@ mod tests {
             position: 4.0,
             ..Moment::default()
         };
-        let instant = model(&[MASS]).unwrap().instant(now);
+        let instant = model(&[MASS]).unwrap().at_work().instant(now);
         assert_eq!((instant.scaled, instant.time_share), (0.5, 0.25));
         assert_eq!((instant.position, instant.time_s), (4.0, 2.5));
         // Friction by place 6 N a half travel, friction that falls to 1/e of 8 N in 2.5 s.
@@ -271,7 +322,7 @@ mod tests {
             (PositionDependentFriction, 1.0, &[6.0]),
             (FrictionDrift, 2.5, &[8.0, 0.0]),
         ];
-        let level = model(&parts).unwrap().acting(now).level;
+        let level = model(&parts).unwrap().at_work().acting(now).level;
         assert!(
             (level - (3.0 + 8.0 * (-1.0_f64).exp())).abs() < 1.0e-12,
             "{level}"

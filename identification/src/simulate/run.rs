@@ -9,8 +9,8 @@
 use crate::record::samples::Record;
 use crate::simulate::axis::Axis;
 use crate::simulate::drive::{Drive, velocity};
-use crate::simulate::hold::HeldEfforts;
-use crate::simulate::model::{Moment, Simulated};
+use crate::simulate::hold::{Felt, HeldEfforts};
+use crate::simulate::model::{Forces, Moment, Simulated};
 
 /// Longest sub-step, s: a velocity loop of 1000 rad/s still has four sub-steps a radian.
 const SUB_STEP_S: f64 = 2.5e-4;
@@ -25,24 +25,25 @@ pub(crate) struct Run {
 }
 
 /// The sub-steps of a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct SubSteps {
-    count: f64,
     length_s: f64,
+    /// The middle of each after its row, s, and the efforts that it feels.
+    list: Vec<(f64, Felt)>,
 }
 
 impl SubSteps {
-    fn of(period_s: f64) -> Self {
+    fn of(period_s: f64, efforts: &HeldEfforts) -> Self {
         let count = (period_s / SUB_STEP_S).ceil().max(1.0);
+        let length_s = period_s / count;
+        let step = |step: usize| {
+            let middle_s = (step as f64 + 0.5) * length_s;
+            (middle_s, efforts.felt(middle_s, length_s))
+        };
         Self {
-            count,
-            length_s: period_s / count,
+            length_s,
+            list: (0..count as usize).map(step).collect(),
         }
-    }
-
-    /// The middles of the sub-steps after their row, s.
-    fn middles(self) -> impl Iterator<Item = f64> {
-        (0..self.count as usize).map(move |step| (step as f64 + 0.5) * self.length_s)
     }
 }
 
@@ -64,11 +65,12 @@ fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     let mut axis = Axis::at(first(&record.position), velocity(record, 0));
     let mut driving = drive.along(record, model.mechanics.mass, model.logged_late_s);
     let mut efforts = HeldEfforts::new(first(&record.effort), record.period_s, model.delay_s);
-    let steps = SubSteps::of(record.period_s);
+    let steps = SubSteps::of(record.period_s, &efforts);
+    let forces = model.at_work();
     let row = |row: usize| {
         let at = axis.motor.x;
         efforts.push(driving.effort(row, &axis));
-        axis = over_row(axis, model, &efforts, (record.time_s[row], steps));
+        axis = over_row(axis, &forces, &efforts, (record.time_s[row], &steps));
         at
     };
     Run {
@@ -79,18 +81,18 @@ fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
 /// The axis a row later.
 fn over_row(
     mut axis: Axis,
-    model: &Simulated,
+    forces: &Forces<'_>,
     efforts: &HeldEfforts,
-    (time_s, steps): (f64, SubSteps),
+    (time_s, steps): (f64, &SubSteps),
 ) -> Axis {
     let h = steps.length_s;
-    for since in steps.middles() {
+    for (since_s, felt) in &steps.list {
         let now = Moment {
-            time_s: time_s + since,
-            commanded: efforts.mean(since, h),
+            time_s: time_s + since_s,
+            commanded: efforts.mean(*felt),
             ..halfway(&axis, h)
         };
-        axis = axis.after(&model.mechanics, model.acting(now), h);
+        axis = axis.after(forces.mechanics(), forces.acting(now), h);
     }
     axis
 }
@@ -148,12 +150,13 @@ mod tests {
 
     #[test]
     fn a_row_is_cut_into_equal_sub_steps_of_a_quarter_millisecond_at_most() {
-        for (period_s, count) in [(1.0e-4, 1.0), (2.5e-4, 1.0), (2.6e-4, 2.0), (1.0e-3, 4.0)] {
-            let steps = SubSteps::of(period_s);
-            assert_eq!(steps.count, count, "{period_s} s");
-            assert!((count * steps.length_s - period_s).abs() < 1.0e-18);
+        for (period_s, count) in [(1.0e-4, 1), (2.5e-4, 1), (2.6e-4, 2), (1.0e-3, 4)] {
+            let steps = SubSteps::of(period_s, &HeldEfforts::new(0.0, period_s, 0.0));
+            assert_eq!(steps.list.len(), count, "{period_s} s");
+            assert!((count as f64 * steps.length_s - period_s).abs() < 1.0e-18);
         }
-        let middles: Vec<f64> = SubSteps::of(5.0e-4).middles().collect();
+        let steps = SubSteps::of(5.0e-4, &HeldEfforts::new(0.0, 5.0e-4, 0.0));
+        let middles: Vec<f64> = steps.list.iter().map(|(middle_s, _)| *middle_s).collect();
         assert_eq!(middles, [1.25e-4, 3.75e-4]);
     }
 
@@ -176,8 +179,13 @@ mod tests {
         let shape = crate::simulate::axis::Shape::default();
         let model = Simulated::new(&dataset, 1.0e-3, &made::fitted(parts), shape).unwrap();
         let efforts = HeldEfforts::new(8.0, 1.0e-3, 0.0);
-        let from = (0.0, SubSteps::of(1.0e-3));
-        let axis = over_row(Axis::at(0.0, 1.0), &model, &efforts, from);
+        let steps = SubSteps::of(1.0e-3, &efforts);
+        let axis = over_row(
+            Axis::at(0.0, 1.0),
+            &model.at_work(),
+            &efforts,
+            (0.0, &steps),
+        );
         // 8 N on 2 kg over 1 ms, from 1 m/s.
         assert!((axis.motor.v - 1.004).abs() < 1.0e-12, "{axis:?}");
         assert!((axis.motor.x - 1.002e-3).abs() < 1.0e-15, "{axis:?}");
