@@ -332,7 +332,9 @@ impl Gathered {
     fn with(&self, columns: &[Vec<f64>]) -> Blocks {
         let mut more = all_shifted(columns, self.shift_rows);
         if let Some(slope) = &self.slope {
-            more.iter_mut().for_each(|column| multiply(column, slope));
+            for column in &mut more {
+                multiply(column, slope);
+            }
         }
         Blocks::with(&self.rows, &more)
     }

@@ -111,7 +111,8 @@ fn polynomial(roots: [Complex<f64>; ORDER]) -> [f64; ORDER + 1] {
     coefficients[0] = Complex::ONE;
     for root in roots {
         for place in (1..=ORDER).rev() {
-            coefficients[place] = coefficients[place] - root * coefficients[place - 1];
+            let before = coefficients[place - 1];
+            coefficients[place] -= root * before;
         }
     }
     coefficients.map(|coefficient| coefficient.re)

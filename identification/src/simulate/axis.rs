@@ -90,6 +90,7 @@ struct Stretch<'a> {
 
 impl Mechanics {
     /// A body on which the friction law of the axis acts.
+    #[inline]
     fn carry(&self, bend: Bend, body: Body, push: &Push) -> (Body, Bend) {
         match self.shape.bristle {
             Some(bristle) => bristle.carry(bend, body, push),
@@ -98,6 +99,7 @@ impl Mechanics {
     }
 
     /// What acts on motor and load as one body.
+    #[inline]
     fn on_both(&self, acting: Acting, step_s: f64) -> Push {
         Push {
             force: acting.motor - acting.load,
@@ -122,6 +124,7 @@ impl Axis {
     }
 
     /// The axis after a sub-step.
+    #[inline]
     #[must_use]
     pub(crate) fn after(&self, mechanics: &Mechanics, acting: Acting, step_s: f64) -> Self {
         let Some(gap) = mechanics.shape.gap else {
@@ -138,6 +141,7 @@ impl Axis {
     }
 
     /// One mass.
+    #[inline]
     fn as_one(&self, mechanics: &Mechanics, acting: Acting, step_s: f64) -> Self {
         let push = mechanics.on_both(acting, step_s);
         let (body, bend) = mechanics.carry(self.bend, self.motor, &push);
@@ -150,6 +154,7 @@ impl Axis {
     }
 
     /// Both as one body; `None` where the contact would have to pull.
+    #[inline]
     fn together(&self, side: Side, stretch: &Stretch<'_>) -> Option<Self> {
         let Stretch {
             mechanics,
@@ -173,6 +178,7 @@ impl Axis {
     }
 
     /// Each alone, until they meet.
+    #[inline]
     fn apart(&self, stretch: &Stretch<'_>) -> Self {
         let motor = self.motor.rigid(&stretch.on_motor());
         let (load, bend) = stretch
@@ -189,6 +195,7 @@ impl Axis {
 
     /// The axis where motor and load have run into each other: pushed apart to the gap's width,
     /// about the common centre of mass, and after the impact.
+    #[inline]
     fn met(mut self, stretch: &Stretch<'_>) -> Self {
         let (lag, half) = (self.motor.x - self.load.x, 0.5 * stretch.gap.width);
         if lag.abs() < half {
@@ -208,6 +215,7 @@ impl Axis {
     }
 
     /// The impact: momentum is kept, the bodies part by Newton's law or stay in contact.
+    #[inline]
     fn hit(&mut self, side: Side, closing: f64, stretch: &Stretch<'_>) {
         let (m1, m2) = (stretch.m1(), stretch.m2());
         let mass = m1 + m2;
@@ -223,20 +231,24 @@ impl Axis {
 }
 
 impl Stretch<'_> {
+    #[inline]
     fn m1(&self) -> f64 {
         (1.0 - self.gap.load_share) * self.mechanics.mass
     }
 
+    #[inline]
     fn m2(&self) -> f64 {
         let own = self.gap.load_share * self.mechanics.mass;
         (own + self.acting.mass).max(LEAST_SHARE * own)
     }
 
     /// Friction level on the motor side.
+    #[inline]
     fn motor_level(&self) -> f64 {
         self.gap.motor_friction * self.acting.level
     }
 
+    #[inline]
     fn on_motor(&self) -> Push {
         Push {
             force: self.acting.motor,
@@ -246,6 +258,7 @@ impl Stretch<'_> {
         }
     }
 
+    #[inline]
     fn on_load(&self) -> Push {
         Push {
             force: -self.acting.load,
@@ -257,6 +270,7 @@ impl Stretch<'_> {
 
     /// Force through the contact where both go from one motion to another as one body: what the
     /// load needs; at rest, what the motor's friction leaves of the effort.
+    #[inline]
     fn transmitted(&self, before: Body, after: Body) -> f64 {
         let Acting {
             motor, load, level, ..

@@ -48,6 +48,7 @@ pub(crate) struct Bristle {
 pub(crate) type Bend = f64;
 
 /// Dahl's state after a step of the position: `dz/dx = (sign dx − z)/δ`, solved exactly.
+#[inline]
 #[must_use]
 pub(crate) fn bend_after(bend: Bend, step: f64, deflection: f64) -> Bend {
     if step == 0.0 {
@@ -59,6 +60,7 @@ pub(crate) fn bend_after(bend: Bend, step: f64, deflection: f64) -> Bend {
 
 impl Push {
     /// Velocity after the sub-step, were there no friction.
+    #[inline]
     fn free(&self, body: Body) -> f64 {
         body.v + self.step_s * self.force / self.mass
     }
@@ -66,6 +68,7 @@ impl Push {
 
 impl Body {
     /// The body where its velocity goes to `v` along a sub-step.
+    #[inline]
     fn moved(self, v: f64, step_s: f64) -> Self {
         Self {
             x: self.x + 0.5 * step_s * (self.v + v),
@@ -74,6 +77,7 @@ impl Body {
     }
 
     /// The body after a push under rigid friction.
+    #[inline]
     #[must_use]
     pub(crate) fn rigid(self, push: &Push) -> Self {
         let free = push.free(self);
@@ -88,6 +92,7 @@ impl Body {
 
 impl Bristle {
     /// The body after a push, and how far the bristle is bent then.
+    #[inline]
     #[must_use]
     pub(crate) fn carry(&self, bend: Bend, body: Body, push: &Push) -> (Body, Bend) {
         let Push {

@@ -33,6 +33,7 @@ impl HeldEfforts {
     }
 
     /// The effort of a new row.
+    #[inline]
     pub(crate) fn push(&mut self, effort: f64) {
         let oldest = self.newest_first.len() - 1;
         self.newest_first.copy_within(..oldest, 1);
@@ -53,6 +54,7 @@ impl HeldEfforts {
     }
 
     /// Mean of what is felt.
+    #[inline]
     #[must_use]
     pub(crate) fn mean(&self, felt: Felt) -> f64 {
         let [before, after] = felt.back.map(|back| self.newest_first[back]);

@@ -145,11 +145,13 @@ pub(crate) struct Forces<'a> {
 
 impl Forces<'_> {
     /// What they act on.
+    #[inline]
     #[must_use]
     pub(crate) const fn mechanics(&self) -> &Mechanics {
         &self.model.mechanics
     }
 
+    #[inline]
     fn instant(&self, now: Moment) -> Instant {
         let (middle, half) = self.model.travel;
         Instant {
@@ -163,6 +165,7 @@ impl Forces<'_> {
     }
 
     /// What acts at a moment.
+    #[inline]
     #[must_use]
     pub(crate) fn acting(&self, now: Moment) -> Acting {
         let instant = self.instant(now);
@@ -185,6 +188,7 @@ impl Forces<'_> {
 }
 
 impl Acting {
+    #[inline]
     fn add_all(&mut self, forces: &[AtWork<'_>], at: &Instant) {
         for force in forces {
             let action = force.effect.action(at, force.parameter, force.own);
@@ -192,6 +196,7 @@ impl Acting {
         }
     }
 
+    #[inline]
     fn add(&mut self, action: Action, on_motor: bool) {
         self.level += action.level;
         self.mass += action.mass;
@@ -203,6 +208,7 @@ impl Acting {
     }
 
     /// Force against the motor at a velocity, the inertia apart; at rest it holds the effort.
+    #[inline]
     fn resistance(&self, velocity: f64) -> f64 {
         if velocity == 0.0 {
             self.motor
