@@ -27,18 +27,17 @@ pub(crate) fn descend(
     }
     let (mut best, mut at, mut step) = (sse(start), start, step);
     for _ in 0..6 {
+        // Where a step came from is worse: it is not tried again.
+        let mut last = None;
         for _ in 0..STEPS {
-            let tries = [at - step, at + step]
-                .into_iter()
-                .filter(|value| *value >= low && *value <= high);
-            let tries = tries.map(|value| (sse(value), value));
-            let better = tries
+            let tries = [-step, step].into_iter().filter(|by| last != Some(-by));
+            let inside = tries.filter(|by| at + by >= low && at + by <= high);
+            let better = inside
+                .map(|by| (sse(at + by), by))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .filter(|(sse, _)| *sse < best);
-            match better {
-                Some((sse, value)) => (best, at) = (sse, value),
-                None => break,
-            }
+            let Some((sse, by)) = better else { break };
+            (best, at, last) = (sse, at + by, Some(by));
         }
         step *= 0.5;
     }

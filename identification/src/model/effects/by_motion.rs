@@ -6,36 +6,55 @@
 //! coefficients for that are fitted to the record beside the effect's columns, and both are made to
 //! agree by a few rounds. A handful of numbers from thousands of rows hold no noise of a row.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::motion::kinematics::Kinematics;
 
+/// Number of the usual columns.
+const USUAL: usize = 4;
+
 /// Acceleration, velocity, direction, one.
-pub(crate) type Usual = [f64; 4];
+pub(crate) type Usual = [f64; USUAL];
 
 /// What the usual effort is made of, row by row and low-passed.
 pub(crate) struct ByMotion<'a> {
     motion: &'a Kinematics,
     /// Low-passed acceleration.
     pub acceleration: Vec<f64>,
-    columns: [Vec<f64>; 4],
+    /// The fitted rows.
+    places: Vec<usize>,
+    /// What a fitted row has of each, low-passed, and its effort.
+    rows: Vec<Row>,
+    /// Sums over those rows of the products of each with each.
+    products: [Row; USUAL + 1],
 }
+
+/// What a row has of each, and its effort.
+type Row = [f64; USUAL + 1];
 
 impl<'a> ByMotion<'a> {
     /// Of a motion.
     #[must_use]
     pub(crate) fn of(motion: &'a Kinematics) -> Self {
         let acceleration = motion.low_passed(&motion.acceleration);
-        let columns = [
-            acceleration.clone(),
-            motion.velocity_lp.clone(),
-            motion.low_passed(&motion.direction),
-            vec![1.0; motion.len()],
-        ];
+        let direction = motion.low_passed(&motion.direction);
+        let places: Vec<usize> = (0..motion.len())
+            .filter(|row| motion.fitted[*row])
+            .collect();
+        let row = |row: &usize| {
+            let (velocity, effort) = (motion.velocity_lp[*row], motion.effort_lp[*row]);
+            [acceleration[*row], velocity, direction[*row], 1.0, effort]
+        };
+        let rows: Vec<Row> = places.iter().map(row).collect();
         Self {
             motion,
+            products: [0, 1, 2, 3, 4].map(|place| {
+                let column: Vec<f64> = rows.iter().map(|row| row[place]).collect();
+                with_rows(&column, &rows)
+            }),
+            rows,
+            places,
             acceleration,
-            columns,
         }
     }
 
@@ -69,37 +88,55 @@ impl<'a> ByMotion<'a> {
     /// fitted samples.
     #[must_use]
     pub(crate) fn fit(&self, beside: &[Vec<f64>]) -> (Usual, Vec<f64>) {
-        let low_passed: Vec<Vec<f64>> = beside
-            .iter()
-            .map(|own| self.motion.low_passed(own))
-            .collect();
-        let columns: Vec<&[f64]> = self
-            .columns
-            .iter()
-            .chain(&low_passed)
-            .map(Vec::as_slice)
-            .collect();
-        let solution = least_squares(self.motion, &columns);
-        let (usual, own) = solution.split_at(self.columns.len());
+        let fitted = |own: &Vec<f64>| {
+            let low_passed = self.motion.low_passed(own);
+            self.places.iter().map(|row| low_passed[*row]).collect()
+        };
+        let beside: Vec<Vec<f64>> = beside.iter().map(fitted).collect();
+        let solution = self.least_squares(&beside);
+        let (usual, own) = solution.split_at(USUAL);
         ([usual[0], usual[1], usual[2], usual[3]], own.to_vec())
+    }
+
+    /// A column of zeros, or one that repeats others, gets no coefficient.
+    fn least_squares(&self, beside: &[Vec<f64>]) -> Vec<f64> {
+        let size = USUAL + beside.len();
+        // The last row and column are the products with the effort.
+        let mut products = DMatrix::zeros(size + 1, size + 1);
+        let mut put = |i: usize, j: usize, sum: f64| {
+            products[(i, j)] = sum;
+            products[(j, i)] = sum;
+        };
+        let place = |usual: usize| if usual < USUAL { usual } else { size };
+        for (i, usual) in self.products.iter().enumerate() {
+            (0..=USUAL).for_each(|j| put(place(i), place(j), usual[j]));
+        }
+        for (i, own) in beside.iter().enumerate() {
+            let usual = with_rows(own, &self.rows);
+            (0..=USUAL).for_each(|j| put(USUAL + i, place(j), usual[j]));
+            let others = beside[..=i].iter().enumerate();
+            others.for_each(|(j, other)| put(USUAL + i, USUAL + j, dot(own, other)));
+        }
+        let gram = products.view((0, 0), (size, size)).into_owned();
+        let right = products.view((0, size), (size, 1)).column(0).into_owned();
+        let smallest = SINGULAR * gram.norm();
+        let solution = gram.svd(true, true).solve(&right, smallest);
+        solution.map_or_else(|_| vec![0.0; size], |solution| solution.as_slice().to_vec())
     }
 }
 
-/// A column of zeros, or one that repeats others, gets no coefficient.
-fn least_squares(motion: &Kinematics, columns: &[&[f64]]) -> Vec<f64> {
-    let size = columns.len();
-    let (mut gram, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
-    let mut at = DVector::zeros(size);
-    for row in (0..motion.len()).filter(|row| motion.fitted[*row]) {
-        for (value, column) in at.iter_mut().zip(columns) {
-            *value = column[row];
-        }
-        gram.ger(1.0, &at, &at, 1.0);
-        right.axpy(motion.effort_lp[row], &at, 1.0);
+/// Sums of the products of a column with each of the rows' values.
+fn with_rows(column: &[f64], rows: &[Row]) -> Row {
+    let mut sums = Row::default();
+    for (value, row) in column.iter().zip(rows) {
+        let pairs = sums.iter_mut().zip(row);
+        pairs.for_each(|(sum, other)| *sum += value * other);
     }
-    let smallest = SINGULAR * gram.norm();
-    let solution = gram.svd(true, true).solve(&right, smallest);
-    solution.map_or_else(|_| vec![0.0; size], |solution| solution.as_slice().to_vec())
+    sums
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 /// Singular values below this share of the largest are none: rounding of a sum over 10⁵ rows.

@@ -11,7 +11,7 @@
 
 use axis_model::EffectName;
 
-use super::by_motion::ByMotion;
+use super::by_motion::{ByMotion, Usual};
 use super::wave::{self, Names, Weight};
 use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
@@ -29,32 +29,37 @@ const LARGEST: f64 = 0.5;
 /// the wave is a tenth of the effort.
 const ROUNDS: usize = 3;
 
-/// Effort of each row by the motion, and the effort with its wave, `q / (1 + w)`.
-fn consistent(motion: &Kinematics, k: f64) -> Vec<f64> {
+/// The columns with the effort of each row by the motion that agrees with its wave, `q / (1 + w)`.
+fn consistent(motion: &Kinematics, k: f64) -> Vec<Vec<f64>> {
+    let waves = wave::columns(motion, k, |_| Weight::PLAIN);
     let by_motion = ByMotion::of(motion);
     let (mut usual, mut own) = by_motion.fit(&[]);
-    let mut efforts = Vec::new();
-    for round in 0..=ROUNDS {
-        let with_wave = |row: usize| {
-            let wave = match own[..] {
-                [a, b] => wave::value(&[a, b], k, motion.position_lp[row]),
-                _ => 0.0,
-            };
-            by_motion.effort(usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
-        };
-        efforts = (0..motion.len()).map(with_wave).collect();
-        if round < ROUNDS {
-            (usual, own) = by_motion.fit(&columns(motion, k, &efforts));
-        }
+    for _ in 0..ROUNDS {
+        let efforts = with_wave(&by_motion, usual, &own, &waves);
+        (usual, own) = by_motion.fit(&columns(&waves, &efforts));
     }
-    efforts
+    columns(&waves, &with_wave(&by_motion, usual, &own, &waves))
 }
 
-fn columns(motion: &Kinematics, k: f64, efforts: &[f64]) -> Vec<Vec<f64>> {
-    wave::columns(motion, k, |row| Weight {
-        wave: -efforts[row],
-        half_slope: 0.0,
+/// Effort of each row by the motion, over one and its wave; without coefficients of that as it is.
+fn with_wave(by_motion: &ByMotion<'_>, usual: Usual, own: &[f64], waves: &[Vec<f64>]) -> Vec<f64> {
+    let rows = waves[0].iter().zip(&waves[1]).enumerate();
+    rows.map(|(row, (cos, sin))| {
+        let wave = match own {
+            [a, b] => a * cos + b * sin,
+            _ => 0.0,
+        };
+        by_motion.effort(usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
     })
+    .collect()
+}
+
+fn columns(waves: &[Vec<f64>], efforts: &[f64]) -> Vec<Vec<f64>> {
+    let by_effort = |wave: &Vec<f64>| {
+        let pairs = wave.iter().zip(efforts);
+        pairs.map(|(wave, effort)| -effort * wave).collect()
+    };
+    waves.iter().map(by_effort).collect()
 }
 
 impl Effect for TorqueConstantRipple {
@@ -67,7 +72,7 @@ impl Effect for TorqueConstantRipple {
     }
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
-        columns(motion, k, &consistent(motion, k))
+        consistent(motion, k)
     }
 
     fn width(&self, _: f64) -> usize {

@@ -10,6 +10,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::turning::{RENEWED, Turning, wave};
 use super::{Kinematics, Named, Naming, Setting};
 use crate::record::units::AxisKind;
 
@@ -47,7 +48,12 @@ impl Weight {
     /// Values of both columns at a position.
     #[must_use]
     pub(crate) fn at(self, k: f64, x: f64) -> [f64; 2] {
-        let (sin, cos) = (TAU * k * x).sin_cos();
+        self.on(wave(k, x), k)
+    }
+
+    /// The same from cosine and sine there.
+    #[inline]
+    fn on(self, [cos, sin]: [f64; 2], k: f64) -> [f64; 2] {
         let slope = PI * k * self.half_slope;
         [self.wave * cos - slope * sin, self.wave * sin + slope * cos]
     }
@@ -110,15 +116,24 @@ pub(crate) fn strongest(
     fewest_periods: f64,
     weight: impl Fn(usize) -> Weight,
 ) -> Vec<f64> {
-    let samples = samples(motion, setting, weight);
     let step = of_periods(motion, 1.0 / STEPS_PER_PERIOD);
+    let mut samples = samples(motion, setting, step, weight);
     let from = of_periods(motion, fewest_periods);
     let Some(to) = shortest(&samples, setting) else {
         return Vec::new();
     };
     let count = ((to - from) / step).clamp(0.0, MOST_SCANNED) as usize;
-    let scanned = (0..count).map(|i| from + step * i as f64);
-    let mut scored: Vec<(f64, f64)> = scanned.map(|k| (projection(&samples, k), k)).collect();
+    let mut scored: Vec<(f64, f64)> = (0..count)
+        .map(|i| {
+            let k = from + step * i as f64;
+            if i % RENEWED == 0 {
+                for sample in &mut samples {
+                    sample.wave.renew(k);
+                }
+            }
+            (projection(&mut samples, k), k)
+        })
+        .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = apart(scored.iter().map(|(_, k)| *k), STEPS_PER_PERIOD * step);
     best.iter()
@@ -128,7 +143,7 @@ pub(crate) fn strongest(
 
 /// A sample of the scan.
 struct Sample {
-    x: f64,
+    wave: Turning,
     speed: f64,
     weight: Weight,
     residual: f64,
@@ -137,12 +152,13 @@ struct Sample {
 fn samples(
     motion: &Kinematics,
     setting: &Setting<'_>,
+    step: f64,
     weight: impl Fn(usize) -> Weight,
 ) -> Vec<Sample> {
     let rows = (0..motion.len()).step_by(STRIDE);
     let moving = rows.filter(|row| motion.moving[*row]);
     let sample = |row: usize| Sample {
-        x: motion.position_lp[row],
+        wave: Turning::new(motion.position_lp[row], step),
         speed: motion.velocity_lp[row].abs(),
         weight: weight(row),
         residual: setting.residual.get(row).copied().unwrap_or(0.0),
@@ -173,12 +189,17 @@ fn apart(list: impl Iterator<Item = f64>, distance: f64) -> Vec<f64> {
     best
 }
 
-/// Sum of squares that both columns of a wave number take out of the residual.
-fn projection(samples: &[Sample], k: f64) -> f64 {
+/// Sum of squares that both columns of a wave number take out of the residual; the samples go on to
+/// the next wave number.
+fn projection(samples: &mut [Sample], k: f64) -> f64 {
     let (mut cc, mut ss, mut cs, mut ce, mut se) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    let visible = |sample: &&Sample| sample.speed * k < FASTEST_HZ;
-    for sample in samples.iter().filter(visible) {
-        let ([cos, sin], e) = (sample.weight.at(k, sample.x), sample.residual);
+    for sample in samples {
+        let wave = sample.wave.at;
+        sample.wave.turn();
+        if sample.speed * k >= FASTEST_HZ {
+            continue;
+        }
+        let ([cos, sin], e) = (sample.weight.on(wave, k), sample.residual);
         cc += cos * cos;
         ss += sin * sin;
         cs += cos * sin;
