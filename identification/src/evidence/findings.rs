@@ -77,7 +77,7 @@ impl Stages {
     }
 
     /// What they saw that no effect explains.
-    fn reasons(&self) -> Vec<Reason> {
+    fn reasons(&self, length: &str) -> Vec<Reason> {
         let nameless = self.effort.nameless().into_iter();
         let mut reasons: Vec<Reason> = nameless
             .map(|called| Reason::unexplained(format!("a {called}")))
@@ -88,6 +88,8 @@ impl Stages {
                 "structure at reversals that is neither stick nor a bristle nor a gap",
             )
         }));
+        let doubt = self.reversals.doubtful_gap();
+        reasons.extend(doubt.map(|gap| Reason::unexplained(gap.words(length))));
         let difference = self.difference.as_ref();
         reasons.extend(difference.and_then(Difference::reason));
         reasons
@@ -138,7 +140,7 @@ impl<'a> Findings<'a> {
         // What has happened to the record says why everything after it is there.
         let causes = causes::of(dataset, found.names()).into_iter();
         let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
-        reasons.extend(stages.reasons());
+        reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
         reasons.extend(residual.reasons(has_gap));
@@ -238,6 +240,7 @@ pub(crate) mod tests {
             difference: None,
             reversals: ReversalStage {
                 inverse: None,
+                gap: None,
                 free_run: None,
                 decided: AtReversals::default(),
                 has_load_scale: false,

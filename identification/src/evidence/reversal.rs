@@ -3,14 +3,18 @@
 //! Moving samples hardly show presliding. Judged here is the friction that is observed about
 //! reversals, effort − everything but the sign columns, against two models of the same level G(v):
 //! [`stick`], rigid Coulomb friction that holds whatever there is at standstill, and [`bristle`],
-//! Dahl's hysteresis, without that freedom. A gap cannot be judged this way (its impacts are not in
-//! the low-passed effort): see [`crate::evidence::free_run`].
+//! Dahl's hysteresis, without that freedom. A gap between rigid friction and the motor cannot be
+//! judged this way (its impacts are not in the low-passed effort): see
+//! [`crate::evidence::free_run`]. One before a bristle can ([`gap`]).
 
 pub(crate) mod bristle;
+pub(crate) mod gap;
 pub(crate) mod stick;
 
 use axis_model::EffectName;
 
+use self::bristle::deflections;
+use self::gap::{Plant, SeenGap};
 use crate::evidence::thresholds::{
     BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SUSPICION_RATIO,
 };
@@ -76,6 +80,24 @@ pub(crate) fn presliding(
         accepted: seen.is_clear(resolution(bench.dataset)),
         ..seen
     })
+}
+
+/// A gap before the bristle of a model whose bristle was accepted; `None` where the model has no
+/// mass or friction.
+#[must_use]
+pub(crate) fn gap(bench: &Bench<'_>, other: &Bench<'_>, fitted: &Fitted) -> Option<SeenGap> {
+    let first = |name: EffectName| fitted.of(name).and_then(<[f64]>::first).copied();
+    let plant = Plant {
+        mass: first(EffectName::Inertia).filter(|mass| *mass > 0.0)?,
+        coulomb: first(EffectName::Coulomb)?,
+    };
+    let observed = Observed::new(bench, fitted)?;
+    let elsewhere = Observed::new(other, &other.fit(fitted.model()))?;
+    let (unit, count) = (
+        bench.dataset.kind.moving_velocity(),
+        bench.dataset.resolution,
+    );
+    gap::best([&observed, &elsewhere], plant, unit, count)
 }
 
 /// Whether a bristle leaves less of a record than rigid friction, by what counts as suspicious.

@@ -4,6 +4,7 @@
 use crate::evidence::at_reversals::{self, AtReversals, LoadScale, Witnesses};
 use crate::evidence::difference::Difference;
 use crate::evidence::free_run::{self, Reversals};
+use crate::evidence::reversal::gap::SeenGap;
 use crate::evidence::reversal::{self, Presliding};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
@@ -13,6 +14,8 @@ use crate::progress::Step;
 pub(crate) struct ReversalStage {
     /// The inverse model, on the effort about reversals.
     pub inverse: Option<Presliding>,
+    /// A gap before that bristle, on the same effort; where the motor alone was recorded.
+    pub gap: Option<SeenGap>,
     /// The free run, on the position.
     pub free_run: Option<Reversals>,
     /// What acts.
@@ -41,16 +44,32 @@ impl ReversalStage {
             free_run: believed.map(Reversals::summary),
             load_scale,
         };
-        let decided = witnesses.decide();
+        let mut decided = witnesses.decide();
         if let Some(reversals) = &mut free_run {
             reversals.settle(decided.presliding, has_gap(decided, load_scale));
         }
+        let is_asked = load_scale.is_none() && decided.presliding && !decided.backlash;
+        let gap = is_asked
+            .then(|| reversal::gap(bench, other, fitted))
+            .flatten();
+        decided.backlash |= gap.is_some_and(|gap| gap.is_clear());
         Self {
             inverse,
+            gap,
             free_run,
             decided,
             has_load_scale: difference.is_some(),
         }
+    }
+
+    /// The gap that the effort shows before a bristle, where it was accepted.
+    pub(crate) fn gap_by_effort(&self) -> Option<SeenGap> {
+        self.gap.filter(SeenGap::is_clear)
+    }
+
+    /// The gap that may be there beside the bristle that was named.
+    pub(crate) fn doubtful_gap(&self) -> Option<SeenGap> {
+        self.gap.filter(SeenGap::is_suspicious)
     }
 
     /// The free run, where it speaks of reversals: with a load scale the difference does.
@@ -61,8 +80,11 @@ impl ReversalStage {
 
     /// The free run, where its shape is the one that was accepted.
     pub(crate) fn accepted_shape(&self) -> Option<&Reversals> {
-        let has_shape = |run: &&Reversals| run.accepted.presliding || run.accepted.backlash;
-        let run = self.free_run_alone().filter(has_shape)?;
+        let has_shape = |run: &Reversals| run.accepted.presliding || run.accepted.backlash;
+        let by_effort = self.gap_by_effort().is_some();
+        let run = self
+            .free_run_alone()
+            .filter(|run| !by_effort && has_shape(run))?;
         (!run.best().ran_away).then_some(run)
     }
 

@@ -123,31 +123,40 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
 fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
     let Some(reversals) = findings.stages.reversals.accepted_shape() else {
         let length = findings.dataset.kind.position_unit();
-        let bristle = findings.models.extended.deflection.map(|deflection| {
-            Effect::from(Presliding {
-                deflection: plain(deflection, length),
-                damping: None,
-            })
-        });
-        let bristle = bristle.iter().flat_map(of_an_effect);
-        return (ranking::ABOUT_REVERSALS, bristle.collect());
+        let gap = findings.stages.reversals.gap_by_effort();
+        // Behind a gap the bristle is stiffer than one that stands for both.
+        let bristle = gap.map(|gap| gap.deflection);
+        let bristle = bristle.or(findings.models.extended.deflection);
+        let bristle = bristle.map(|deflection| bristle_of(deflection, length));
+        let gap = gap.map(|gap| gap_of(gap.width, length));
+        let shape = bristle.iter().chain(&gap).flat_map(of_an_effect);
+        return (ranking::ABOUT_REVERSALS, shape.collect());
     };
     let shape = reversals.estimates(findings.dataset);
     let shape = shape.iter().flat_map(of_an_effect);
     (ranking::FREE_RUN, shape.collect())
 }
 
+fn bristle_of(deflection: f64, length: &str) -> Effect<Estimate> {
+    Effect::from(Presliding {
+        deflection: plain(deflection, length),
+        damping: None,
+    })
+}
+
+fn gap_of(width: f64, length: &str) -> Effect<Estimate> {
+    Effect::from(Backlash {
+        gap: plain(width, length),
+        load_share: None,
+        motor_friction: None,
+        restitution: None,
+    })
+}
+
 fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {
     let length = findings.dataset.kind.position_unit();
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
-    let gap = difference.gap.map(|gap| {
-        Effect::from(Backlash {
-            gap: plain(gap, length),
-            load_share: None,
-            motor_friction: None,
-            restitution: None,
-        })
-    });
+    let gap = difference.gap.map(|gap| gap_of(gap, length));
     let compliance = difference.stiffness.map(|stiffness| {
         Effect::from(Compliance {
             stiffness: plain(stiffness, &stiffness_unit),

@@ -27,6 +27,7 @@ pub(crate) const DIFFERENCE: &str = "motor - load position";
 pub(crate) fn candidates(findings: &Findings<'_>) -> Vec<Candidate> {
     let mut list = on_effort(findings);
     list.extend(on_reversals(findings));
+    list.extend(gap_on_reversals(findings));
     list.extend(on_free_run(findings));
     list.extend(on_difference(findings));
     list.extend(about_fast_reversals(findings));
@@ -107,6 +108,21 @@ fn on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
     })
 }
 
+/// A gap before the bristle; its share is that of what the bristle leaves.
+fn gap_on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
+    let gap = findings.stages.reversals.gap?;
+    Some(Candidate {
+        effect: EffectName::Backlash.to_string(),
+        validation_error_percent: None,
+        difference_left_percent: None,
+        evidence: gap.t,
+        share: gap.share,
+        judged_on: ABOUT_REVERSALS,
+        physical: gap.can_be,
+        accepted: false,
+    })
+}
+
 /// Force error on the validation record of the declared model with a bristle in place of the sign.
 fn with_bristle(findings: &Findings<'_>, presliding: &Presliding) -> f64 {
     let (dataset, model) = (findings.dataset, findings.models.declared.fitted.model());
@@ -137,7 +153,9 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
         accepted: false,
     };
     let bristle = candidate(EffectName::Presliding, &reversals.bristle);
-    let gap = reversals.gap.as_ref();
+    // One word for a gap: the effort's, where that found it.
+    let by_effort = findings.stages.reversals.gap_by_effort().is_some();
+    let gap = reversals.gap.as_ref().filter(|_| !by_effort);
     let gap = gap.map(|gap| candidate(EffectName::Backlash, gap));
     [bristle].into_iter().chain(gap).collect()
 }

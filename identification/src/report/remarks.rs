@@ -4,6 +4,7 @@ use crate::evidence::another_day::Change;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::reversal::Presliding;
+use crate::evidence::reversal::gap::SeenGap;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
 use crate::report::figures;
@@ -90,6 +91,9 @@ impl Said<'_> {
     /// Why what acts at reversals was decided so; `None` where nothing acts and nobody was in
     /// doubt.
     fn sentence(&self) -> Option<String> {
+        if let Some(gap) = self.stage.gap_by_effort() {
+            return Some(self.before_a_bristle(&gap));
+        }
         let decided = self.stage.decided;
         let run = self.stage.free_run_alone();
         let torn = run.filter(|run| run.alone.undecided);
@@ -116,6 +120,17 @@ impl Said<'_> {
             (false, false, None) => None,
             _ => run.map(|run| self.by_free_run(run)),
         }
+    }
+
+    fn before_a_bristle(&self, gap: &SeenGap) -> String {
+        format!(
+            "presliding and backlash: the effort about reversals (a bristle leaves {}, one behind a gap {} {} rms); over {} {} after a reversal the motor feels neither friction nor mass of its load",
+            figures::error(gap.bristle),
+            figures::error(gap.left),
+            self.effort,
+            figures::error(1.0e6 * gap.width),
+            self.length
+        )
     }
 
     fn undecided(&self, run: &Reversals) -> String {

@@ -69,6 +69,11 @@ fn on_effort(findings: &Findings<'_>, name: EffectName) -> Row {
 }
 
 fn about_reversals(findings: &Findings<'_>, name: EffectName) -> Row {
+    let gap = findings.stages.reversals.gap_by_effort();
+    if let Some(gap) = gap.filter(|_| name == EffectName::Backlash) {
+        let unit = findings.dataset.effort.unit();
+        return Some((ABOUT_REVERSALS, unit, [gap.bristle, gap.left]));
+    }
     let inverse = findings.stages.reversals.inverse?;
     let shows = name == EffectName::Presliding && inverse.dahl < inverse.rigid;
     let unit = findings.dataset.effort.unit();

@@ -8,6 +8,8 @@
 //!
 //! One step is one row of the record. Units: m or rad, s.
 
+pub(crate) mod on_bristle;
+
 use std::cmp::Ordering;
 
 use crate::simulate::gap::{Side, rebound};

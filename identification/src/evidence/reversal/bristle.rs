@@ -37,7 +37,7 @@ pub(crate) fn best(observed: &Observed<'_>, unit: f64) -> (f64, Vec<f64>) {
 }
 
 /// Deflections to start from.
-fn deflections(unit: f64) -> Vec<f64> {
+pub(crate) fn deflections(unit: f64) -> Vec<f64> {
     crate::model::effects::geometric(SMALLEST * unit, LARGEST * unit, 24)
 }
 
