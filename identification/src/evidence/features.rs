@@ -71,8 +71,7 @@ impl<'a> Scene<'a> {
 
     /// The columns of a family, low-passed.
     pub(crate) fn columns(&self, family: &Family) -> Vec<Vec<f64>> {
-        let raw = (family.columns)(self);
-        raw.iter().map(|one| self.motion.low_passed(one)).collect()
+        self.motion.all_low_passed(&(family.columns)(self))
     }
 
     fn each(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {

@@ -69,9 +69,7 @@ impl<'a> Bench<'a> {
     }
 
     fn low_passed(&self, part: &Part) -> Vec<Vec<f64>> {
-        let raw = self.raw(part);
-        let low_passed = |column: &Vec<f64>| self.motion.low_passed(column);
-        raw.iter().map(low_passed).collect()
+        self.motion.all_low_passed(&self.raw(part))
     }
 
     /// Low-passed columns of a part.

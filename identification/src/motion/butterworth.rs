@@ -71,37 +71,47 @@ impl Butterworth {
         }
     }
 
-    /// The signal forwards and backwards through the filter; a signal that is not longer than the
-    /// padding comes back as it was.
+    /// Signals of one length forwards and backwards through the filter; those that are not longer
+    /// than the padding come back as they were.
+    ///
+    /// Several go beside each other: each value of a signal waits for the one before it.
     #[must_use]
-    pub(crate) fn both_ways(&self, signal: &[f64]) -> Vec<f64> {
-        if signal.len() <= PADDING {
-            return signal.to_vec();
+    pub(crate) fn both_ways<const N: usize>(&self, signals: [&[f64]; N]) -> [Vec<f64>; N] {
+        let rows = signals[0].len();
+        if rows <= PADDING {
+            return signals.map(<[f64]>::to_vec);
         }
-        let mut values = padded(signal);
+        let mut values = padded(signals);
         self.run(values.iter_mut());
         self.run(values.iter_mut().rev());
-        values.truncate(PADDING + signal.len());
-        values.drain(..PADDING);
-        values
+        let inside = &values[PADDING..PADDING + rows];
+        std::array::from_fn(|place| inside.iter().map(|row| row[place]).collect())
     }
 
     /// One run, in place.
-    fn run<'a>(&self, values: impl Iterator<Item = &'a mut f64>) {
+    fn run<'a, const N: usize>(&self, values: impl Iterator<Item = &'a mut [f64; N]>) {
         let mut values = values.peekable();
-        let first = values.peek().map_or(0.0, |value| **value);
-        let mut s = self.settled.map(|state| state * first);
-        let ([f1, f2, f3, f4], [c1, c2, c3, c4]) = (self.feedback, self.input);
-        for value in values {
-            let x = *value;
-            *value = self.through * x + s[0];
-            s = [
-                f1 * s[0] + s[1] + c1 * x,
-                f2 * s[0] + s[2] + c2 * x,
-                f3 * s[0] + s[3] + c3 * x,
-                f4 * s[0] + c4 * x,
-            ];
+        let first = values.peek().map_or([0.0; N], |row| **row);
+        let mut states = first.map(|first| self.settled.map(|state| state * first));
+        for row in values {
+            for (value, state) in row.iter_mut().zip(&mut states) {
+                *value = self.step(*value, state);
+            }
         }
+    }
+
+    /// The output for an input.
+    #[inline]
+    fn step(&self, x: f64, s: &mut [f64; ORDER]) -> f64 {
+        let ([f1, f2, f3, f4], [c1, c2, c3, c4]) = (self.feedback, self.input);
+        let y = self.through * x + s[0];
+        *s = [
+            f1 * s[0] + s[1] + c1 * x,
+            f2 * s[0] + s[2] + c2 * x,
+            f3 * s[0] + s[3] + c3 * x,
+            f4 * s[0] + c4 * x,
+        ];
+        y
     }
 }
 
@@ -128,16 +138,14 @@ fn settled(a: &[f64; ORDER + 1], input: [f64; ORDER]) -> [f64; ORDER] {
     state
 }
 
-/// A signal continued at both ends by its point reflection.
-fn padded(signal: &[f64]) -> Vec<f64> {
-    let last = signal.len() - 1;
-    let before = (1..=PADDING).rev().map(|row| 2.0 * signal[0] - signal[row]);
-    let after = (1..=PADDING).map(|row| 2.0 * signal[last] - signal[last - row]);
-    let mut values = Vec::with_capacity(signal.len() + 2 * PADDING);
-    values.extend(before);
-    values.extend(signal);
-    values.extend(after);
-    values
+/// Signals continued at both ends by their point reflection, row by row.
+fn padded<const N: usize>(signals: [&[f64]; N]) -> Vec<[f64; N]> {
+    let last = signals[0].len() - 1;
+    let at = |row: usize| signals.map(|signal| signal[row]);
+    let reflected = |about: usize, row: usize| signals.map(|x| 2.0 * x[about] - x[row]);
+    let before = (1..=PADDING).rev().map(|row| reflected(0, row));
+    let after = (1..=PADDING).map(|row| reflected(last, last - row));
+    before.chain((0..=last).map(at)).chain(after).collect()
 }
 
 #[cfg(test)]
@@ -145,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_the_filter_of_the_crate_of_its_name_to_the_last_bit() {
+    fn alone_or_beside_another_signal_it_is_the_filter_of_the_crate_butterworth_to_the_last_bit() {
         let signal: Vec<f64> = (0..700).map(|i| (0.003 * f64::from(i * i)).sin()).collect();
         for (rate, cutoff) in [
             (1000.0, 100.0),
@@ -155,7 +163,11 @@ mod tests {
         ] {
             let theirs = butterworth::Filter::new(4, rate, butterworth::Cutoff::LowPass(cutoff));
             let theirs = theirs.unwrap().bidirectional(&signal).unwrap();
-            let ours = Butterworth::new(rate, cutoff).unwrap().both_ways(&signal);
+            let filter = Butterworth::new(rate, cutoff).unwrap();
+            let other: Vec<f64> = signal.iter().map(|x| x * x).collect();
+            let [ours, beside] = filter.both_ways([&signal, &other]);
+            assert_eq!(filter.both_ways([&signal])[0], ours);
+            assert_eq!(filter.both_ways([&other])[0], beside);
             assert_eq!(ours, theirs, "{cutoff} Hz of {rate} Hz");
         }
     }
@@ -165,14 +177,13 @@ mod tests {
         let filter = Butterworth::new(1000.0, 100.0).unwrap();
         let near = |(out, wanted): (&f64, &f64)| (out - wanted).abs() < 1.0e-9;
         assert!(
-            filter
-                .both_ways(&[7.0; 50])
+            filter.both_ways([&[7.0; 50]])[0]
                 .iter()
                 .zip(&[7.0; 50])
                 .all(near)
         );
         let line: Vec<f64> = (0..200).map(|i| 3.0 + 0.5 * f64::from(i)).collect();
-        let out = filter.both_ways(&line);
+        let [out] = filter.both_ways([&line]);
         assert!(out[80..120].iter().zip(&line[80..120]).all(near), "{out:?}");
     }
 
@@ -181,10 +192,16 @@ mod tests {
         let filter = Butterworth::new(1000.0, 100.0).unwrap();
         let signal: Vec<f64> = (0..20).map(|i| f64::from(i * i % 7)).collect();
         for rows in [0, 1, PADDING] {
-            assert_eq!(filter.both_ways(&signal[..rows]), signal[..rows]);
+            assert_eq!(filter.both_ways([&signal[..rows]])[0], signal[..rows]);
         }
-        assert_eq!(filter.both_ways(&signal[..=PADDING]).len(), PADDING + 1);
-        assert_ne!(filter.both_ways(&signal[..=PADDING]), signal[..=PADDING]);
+        assert_eq!(
+            filter.both_ways([&signal[..=PADDING]])[0].len(),
+            PADDING + 1
+        );
+        assert_ne!(
+            filter.both_ways([&signal[..=PADDING]])[0],
+            signal[..=PADDING]
+        );
     }
 
     #[test]

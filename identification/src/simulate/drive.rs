@@ -69,6 +69,7 @@ impl Drive {
 
 impl Driving<'_> {
     /// The effort of a row.
+    #[inline]
     pub(crate) fn effort(&mut self, row: usize, axis: &Axis) -> f64 {
         match self.drive {
             Drive::Known(law) => {

@@ -21,6 +21,7 @@ pub(crate) enum Side {
 
 impl Side {
     /// The side of a lag, motor − load.
+    #[inline]
     #[must_use]
     pub(crate) fn of(lag: f64) -> Self {
         if lag.is_sign_negative() {
@@ -31,6 +32,7 @@ impl Side {
     }
 
     /// Direction in which the motor pushes: 1 or −1.
+    #[inline]
     #[must_use]
     pub(crate) const fn sign(self) -> f64 {
         match self {
@@ -41,6 +43,7 @@ impl Side {
 }
 
 /// Newton's impact law: the velocity at which two bodies part that closed in at another.
+#[inline]
 #[must_use]
 pub(crate) fn rebound(restitution: f64, closing: f64) -> f64 {
     restitution * closing

@@ -59,6 +59,7 @@ impl<'a> ByMotion<'a> {
     }
 
     /// What a row has of each.
+    #[inline]
     #[must_use]
     pub(crate) fn at(&self, row: usize) -> Usual {
         [
@@ -70,6 +71,7 @@ impl<'a> ByMotion<'a> {
     }
 
     /// Effort of a row with the coefficients of a fit.
+    #[inline]
     #[must_use]
     pub(crate) fn effort(&self, usual: Usual, row: usize) -> f64 {
         let pairs = usual.into_iter().zip(self.at(row));
@@ -88,11 +90,9 @@ impl<'a> ByMotion<'a> {
     /// fitted samples.
     #[must_use]
     pub(crate) fn fit(&self, beside: &[Vec<f64>]) -> (Usual, Vec<f64>) {
-        let fitted = |own: &Vec<f64>| {
-            let low_passed = self.motion.low_passed(own);
-            self.places.iter().map(|row| low_passed[*row]).collect()
-        };
-        let beside: Vec<Vec<f64>> = beside.iter().map(fitted).collect();
+        let low_passed = self.motion.all_low_passed(beside).into_iter();
+        let fitted = |own: Vec<f64>| self.places.iter().map(|row| own[*row]).collect();
+        let beside: Vec<Vec<f64>> = low_passed.map(fitted).collect();
         let solution = self.least_squares(&beside);
         let (usual, own) = solution.split_at(USUAL);
         ([usual[0], usual[1], usual[2], usual[3]], own.to_vec())

@@ -42,6 +42,7 @@ impl Saturation {
     }
 
     /// Delivered effort for a commanded one.
+    #[inline]
     #[must_use]
     pub(crate) fn delivered(self, commanded: f64) -> f64 {
         commanded / (1.0 + self.per_effort * commanded.abs())

@@ -46,6 +46,7 @@ impl Weight {
     };
 
     /// Values of both columns at a position.
+    #[inline]
     #[must_use]
     pub(crate) fn at(self, k: f64, x: f64) -> [f64; 2] {
         self.on(wave(k, x), k)
@@ -73,6 +74,7 @@ pub(crate) fn columns(
 }
 
 /// `a cos(2π k x) + b sin(2π k x)`.
+#[inline]
 #[must_use]
 pub(crate) fn value(own: &[f64], k: f64, x: f64) -> f64 {
     let [cos, sin] = Weight::PLAIN.at(k, x);

@@ -117,6 +117,7 @@ impl Law {
     }
 
     /// What it measures of a motor and a load in a row.
+    #[inline]
     #[must_use]
     pub(crate) const fn sees(&self, row: usize, motor: f64, load: f64) -> Measured {
         Measured {
@@ -179,6 +180,7 @@ impl Law {
     }
 
     /// The effort of a row.
+    #[inline]
     pub(crate) fn effort(
         &self,
         setpoints: &Setpoints<'_>,
@@ -206,6 +208,7 @@ impl Law {
 
 impl Memory {
     /// Filters the velocity, and gives the error of the velocity loop; the integral follows it.
+    #[inline]
     fn velocity_error(
         &mut self,
         gains: &Gains,

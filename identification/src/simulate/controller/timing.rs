@@ -40,6 +40,7 @@ pub(crate) struct Setpoints<'a> {
 
 impl<'a> Setpoints<'a> {
     /// The setpoints of a record; none where it has none.
+    #[inline]
     #[must_use]
     pub(crate) fn of(record: &'a Record) -> Self {
         Self {
@@ -49,12 +50,14 @@ impl<'a> Setpoints<'a> {
     }
 
     /// Period of the rows, s.
+    #[inline]
     #[must_use]
     pub(crate) const fn period_s(&self) -> f64 {
         self.period_s
     }
 
     /// Position; the last one holds beyond the end.
+    #[inline]
     #[must_use]
     pub(crate) fn position(&self, row: usize) -> f64 {
         let held = self.positions.get(row).or(self.positions.last());
@@ -62,6 +65,7 @@ impl<'a> Setpoints<'a> {
     }
 
     /// Velocity; beyond both ends the setpoint goes on as it was.
+    #[inline]
     #[must_use]
     pub(crate) fn velocity(&self, row: usize) -> f64 {
         let last = self.positions.len().saturating_sub(1).max(1);
@@ -70,11 +74,13 @@ impl<'a> Setpoints<'a> {
     }
 
     /// Second difference about a row.
+    #[inline]
     fn second_difference(&self, row: usize) -> f64 {
         (self.velocity(row + 1) - self.velocity(row)) / self.period_s
     }
 
     /// Acceleration that a drive of a timing takes in a row.
+    #[inline]
     #[must_use]
     pub(crate) fn acceleration(&self, timing: Timing, row: usize) -> f64 {
         let now = self.second_difference(row);
