@@ -15,6 +15,7 @@
 //! whether something is left.
 
 pub(crate) mod all_rows;
+pub(crate) mod amount;
 pub(crate) mod another_day;
 pub(crate) mod at_reversals;
 pub(crate) mod causes;
@@ -25,6 +26,7 @@ pub(crate) mod findings;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;
 pub(crate) mod plausibility;
+pub(crate) mod rank;
 pub(crate) mod residual;
 pub(crate) mod reversal;
 pub(crate) mod reversal_stage;

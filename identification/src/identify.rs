@@ -11,6 +11,7 @@ use crate::evidence::effort;
 use crate::evidence::findings::{Findings, Stages};
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::plausibility;
+use crate::evidence::rank;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
@@ -52,6 +53,8 @@ fn identify_excerpt(
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
     let motions = Motions::of(fitted_on, low_cutoff_hz)?;
     plausibility::check(dataset, &motions.train)?;
+    let known = rank::known(fitted_on, &motions);
+    let fitted_on = &*known;
     let bench = Bench::new(fitted_on, &motions.train);
     let low = Bench::new(fitted_on, &motions.train_low);
     let pair = Pair {

@@ -7,6 +7,7 @@
 
 use axis_model::EffectName;
 
+use crate::evidence::amount;
 use crate::evidence::another_day::{self, Change};
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::causes;
@@ -144,6 +145,11 @@ impl<'a> Findings<'a> {
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
         reasons.extend(residual.reasons(has_gap));
+        reasons.extend(amount::on_another_record(
+            dataset,
+            validation,
+            &models.extended,
+        ));
         reasons.extend(signs::reasons(dataset, motion, &models.extended));
         let verdict = Verdict::of(reasons);
         let changes = another_day::changes(dataset, [motion, validation], &models.extended);

@@ -17,12 +17,14 @@
 
 use axis_model::EffectName;
 
+use crate::evidence::amount::{Amount, about_mean};
 use crate::evidence::features::{FAMILIES, Family, Scene, rate};
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
+use crate::evidence::reversal::rms;
 use crate::evidence::selection::{Scored, Vetoed, is_certain};
 use crate::evidence::thresholds::{
-    FED_BACK_PERCENT, LEFT_PERCENT, NOISE_SLOWNESS, SHAPE_PART, SHIFT_S, UNEXPLAINED_PERCENT,
-    UNEXPLAINED_SHARE, UNEXPLAINED_T, WHITE_SHARE,
+    FED_BACK_PERCENT, SHAPE_PART, SHIFT_S, UNEXPLAINED_PERCENT, UNEXPLAINED_SHARE, UNEXPLAINED_T,
+    WHITE_SHARE,
 };
 use crate::evidence::verdict::Reason;
 use crate::fit::bench::Bench;
@@ -56,14 +58,12 @@ pub(crate) struct Remainder {
     pub late_s: f64,
     /// What that shift removes from the residual on held-out blocks; its size as for a structure.
     pub shift: Gain,
-    /// Rms of the residual, percent of the effort without its mean.
-    pub percent: f64,
+    /// How much is left, and how slow it is.
+    pub amount: Amount,
     /// Rms of what the rounding of the effort may leave, percent of the same.
     pub rounding_percent: f64,
     /// Rms of the effort over that without its mean.
     pub whole: f64,
-    /// Correlation time of the residual over that of low-passed white noise.
-    pub slowness: f64,
 }
 
 impl Remainder {
@@ -93,14 +93,14 @@ impl Remainder {
         let rest = span.outside(&residual);
         let scene = Scene::of(bench, &force);
         let moved = about_mean(&motion.effort_lp, &motion.fitted).max(f64::MIN_POSITIVE);
-        let percent = 100.0 * rms(&residual, &motion.fitted) / moved;
+        let amount = Amount::of(motion, &residual);
         let shift_rms = SHIFT_S * rms(&rate, &motion.fitted);
         let judged = |family: &&'static Family| {
             let gain = in_family(motion, &span, &rest, &scene.columns(family));
             let parts_rms = effect_rms(bench, fitted, family.shapes);
             Structure {
                 family,
-                gain: sized(gain, percent),
+                gain: sized(gain, amount.percent),
                 allowed_percent: 100.0 / moved * allowed(family, parts_rms, bristle_rms, shift_rms),
             }
         };
@@ -111,11 +111,10 @@ impl Remainder {
         Self {
             structures,
             late_s: -shift.1,
-            shift: sized(shift.0, percent),
-            percent,
+            shift: sized(shift.0, amount.percent),
+            amount,
             whole: rms(&motion.effort_lp, &motion.fitted) / moved,
             rounding_percent: 100.0 * rounding / moved,
-            slowness: correlation_rows(&residual, &motion.fitted) / noise_rows(motion),
         }
     }
 
@@ -179,7 +178,7 @@ impl Remainder {
             .find(|one| counts(one))
             .or_else(|| seen.clone().next());
         reasons.extend(first.map(|one| one.reason(counts(one))));
-        reasons.extend(self.of_what_is_left());
+        reasons.extend(self.amount.reason("of the effort of motion is left"));
         reasons
     }
 
@@ -196,20 +195,6 @@ impl Remainder {
                 Reason::unexplained(words + ": check how the columns were recorded")
             } else {
                 Reason::told(words)
-            }
-        })
-    }
-
-    fn of_what_is_left(&self) -> Option<Reason> {
-        let words = format!("{:.0} % of the effort of motion is left", self.percent);
-        (self.percent > LEFT_PERCENT).then(|| {
-            if self.slowness > NOISE_SLOWNESS {
-                let times = self.slowness;
-                Reason::unexplained(format!(
-                    "{words}, {times:.1} times as slow as noise would be"
-                ))
-            } else {
-                Reason::told(format!("{words}, as fast as noise"))
             }
         })
     }
@@ -284,7 +269,7 @@ impl ResidualStructure {
         let mut reasons = left.reasons(has_gap);
         let candidate = self.candidate.as_ref();
         let matters = |one: &&Scored| {
-            let gain = sized(one.gain, left.percent);
+            let gain = sized(one.gain, left.amount.percent);
             let allowed = one.effect.name().map_or(0.0, |name| left.allowed_to(name));
             left.matters(&gain) && gain.percent >= allowed
         };
@@ -397,52 +382,6 @@ fn smaller(gain: Gain, other: &Gain) -> Gain {
     }
 }
 
-fn rms(signal: &[f64], mask: &[bool]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0_f64);
-    for (value, _) in signal.iter().zip(mask).filter(|(_, inside)| **inside) {
-        sum += value * value;
-        count += 1.0;
-    }
-    (sum / count.max(1.0)).sqrt()
-}
-
-/// Rms about the mean.
-fn about_mean(signal: &[f64], mask: &[bool]) -> f64 {
-    let inside = || signal.iter().zip(mask).filter(|(_, inside)| **inside);
-    let mean = inside().map(|(value, _)| value).sum::<f64>() / inside().count().max(1) as f64;
-    let apart: Vec<f64> = signal.iter().map(|value| value - mean).collect();
-    rms(&apart, mask)
-}
-
-/// Correlation time in rows: the sum of the autocorrelation up to its first zero.
-fn correlation_rows(signal: &[f64], mask: &[bool]) -> f64 {
-    let at = |lag: usize| {
-        let pairs = (0..signal.len() - lag).filter(|row| mask[*row] && mask[row + lag]);
-        let products = pairs.map(|row| (signal[row] * signal[row + lag], 1.0));
-        let (sum, count) = products.fold((0.0, 0.0), |(s, n), (p, one)| (s + p, n + one));
-        sum / f64::max(count, 1.0)
-    };
-    let whole = at(0).max(f64::MIN_POSITIVE);
-    let longest = signal.len() / 20;
-    let ratios = (0..longest).map(|lag| at(lag) / whole);
-    ratios
-        .take_while(|ratio| *ratio > 0.0)
-        .sum::<f64>()
-        .max(1.0)
-}
-
-/// The same of white noise behind the low-pass of a record.
-fn noise_rows(motion: &Kinematics) -> f64 {
-    let mut impulse = vec![0.0; IMPULSE_ROWS];
-    impulse[IMPULSE_ROWS / 2] = 1.0;
-    let response = motion.filter.apply(&impulse);
-    correlation_rows(&response, &vec![true; IMPULSE_ROWS])
-}
-
-/// Rows in which the impulse of a low-pass of a tenth of the sample rate, or of 20 Hz at 1 kHz, has
-/// died away.
-const IMPULSE_ROWS: usize = 4001;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -498,37 +437,20 @@ mod tests {
     fn noise_goes_with_nothing_and_is_as_fast_as_the_low_pass_lets_it_be() {
         let left = left(|_, row| 8.0 * (1.7 * (row * row % 1013) as f64).sin());
         assert!(first(&left).1 < 0.05, "{:?}", first(&left));
-        assert!((0.5..1.5).contains(&left.slowness), "{}", left.slowness);
-        assert!(left.reasons(false).is_empty());
-    }
-
-    #[test]
-    fn a_slow_rest_is_slower_than_noise_and_counts_where_much_is_left() {
-        let wave = |m: &Kinematics, row: usize| 20.0 * (61.0 * m.time_s[row]).sin();
-        let left = left(wave);
-        assert!(left.slowness > NOISE_SLOWNESS, "{}", left.slowness);
-        assert!(left.percent > LEFT_PERCENT, "{}", left.percent);
-        let counts = left.of_what_is_left().map(|reason| reason.counts);
-        assert_eq!(counts, Some(true));
-        let fast = Remainder {
-            slowness: 1.9,
-            ..left.clone()
-        };
-        assert_eq!(
-            fast.of_what_is_left().map(|reason| reason.counts),
-            Some(false)
+        assert!(
+            (0.5..1.5).contains(&left.amount.slowness),
+            "{}",
+            left.amount.slowness
         );
-        let small = Remainder {
-            percent: 11.9,
-            ..left
-        };
-        assert_eq!(small.of_what_is_left(), None);
+        assert!(left.reasons(false).is_empty());
     }
 
     #[test]
     fn the_percentage_left_is_of_the_effort_without_its_mean() {
         let percent = |gravity: f64| {
-            left(move |m, row| gravity + 10.0 * (61.0 * m.time_s[row]).sin()).percent
+            left(move |m, row| gravity + 10.0 * (61.0 * m.time_s[row]).sin())
+                .amount
+                .percent
         };
         let (level, hanging) = (percent(0.0), percent(5000.0));
         assert!((hanging / level - 1.0).abs() < 0.02, "{level} {hanging}");

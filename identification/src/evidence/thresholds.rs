@@ -227,6 +227,17 @@ pub(crate) const LONGEST_M: f64 = 100.0;
 /// Fastest motion of a linear axis, m/s.
 pub(crate) const FASTEST_M_PER_S: f64 = 50.0;
 
+// ---- What a record cannot know: `rank` ----
+
+/// A declared model is known where its prediction is certain within this part of the effort,
+/// percent. Chosen: beyond a half, no effect's own force is as large as the doubt about it. A model
+/// that lacks something large is uncertain by up to a tenth, and that is for the selection to find.
+pub(crate) const KNOWN_PERCENT: f64 = 50.0;
+
+/// An effect is dropped where that makes the prediction so much more certain: a half, or it was not
+/// this effect that was unknown.
+pub(crate) const KNOWN_GAIN: f64 = 0.5;
+
 // ---- The drive's own velocity: `velocity` ----
 
 /// Measured velocity over derivative of the position: other factors are a unit, a gear or another

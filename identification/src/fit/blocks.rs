@@ -117,21 +117,44 @@ impl Blocks {
     /// Half widths of 95 % intervals by the jackknife over folds.
     #[must_use]
     pub(crate) fn half_widths(&self) -> Vec<f64> {
+        let away = self.away_from_their_mean();
+        let of_column = |i: usize| away.iter().map(|away| away[i].powi(2)).sum::<f64>();
+        (0..self.scale.len() - 1)
+            .map(|i| 1.96 * (self.jackknife() * of_column(i)).sqrt())
+            .collect()
+    }
+
+    /// Half width of the 95 % interval of the prediction of blocks with the same columns, rms over
+    /// them, percent of their target; infinite where the prediction has no bounds.
+    #[must_use]
+    pub(crate) fn uncertainty_on(&self, other: &Self) -> f64 {
+        let size = other.scale.len();
+        let total = sum(&other.grams, size);
+        let columns = total.view((0, 0), (size - 1, size - 1));
+        let away = self.away_from_their_mean();
+        let spread: f64 = away.iter().map(|away| away.dot(&(columns * away))).sum();
+        let share = self.jackknife() * spread / total[(size - 1, size - 1)];
+        if share.is_finite() {
+            100.0 * 1.96 * share.max(0.0).sqrt()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Coefficients without each fold, about their mean.
+    fn away_from_their_mean(&self) -> Vec<DVector<f64>> {
         let total = sum(&self.grams, self.scale.len());
         let folds: Vec<DVector<f64>> = (0..self.folds)
             .map(|fold| self.without_fold(&total, fold))
             .collect();
-        let count = folds.len() as f64;
-        (0..self.scale.len() - 1)
-            .map(|i| {
-                let mean = folds.iter().map(|fold| fold[i]).sum::<f64>() / count;
-                let spread = folds
-                    .iter()
-                    .map(|fold| (fold[i] - mean).powi(2))
-                    .sum::<f64>();
-                1.96 * ((count - 1.0) / count * spread).sqrt()
-            })
-            .collect()
+        let mean = folds.iter().sum::<DVector<f64>>() / folds.len() as f64;
+        folds.into_iter().map(|fold| fold - &mean).collect()
+    }
+
+    /// Variance of what all folds give over the squares of what each leaves.
+    fn jackknife(&self) -> f64 {
+        let count = self.folds as f64;
+        (count - 1.0) / count
     }
 
     fn without_fold(&self, total: &DMatrix<f64>, fold: usize) -> DVector<f64> {
