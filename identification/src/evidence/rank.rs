@@ -4,11 +4,11 @@
 //! nothing of a Stribeck fall. Their columns are (nearly) dependent: the fit leaves as little as
 //! any, but its coefficients are differences of large numbers, and on another motion they predict
 //! anything. So the declared model is asked how far its prediction would change had a part of the
-//! training record been another one (the jackknife over blocks, [`Blocks::uncertainty_on`]), on the
+//! training record been another one (the jackknife over blocks, [`Bench::uncertainty_on`]), on the
 //! training record and on the other one. Where that is more than
 //! [`KNOWN_PERCENT`](crate::evidence::thresholds::KNOWN_PERCENT) of the effort, the effect is
 //! dropped that costs nothing on held-out blocks of the training record and makes the prediction
-//! most certain, and a remark says so. An effect that the training record does show is never
+//! certain, and a remark says so. An effect that the training record does show is never
 //! dropped.
 
 use std::borrow::Cow;
@@ -92,8 +92,8 @@ fn advice(effect: EffectName) -> &'static str {
     }
 }
 
-/// The effect that is dropped next: of those that the training record does not miss, the one
-/// without which the prediction is most certain.
+/// The effect that is dropped next, of those that the training record does not miss: one without
+/// which the prediction is known.
 fn unknown(benches: [&Bench<'_>; 2], model: &Model) -> Option<Unknown> {
     let before = uncertainty(benches, model);
     if before <= KNOWN_PERCENT {
@@ -111,8 +111,9 @@ fn unknown(benches: [&Bench<'_>; 2], model: &Model) -> Option<Unknown> {
         })
     };
     let forces = model.parts.iter().filter(|part| part.width() > 0);
+    // Of two that may go, the later one of the library: the plain effects stand at its head.
     let unknown = forces.filter_map(without);
-    unknown.min_by(|a, b| a.percent[1].total_cmp(&b.percent[1]))
+    unknown.max_by_key(|unknown| unknown.percent[1] <= KNOWN_PERCENT)
 }
 
 /// Whether held-out blocks of the training record miss an effect.
@@ -124,8 +125,9 @@ fn is_missed(bench: &Bench<'_>, with: &Model, without: &Model) -> bool {
 /// Half width of the prediction's 95 % interval, rms over the record that is worse, percent of its
 /// effort.
 fn uncertainty(benches: [&Bench<'_>; 2], model: &Model) -> f64 {
-    let [train, other] = benches.map(|bench| bench.blocks(&bench.design(model)));
-    f64::max(train.uncertainty_on(&train), train.uncertainty_on(&other))
+    let [train, other] = benches;
+    let on = |bench| train.uncertainty_on(bench, model);
+    f64::max(on(train), on(other))
 }
 
 #[cfg(test)]
@@ -137,7 +139,7 @@ mod tests {
 
     const PERIOD_S: f64 = 1.0e-3;
 
-    /// 20 s there and back, the turns rounded, with a speed for each way.
+    /// 20 s there and back, turned within a few rows, with a speed for each way.
     fn path(speeds: &[f64]) -> Vec<f64> {
         const WAY_ROWS: usize = 600;
         let speed = |row: usize| {
@@ -147,7 +149,7 @@ mod tests {
         };
         let (mut velocity, mut position) = (0.0_f64, 0.0);
         let steps = (0..20_000).map(|row| {
-            let step = 2.0 * PERIOD_S;
+            let step = 50.0 * PERIOD_S;
             velocity += (speed(row) - velocity).clamp(-step, step);
             position += PERIOD_S * velocity;
             position

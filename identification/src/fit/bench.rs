@@ -176,6 +176,14 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).cross_validate()
     }
 
+    /// Half width of the 95 % interval of what a model, fitted here, predicts on a bench; rms,
+    /// percent of the effort there.
+    #[must_use]
+    pub(crate) fn uncertainty_on(&self, other: &Bench<'_>, model: &Model) -> f64 {
+        let [own, others] = [self, other].map(|bench| bench.blocks(&bench.design(model)));
+        own.uncertainty_on(&others)
+    }
+
     /// Sum of squares that the structure of a model leaves on each half of the blocks, with the
     /// coefficients that the other half gives it.
     #[must_use]
