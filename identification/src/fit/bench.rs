@@ -15,6 +15,7 @@ use crate::fit::span::Span;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
+use crate::motion::filter::fit_cutoff_hz;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::shift::{all_shifted, shifted};
 use crate::record::dataset::Dataset;
@@ -226,12 +227,22 @@ impl<'a> Bench<'a> {
         let columns = design.columns.len();
         let slopes = tuned.iter().map(|place| self.derivative(fitted, *place));
         design.columns.extend(slopes);
-        let half_widths = self.blocks(&design).half_widths();
+        let blocks = self.blocks(&design);
+        let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
         let (own, parameters) = half_widths.split_at(columns);
         fitted.estimates(own, |place| {
             let among = tuned.iter().position(|tuned| *tuned == place)?;
             Some(parameters[among])
         })
+    }
+
+    /// Samples that are fitted, as far as the low-pass leaves them independent: two a period of its
+    /// cut-off.
+    fn independent_samples(&self) -> f64 {
+        let fitted = self.motion.fitted.iter().filter(|fitted| **fitted).count() as f64;
+        let cutoff_hz = fit_cutoff_hz(self.dataset, &self.dataset.train);
+        let rows = 0.5 / (cutoff_hz * self.motion.period_s);
+        fitted / rows.max(1.0)
     }
 
     /// Derivative of the prediction by the nonlinear parameter of a part; low-passed.

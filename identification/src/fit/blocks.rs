@@ -10,6 +10,9 @@ use crate::fit::rows::{FOLDS, Rows};
 /// Ridge, relative to the mean diagonal: keeps equal columns from blowing up.
 const RIDGE: f64 = 1.0e-12;
 
+/// A column is in one fold where no more than this part of its sum of squares is in the others.
+const NOTHING_LEFT: f64 = 1.0e-6;
+
 /// Gram matrices of `[columns, target]`, one per block.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks {
@@ -122,6 +125,47 @@ impl Blocks {
         (0..self.scale.len() - 1)
             .map(|i| 1.96 * (self.jackknife() * of_column(i)).sqrt())
             .collect()
+    }
+
+    /// The same, but for a column that lives in one fold, as a step at a time does. Without that
+    /// fold nothing is known of it, so the jackknife says nothing: it has the half width of least
+    /// squares over so many independent samples.
+    #[must_use]
+    pub(crate) fn half_widths_beside_steps(&self, independent_samples: f64) -> Vec<f64> {
+        let mut half_widths = self.half_widths();
+        let steps = (0..half_widths.len()).filter(|i| self.is_in_one_fold(*i));
+        let steps: Vec<usize> = steps.collect();
+        if !steps.is_empty() {
+            let plain = self.plain_half_widths(independent_samples);
+            steps.into_iter().for_each(|i| half_widths[i] = plain[i]);
+        }
+        half_widths
+    }
+
+    /// Whether hardly anything is left of a column without one of the folds.
+    fn is_in_one_fold(&self, column: usize) -> bool {
+        let power = |grams: &mut dyn Iterator<Item = &DMatrix<f64>>| -> f64 {
+            grams.map(|gram| gram[(column, column)]).sum()
+        };
+        let all = power(&mut self.grams.iter());
+        let of_fold = |fold| power(&mut self.grams.iter().skip(fold).step_by(self.folds));
+        (0..self.folds).any(|fold| all - of_fold(fold) < NOTHING_LEFT * all)
+    }
+
+    /// Half widths of 95 % intervals by least squares.
+    fn plain_half_widths(&self, independent_samples: f64) -> Vec<f64> {
+        let size = self.scale.len() - 1;
+        let total = sum(&self.grams, size + 1);
+        let scaled = |i: usize, j: usize| total[(i, j)] / (self.scale[i] * self.scale[j]);
+        let inverse = DMatrix::from_fn(size, size, scaled).pseudo_inverse(RIDGE);
+        let variance = self.fit().sse / independent_samples.max(1.0);
+        let half_width = |i: usize| {
+            let own = inverse
+                .as_ref()
+                .map_or(f64::INFINITY, |inverse| inverse[(i, i)]);
+            1.96 * (own.max(0.0) * variance).sqrt() / self.scale[i]
+        };
+        (0..size).map(half_width).collect()
     }
 
     /// Half width of the 95 % interval of the prediction of blocks with the same columns, rms over

@@ -218,6 +218,17 @@ mod tests {
     }
 
     #[test]
+    fn the_time_has_an_interval_although_only_one_block_knows_it() {
+        let axis = axis(loaded);
+        let part = found(EffectName::Payload, FROM_S);
+        let model = model(&[Inertia, Viscous, Coulomb, Offset]).with(part);
+        let bench = axis.bench();
+        let estimates = bench.estimates(&bench.fit(&model));
+        let half_width_s = estimates[4].parameter_half_width.unwrap();
+        assert!((1.0e-6..0.1).contains(&half_width_s), "{half_width_s}");
+    }
+
+    #[test]
     fn an_axis_cannot_put_down_more_than_it_has() {
         let physical = |change: f64| {
             Payload.is_physical(&Fitted {
