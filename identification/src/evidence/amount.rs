@@ -26,7 +26,7 @@ impl Amount {
         let moved = about_mean(&motion.effort_lp, &motion.fitted).max(f64::MIN_POSITIVE);
         Self {
             percent: 100.0 * rms(residual, &motion.fitted) / moved,
-            slowness: correlation_rows(residual, &motion.fitted) / noise_rows(motion),
+            slowness: slowness(motion, residual, &motion.fitted),
         }
     }
 
@@ -64,6 +64,11 @@ pub(crate) fn about_mean(signal: &[f64], mask: &[bool]) -> f64 {
     let mean = inside().map(|(value, _)| value).sum::<f64>() / inside().count().max(1) as f64;
     let apart: Vec<f64> = signal.iter().map(|value| value - mean).collect();
     rms(&apart, mask)
+}
+
+/// Correlation time of a low-passed signal over that of low-passed white noise.
+pub(crate) fn slowness(motion: &Kinematics, signal: &[f64], mask: &[bool]) -> f64 {
+    correlation_rows(signal, mask) / noise_rows(motion)
 }
 
 /// Correlation time in rows: the sum of the autocorrelation up to its first zero.

@@ -1,14 +1,17 @@
 //! What motor − load keeps when every accepted effect is out of it.
 //!
-//! Three things give motor − load a structure: the direction (a gap that was not found), the
-//! transmitted force (a spring that stiffens, a hysteresis) and the position (a screw, a scale).
-//! Each is a set of functions of the motion, fitted to the residual and judged on held-out blocks.
-//! What they take away there is structure, in counts of the coarser encoder. The transmitted force
-//! is the one that winds the spring up; without a spring the one that the motion predicts. A gap
-//! that a spring has swallowed shows as a step over that force.
+//! Four things give motor − load a structure: the direction (a gap that was not found), the
+//! transmitted force (a spring that stiffens, a hysteresis), the position (a screw, a scale) and
+//! the time (a coupling that slips, a part that warms). Each is a set of functions of the motion,
+//! fitted to the residual and judged on held-out blocks. What they take away there is structure, in
+//! counts of the coarser encoder. A coupling that slips in jumps is no function of time; but then
+//! most of motor − load is left, slower than noise. The time is asked where nothing else goes with
+//! it. The transmitted force is the one that winds the spring up; without a spring the one that the
+//! motion predicts. A gap that a spring has swallowed shows as a step over that force.
 
 use super::columns::{Apart, of_motor};
-use crate::evidence::thresholds::{APART_COUNTS, APART_SHARE, DIFFERENCE_T};
+use crate::evidence::amount::{about_mean, slowness};
+use crate::evidence::thresholds::{APART_COUNTS, APART_SHARE, DIFFERENCE_T, NOISE_SLOWNESS};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::plain::Plain;
 
@@ -28,6 +31,7 @@ struct Motion {
     velocity: Vec<f64>,
     force: Vec<f64>,
     position: Vec<f64>,
+    time: Vec<f64>,
 }
 
 /// The largest structure in a residual that is beyond the counts; `wound` is the wind-up of a
@@ -47,7 +51,8 @@ pub(crate) fn left(
     ];
     let beyond = |left: &Left| left.rms > APART_COUNTS * count;
     let all = all.into_iter().flatten().filter(beyond);
-    all.max_by(|a, b| a.rms.total_cmp(&b.rms))
+    let largest = all.max_by(|a, b| a.rms.total_cmp(&b.rms));
+    largest.or_else(|| rest.over_time(&motion).filter(beyond))
 }
 
 impl Motion {
@@ -65,6 +70,7 @@ impl Motion {
             ones: vec![1.0; motion.len()],
             force: at_most_one(wound.unwrap_or_else(|| (0..motion.len()).map(force).collect())),
             position: about_middle(motion.position_lp.clone()),
+            time: about_middle(motion.time_s.clone()),
             velocity,
             direction,
         }
@@ -99,6 +105,9 @@ fn laws_of(values: &[f64]) -> Vec<Vec<f64>> {
     laws.into_iter().map(column).collect()
 }
 
+/// Most of motor − load, rms.
+const MOST: f64 = 0.5;
+
 /// A residual of motor − load on its record.
 struct Rest<'a> {
     apart: &'a Apart<'a>,
@@ -123,6 +132,19 @@ impl Rest<'_> {
         let base = self.fit(&all);
         all.extend(columns.iter().map(Vec::as_slice));
         self.structure(what, &base, &self.fit(&all))
+    }
+
+    /// Structure over the time; the largest is all that is left, where that is most of it and slow.
+    fn over_time(&self, motion: &Motion) -> Option<Left> {
+        let mask = &self.apart.mask;
+        let [left, all] = [self.residual, &self.apart.target].map(|x| about_mean(x, mask));
+        let is_most = left > MOST * all;
+        let is_slow = || slowness(self.apart.motion, self.residual, mask) > NOISE_SLOWNESS;
+        let over = "the time";
+        if is_most && is_slow() {
+            return Some(Left { over, rms: left });
+        }
+        self.over(over, motion, &laws_of(&motion.time))
     }
 
     fn structure(&self, over: &'static str, base: &Fit, full: &Fit) -> Option<Left> {
@@ -176,5 +198,15 @@ mod tests {
             sizes.iter().all(|rms| (0.3e-6..3.0e-6).contains(rms)),
             "{sizes:?}"
         );
+    }
+
+    #[test]
+    fn what_drifts_and_what_slips_goes_with_the_time() {
+        let drift = |axis: &Axis, row: usize| 1.0e-6 * axis.motion.time_s[row];
+        let slip = |axis: &Axis, row: usize| 4.0e-6 * (axis.motion.time_s[row] / 0.7).floor().sin();
+        for left in [left_by(drift), left_by(slip)].map(Option::unwrap) {
+            assert_eq!(left.over, "the time");
+            assert!((1.0e-6..4.0e-6).contains(&left.rms), "{left:?}");
+        }
     }
 }
