@@ -137,7 +137,9 @@ impl Blocks {
         let steps: Vec<usize> = steps.collect();
         if !steps.is_empty() {
             let plain = self.plain_half_widths(independent_samples);
-            steps.into_iter().for_each(|i| half_widths[i] = plain[i]);
+            for step in steps {
+                half_widths[step] = plain[step];
+            }
         }
         half_widths
     }
