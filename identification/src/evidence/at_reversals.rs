@@ -11,6 +11,9 @@
 //!
 //! The load scale is asked first, then a free run with the known controller. The inverse model
 //! decides where neither can, and breaks a tie of the free run.
+//!
+//! A bristle that the motor alone shows may have a gap before it. That is asked last
+//! ([`gap`](crate::evidence::reversal::gap)), of the effort about reversals.
 
 use crate::evidence::free_run::Summary;
 use crate::evidence::reversal::Presliding;
@@ -45,6 +48,15 @@ pub(crate) struct AtReversals {
     pub unexplained: bool,
 }
 
+impl AtReversals {
+    /// A bristle behind a gap.
+    pub(crate) const BOTH: Self = Self {
+        presliding: true,
+        backlash: true,
+        unexplained: false,
+    };
+}
+
 impl Witnesses {
     /// What acts, by what they say.
     #[must_use]
@@ -60,6 +72,14 @@ impl Witnesses {
                 unexplained: false,
             },
         }
+    }
+
+    /// Whether a gap before a bristle is worth a look: the motor alone was recorded, the effort
+    /// about reversals bends as under a bristle, something acts there, and nobody named a gap.
+    #[must_use]
+    pub(crate) fn may_hide_a_gap(&self, decided: AtReversals) -> bool {
+        let acts = decided.presliding || decided.unexplained;
+        self.load_scale.is_none() && self.accepts_bristle() && acts && !decided.backlash
     }
 
     fn accepts_bristle(&self) -> bool {
@@ -147,11 +167,7 @@ mod tests {
         backlash: true,
         ..NOTHING
     };
-    const BOTH: AtReversals = AtReversals {
-        presliding: true,
-        backlash: true,
-        unexplained: false,
-    };
+    const BOTH: AtReversals = AtReversals::BOTH;
     const UNEXPLAINED: AtReversals = AtReversals {
         unexplained: true,
         ..NOTHING
@@ -427,6 +443,33 @@ mod tests {
             ("in a free run", heard(true), NOTHING),
             ("in a followed run", heard(false), NOTHING),
         ]);
+    }
+
+    #[test]
+    fn a_gap_may_hide_before_a_bristle_or_behind_a_doubt_where_the_motor_alone_was_recorded() {
+        let motor = Witnesses {
+            inverse: Some(inverse(0.3, true)),
+            ..Witnesses::default()
+        };
+        let stiff = Witnesses {
+            inverse: Some(inverse(0.8, false)),
+            ..motor
+        };
+        let with_scale = Witnesses {
+            load_scale: Some(LoadScale::default()),
+            ..motor
+        };
+        for (witnesses, decided, wanted) in [
+            (motor, BRISTLE, true),
+            (motor, UNEXPLAINED, true),
+            (motor, NOTHING, false),
+            (motor, GAP, false),
+            (motor, BOTH, false),
+            (stiff, UNEXPLAINED, false),
+            (with_scale, BRISTLE, false),
+        ] {
+            assert_eq!(witnesses.may_hide_a_gap(decided), wanted, "{decided:?}");
+        }
     }
 
     #[test]

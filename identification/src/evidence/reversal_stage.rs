@@ -48,11 +48,13 @@ impl ReversalStage {
         if let Some(reversals) = &mut free_run {
             reversals.settle(decided.presliding, has_gap(decided, load_scale));
         }
-        let is_asked = load_scale.is_none() && decided.presliding && !decided.backlash;
+        let is_asked = witnesses.may_hide_a_gap(decided);
         let gap = is_asked
             .then(|| reversal::gap(bench, other, fitted))
             .flatten();
-        decided.backlash |= gap.is_some_and(|gap| gap.is_clear());
+        if gap.is_some_and(|gap| gap.is_clear()) {
+            decided = AtReversals::BOTH;
+        }
         Self {
             inverse,
             gap,
