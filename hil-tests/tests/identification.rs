@@ -31,21 +31,21 @@ fn kind(plan: &Plan) -> &'static str {
     }
 }
 
-/// The records of the scope: one with one effect; one of each kind; all.
+/// The records of the scope: one with one effect; one of every second kind; all.
 fn chosen() -> Vec<Plan> {
     let (all, mut seen) = (plans(), BTreeSet::new());
-    let one_of_each = all
-        .iter()
-        .filter(|plan| seen.insert(kind(plan)))
-        .cloned()
-        .collect();
+    let one_of_each = all.iter().filter(|plan| seen.insert(kind(plan)));
+    let one_of_every_second = one_of_each.step_by(2).cloned().collect();
     let single = all
         .iter()
         .filter(|plan| plan.hidden.len() == 1)
         .take(1)
         .cloned()
         .collect();
-    let (count, some) = (all.len(), Scope::now().pick(single, one_of_each, all));
+    let (count, some) = (
+        all.len(),
+        Scope::now().pick(single, one_of_every_second, all),
+    );
     println!(
         "seeded records: {} of {count} (scope {:?})",
         some.len(),
