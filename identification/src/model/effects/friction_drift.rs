@@ -1,12 +1,9 @@
 //! Friction that changes with time from the start of the record (warm-up): `(a sign(v) + b
 //! v)·exp(−t / τ)`; every record starts cold.
-//!
-//! What is there at the start must be friction too: `Fc + a ≥ 0` and `B + b ≥ 0`. Slow motion at
-//! the start of a record, with a Stribeck fall in it, asks for a viscous friction below zero.
 
 use axis_model::EffectName;
 
-use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -70,12 +67,6 @@ impl Effect for FrictionDrift {
 
     fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
         (0.02 * motion.duration_s(), 3.0 * motion.duration_s())
-    }
-
-    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
-        let [coulomb, viscous] = [(fitted.coulomb, 0), (fitted.viscous, 1)]
-            .map(|(settled, place)| settled + fitted.own.get(place).copied().unwrap_or(0.0));
-        coulomb >= 0.0 && viscous >= 0.0
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
