@@ -120,19 +120,31 @@ impl Setup<'_> {
 const PLANT_X: usize = 0;
 const SERVO_X: usize = 1;
 
+/// Longest time in which the nodes boot.
+const LONGEST_BOOT: Duration = Duration::from_mins(1);
+
 /// Node processes of both axes; they end with the value.
 struct Nodes(Vec<Child>);
 
 impl Nodes {
     fn start(setup: Setup<'_>) -> Self {
+        let before = kernel_frames();
         let nodes = Self(vec![
             setup.node(&["plant", "--node", "0x11"]),
             setup.node(&["servo", "--node", "1", "--plant-node", "0x11"]),
             setup.node(&["plant", "--node", "0x12"]),
             setup.node(&["servo", "--node", "2", "--plant-node", "0x12"]),
         ]);
-        // They say nothing before they are asked; give them time to open their sockets.
-        std::thread::sleep(Duration::from_secs(1));
+        // Each says that it has booted, and nothing more before it is asked. A busy machine takes
+        // longer than any fixed time.
+        let waiting = Instant::now();
+        while kernel_frames() < before + nodes.0.len() as u64 {
+            assert!(
+                waiting.elapsed() < LONGEST_BOOT,
+                "not every node has booted"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
         nodes
     }
 
