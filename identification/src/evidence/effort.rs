@@ -5,6 +5,10 @@
 //! lower cut-off too. What later effects made superfluous is removed again, and so is what makes
 //! another record worse.
 //!
+//! Some effects have rivals ([`Effect::rivals`]): what looks like a change over time is often slow
+//! motion that came first. Such an effect must beat its rival, at the rival's own best, by the rule
+//! by which an effect beats no effect.
+//!
 //! The nearest outsiders ([`Effect::is_nearest_outsider`]) never replace a listed name that is as
 //! good. First only what the listed effects leave is open to them. Where one of them explains some
 //! of that, all compete from the start, and in each round an outsider must beat the best listed
@@ -130,7 +134,9 @@ impl Output for Effort<'_> {
         let of = |outsider: bool| {
             let is_one = move |place: &usize| is_outsider(&candidates[*place]) == outsider;
             let places = (0..candidates.len()).filter(is_one);
-            places.filter(|place| self.accepts(&candidates[*place]))
+            places
+                .filter(|place| self.accepts(&candidates[*place]))
+                .filter(|place| self.beats_rivals(&candidates[*place].model, candidates))
         };
         let listed = of(false).next();
         match (self.outsiders, listed) {
@@ -197,6 +203,17 @@ impl Effort<'_> {
             let with_other = model.with(Part::found(*other, parameter));
             beats(self.pair.bench, extended, &with_other)
         })
+    }
+
+    /// Whether the last part of a model beats the candidates that it has to.
+    fn beats_rivals(&self, model: &Model, candidates: &[Candidate<Model>]) -> bool {
+        let rivals = last(model).0.rivals();
+        let is_rival = |other: &&Candidate<Model>| {
+            let called = other.scored.effect.name();
+            other.scored.physical && called.is_some_and(|name| rivals.contains(&name))
+        };
+        let mut rivals = candidates.iter().filter(is_rival);
+        rivals.all(|rival| beats(self.pair.bench, model, &rival.model))
     }
 
     fn gain_at_low_cutoff(&self, model: &Model, extended: &Model, effect: &dyn Effect) -> Gain {
@@ -374,9 +391,10 @@ fn moves_otherwise(gain: &Gain) -> bool {
 mod tests {
     use super::*;
     use crate::fit::made::{Axis, axis, found, model, usual};
+    use crate::motion::kinematics::Kinematics;
     use EffectName::{
-        Coulomb, Delay, Inertia, Offset, QuadraticDrag, Stribeck, TorqueRipple, Viscous,
-        ViscousAsymmetry,
+        Coulomb, Delay, FrictionDrift, Inertia, Offset, QuadraticDrag, Stribeck, TorqueRipple,
+        Viscous, ViscousAsymmetry,
     };
 
     const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
@@ -562,6 +580,30 @@ mod tests {
             },
             model: model(&DECLARED).with(found(effect, 0.0)),
         }
+    }
+
+    #[test]
+    fn a_drift_of_friction_must_beat_a_stribeck_fall_at_its_own_best() {
+        let fall = |motion: &Kinematics, row: usize| {
+            let v = motion.velocity[row] / 0.01;
+            15.0 * (-v * v).exp() * motion.direction[row]
+        };
+        let warm_up = |motion: &Kinematics, row: usize| {
+            15.0 * (-motion.time_s[row] / 2.0).exp() * motion.direction[row]
+        };
+        let beats = |law: &dyn Fn(&Kinematics, usize) -> f64| {
+            let axis = axis(|motion, row| usual(motion, row) + law(motion, row));
+            let bench = axis.bench();
+            let output = effort(Pair {
+                bench: &bench,
+                low: &bench,
+            });
+            let mut stribeck = candidate(Stribeck, 0.1, 2.0, true);
+            stribeck.model = model(&DECLARED).with(found(Stribeck, 0.01));
+            let drift = model(&DECLARED).with(found(FrictionDrift, 2.0));
+            output.beats_rivals(&drift, &[stribeck])
+        };
+        assert!(beats(&warm_up) && !beats(&fall));
     }
 
     #[test]

@@ -295,6 +295,11 @@ pub(crate) trait Effect: Sync {
         &[]
     }
 
+    /// Listed effects that it must beat, each at its own best.
+    fn rivals(&self) -> &'static [EffectName] {
+        &[]
+    }
+
     /// Whether it is one of the nearest outsiders of the list: a name that comes in only where no
     /// listed one is as good.
     fn is_nearest_outsider(&self) -> bool {

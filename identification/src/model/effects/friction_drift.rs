@@ -69,6 +69,11 @@ impl Effect for FrictionDrift {
         (0.02 * motion.duration_s(), 3.0 * motion.duration_s())
     }
 
+    /// A record that begins with slow motion has its Stribeck fall at its start.
+    fn rivals(&self) -> &'static [EffectName] {
+        &[EffectName::Stribeck]
+    }
+
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
         vec![
             naming.coefficient("friction_drift_coulomb", 0, naming.effort_unit("")),
