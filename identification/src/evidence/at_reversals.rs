@@ -13,7 +13,7 @@
 //! decides where neither can, and breaks a tie of the free run.
 //!
 //! A bristle that the motor alone shows may have a gap before it. That is asked last
-//! ([`gap`](crate::evidence::reversal::gap)), of the effort about reversals.
+//! ([`mod@crate::evidence::reversal::gap`]), of the effort about reversals.
 
 use crate::evidence::free_run::Summary;
 use crate::evidence::reversal::Presliding;

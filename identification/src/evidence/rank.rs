@@ -6,7 +6,7 @@
 //! anything. So the declared model is asked how far its prediction would change had a part of the
 //! training record been another one (the jackknife over blocks, [`Bench::uncertainty_on`]), on the
 //! training record and on the other one. Where that is more than
-//! [`KNOWN_PERCENT`](crate::evidence::thresholds::KNOWN_PERCENT) of the effort, the effect is
+//! [`KNOWN_PERCENT`] of the effort, the effect is
 //! dropped that costs nothing on held-out blocks of the training record and makes the prediction
 //! certain, and a remark says so. An effect that the training record does show is never
 //! dropped.

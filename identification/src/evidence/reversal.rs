@@ -5,7 +5,7 @@
 //! [`stick`], rigid Coulomb friction that holds whatever there is at standstill, and [`bristle`],
 //! Dahl's hysteresis, without that freedom. A gap between rigid friction and the motor cannot be
 //! judged this way (its impacts are not in the low-passed effort): see
-//! [`crate::evidence::free_run`]. One before a bristle can ([`gap`]).
+//! [`crate::evidence::free_run`]. One before a bristle can ([`mod@gap`]).
 
 pub(crate) mod bristle;
 pub(crate) mod gap;
