@@ -319,7 +319,7 @@ mod tests {
         for row in 1..record.len() - 1 {
             let acceleration = (x[row + 1] - 2.0 * x[row] + x[row - 1]) * 1024.0_f64.powi(2);
             let wanted = -OMEGA.powi(2) * (OMEGA * record.time_s[row]).sin();
-            // A line would be off by half of the largest, 400.
+            // A line would be off by as much as the acceleration is, 400 at most.
             assert!(
                 (acceleration - wanted).abs() < 1.0,
                 "{row}: {acceleration} {wanted}"
