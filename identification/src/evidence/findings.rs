@@ -13,6 +13,7 @@ use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
+use crate::evidence::rank;
 use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
@@ -149,6 +150,14 @@ impl<'a> Findings<'a> {
             dataset,
             validation,
             &models.extended,
+        ));
+        let records = [motion, validation];
+        let off_percent = validate.extended.force_percent;
+        reasons.extend(rank::reason(
+            dataset,
+            records,
+            &models.extended,
+            off_percent,
         ));
         reasons.extend(signs::reasons(dataset, motion, &models.extended));
         let verdict = Verdict::of(reasons);

@@ -10,17 +10,23 @@
 //! dropped that costs nothing on held-out blocks of the training record and makes the prediction
 //! certain, and a remark says so. An effect that the training record does show is never
 //! dropped.
+//!
+//! What stays may still be too uncertain for the motion of the validation record. Where it is, and
+//! is wrong there, the record is `unexplained` ([`reason`]).
 
 use std::borrow::Cow;
 
 use axis_model::EffectName;
 
+use crate::evidence::inverse_dynamics::InverseDynamics;
 use crate::evidence::selection::is_enough;
-use crate::evidence::thresholds::{KNOWN_GAIN, KNOWN_PERCENT};
+use crate::evidence::thresholds::{KNOWN_GAIN, KNOWN_PERCENT, LEFT_PERCENT};
+use crate::evidence::verdict::Reason;
 use crate::fit::bench::Bench;
 use crate::fit::blocks::Gain;
 use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::{Model, Part};
+use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::Motions;
 use crate::record::dataset::Dataset;
 
@@ -122,6 +128,26 @@ fn is_missed(bench: &Bench<'_>, with: &Model, without: &Model) -> bool {
     is_enough(&Gain::of(&without, &with))
 }
 
+/// What a prediction says that is wrong on the validation record, and that the training record was
+/// not certain of.
+pub(crate) fn reason(
+    dataset: &Dataset,
+    motions: [&Kinematics; 2],
+    model: &InverseDynamics,
+    error_percent: f64,
+) -> Option<Reason> {
+    let seen = motions.map(|motion| model.motion(motion));
+    let [train, other] = seen.each_ref().map(|motion| Bench::new(dataset, motion));
+    let uncertain = || train.uncertainty_on(&other, model.fitted.model());
+    let percent = Some(error_percent).filter(|percent| *percent > LEFT_PERCENT);
+    let percent = percent.map(|_| uncertain()).filter(|u| *u > LEFT_PERCENT);
+    percent.map(|percent| {
+        Reason::unexplained(format!(
+            "the training record does not know enough for the motion of the validation record: its prediction there is uncertain by {percent:.0} % of the effort, and off by {error_percent:.0} %; record the speeds and accelerations of both in the training record"
+        ))
+    })
+}
+
 /// Half width of the prediction's 95 % interval, rms over the record that is worse, percent of its
 /// effort.
 fn uncertainty(benches: [&Bench<'_>; 2], model: &Model) -> f64 {
@@ -134,7 +160,6 @@ fn uncertainty(benches: [&Bench<'_>; 2], model: &Model) -> f64 {
 mod tests {
     use super::*;
     use crate::fit::tuning::delay_cutoff_hz;
-    use crate::motion::kinematics::Kinematics;
     use crate::simulate::made;
 
     const PERIOD_S: f64 = 1.0e-3;
@@ -225,5 +250,23 @@ mod tests {
             .without(Model::declared(&dataset).of(EffectName::Stribeck).unwrap());
         assert!(of(&four) < 0.5, "{}", of(&four));
         assert!(unknown([&bench, &bench], &four).is_none());
+    }
+
+    #[test]
+    fn a_wrong_prediction_counts_where_the_training_record_was_not_certain_of_it() {
+        let counts = |train: &[f64], error_percent: f64| {
+            let dataset = dataset([train, &[0.002, 0.01, 0.05, 0.2]]);
+            let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+            let other = Kinematics::new(&dataset, &dataset.validate).unwrap();
+            // Stribeck is the last of its parts.
+            let model = Model::declared(&dataset).with_parameter(4, 0.02);
+            let model = InverseDynamics {
+                fitted: Bench::new(&dataset, &motion).fit(&model),
+                deflection: None,
+            };
+            reason(&dataset, [&motion, &other], &model, error_percent).is_some()
+        };
+        assert!(counts(&[0.05], 30.0) && !counts(&[0.05], 11.0));
+        assert!(!counts(&[0.002, 0.01, 0.05, 0.2], 30.0));
     }
 }
