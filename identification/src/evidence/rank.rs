@@ -159,6 +159,7 @@ fn uncertainty(benches: [&Bench<'_>; 2], model: &Model) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::made::on;
     use crate::fit::tuning::delay_cutoff_hz;
     use crate::simulate::made;
 
@@ -198,16 +199,9 @@ mod tests {
             record.effort = effort.collect();
             record
         };
-        let mut dataset = made::dataset(record(train), None);
+        let mut dataset = on(record(train)).dataset;
         dataset.validate = record(validate);
-        dataset.hold = crate::record::units::EffortHold::Instant;
-        dataset.declared = vec![
-            EffectName::Inertia,
-            EffectName::Viscous,
-            EffectName::Coulomb,
-            EffectName::Offset,
-            EffectName::Stribeck,
-        ];
+        dataset.declared.push(EffectName::Stribeck);
         dataset
     }
 

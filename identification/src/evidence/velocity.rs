@@ -148,11 +148,11 @@ fn column(dataset: &Dataset) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::made::on;
     use crate::fit::plain::Plain;
     use crate::motion::kinematics::Kinematics;
     use crate::record::excerpt::EXCERPT;
     use crate::simulate::made;
-    use axis_model::EffectName;
 
     const MASS: f64 = 90.0;
 
@@ -185,15 +185,7 @@ mod tests {
     }
 
     fn dataset(train: Record) -> Dataset {
-        let mut dataset = made::dataset(train, None);
-        dataset.hold = crate::record::units::EffortHold::Instant;
-        dataset.declared = vec![
-            EffectName::Inertia,
-            EffectName::Viscous,
-            EffectName::Coulomb,
-            EffectName::Offset,
-        ];
-        dataset
+        on(train).dataset
     }
 
     fn inertia(dataset: &Dataset) -> f64 {
