@@ -44,7 +44,8 @@ pub(crate) struct Kinematics {
     pub difference: Option<Vec<f64>>,
     /// Moving samples: the ones that errors are defined on.
     pub moving: Vec<bool>,
-    /// Moving samples whose effort is known and not at its limit: the ones that are fitted.
+    /// Moving samples, of motor and load, whose effort is known and not at its limit: the ones that
+    /// are fitted.
     pub fitted: Vec<bool>,
     /// Samples about reversals and rests.
     pub slow: Vec<bool>,
@@ -91,6 +92,9 @@ impl Kinematics {
         let motor_lp = filter.apply(&bodies.motor.velocity);
         let (moving, slow) = mask::moving_and_slow(&motor_lp, limit, period_s);
         let spoilt = mask::spoilt(record, dataset.effort_limit);
+        // Where the motor crosses a gap the load may stand: no law of moving samples is seen there.
+        let (load_moves, _) = mask::moving_and_slow(&velocity_lp, limit, period_s);
+        let both_move = mask::both(&moving, &load_moves);
         Self {
             period_s,
             time_s: record.time_s.clone(),
@@ -103,7 +107,7 @@ impl Kinematics {
                 .load
                 .as_deref()
                 .map(|load| minus(&record.position, load)),
-            fitted: mask::without(&moving, &spoilt),
+            fitted: mask::without(&both_move, &spoilt),
             slow: mask::without(&slow, &spoilt),
             moving,
             pieces: record.pieces(),

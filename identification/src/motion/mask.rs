@@ -56,6 +56,13 @@ pub(crate) fn without(mask: &[bool], other: &[bool]) -> Vec<bool> {
     both.map(|(inside, other)| *inside && !other).collect()
 }
 
+/// The samples that are in both masks.
+#[must_use]
+pub(crate) fn both(one: &[bool], other: &[bool]) -> Vec<bool> {
+    let pairs = one.iter().zip(other);
+    pairs.map(|(one, other)| *one && *other).collect()
+}
+
 /// A mask with the margin about each of its samples; each row is written once.
 fn widened(mask: impl ExactSizeIterator<Item = bool>, period_s: f64) -> Vec<bool> {
     let (rows, margin) = (mask.len(), (MARGIN_S / period_s).round() as usize);
