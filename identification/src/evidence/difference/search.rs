@@ -56,12 +56,31 @@ pub(crate) fn best_gap(apart: &Apart<'_>, ways: &[Way], count: f64) -> Way {
     for step in WIDTH_STEPS {
         best = improved(best, step, narrowest, &sse);
     }
-    Way::Play(best.behind(&plain))
+    Way::Play(polished(best, narrowest, &sse).behind(&plain))
 }
 
 /// Widths from the narrowest on.
 fn widths(narrowest: f64) -> Vec<f64> {
     geometric(narrowest, 1.0e-3_f64.max(100.0 * narrowest), WIDTHS)
+}
+
+/// One parameter after the other, from where they stand and in small steps: what the others have
+/// come to may ask for another restitution than the grid's.
+fn polished(mut best: Trial, narrowest: f64, sse: &(dyn Fn(Trial) -> f64 + Sync)) -> Trial {
+    best.restitution = descend(best.restitution, 0.05, (0.0, 0.99), &|restitution| {
+        sse(Trial {
+            restitution,
+            ..best
+        })
+    });
+    let step = 0.005 * best.gap;
+    best.gap = descend(best.gap, step, (narrowest, f64::MAX), &|gap| {
+        sse(Trial { gap, ..best })
+    });
+    best.share = descend(best.share, 0.01, (0.01, 0.95), &|share| {
+        sse(Trial { share, ..best })
+    });
+    best
 }
 
 /// One parameter after the other.
