@@ -17,7 +17,6 @@ use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
 use crate::evidence::velocity;
 use crate::fit::bench::Bench;
-use crate::fit::fitted::Fitted;
 use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::Model;
 use crate::motion::motions::{self, Motions};
@@ -121,23 +120,25 @@ fn on_effort(
 /// Motor − load, where there is a load scale. Where it shows that the load moves otherwise, the
 /// effort is asked again what it lacks beside the load's own inertia.
 fn beside_the_load(bench: &Bench<'_>, effort: &mut Selection) -> Option<Difference> {
-    let judged = |effort: &Selection| on_difference(bench, &bench.fit(&effort.model));
-    let difference = judged(effort)?;
+    let (dataset, motion) = (bench.dataset, bench.motion);
+    let transmitted = |effort: &Selection| bench.transmitted(&bench.fit(&effort.model));
+    let mut force = transmitted(effort);
+    let mut difference = difference::difference(dataset, motion, path(dataset, &force))?;
     if difference.moves_apart() && effort::remove_beside_load(bench, &mut effort.model) {
-        return judged(effort);
+        force = transmitted(effort);
+        difference = difference::difference(dataset, motion, path(dataset, &force))?;
     }
-    Some(difference)
+    let path = path(dataset, &force);
+    Some(difference::settled(difference, dataset, motion, path))
 }
 
-/// Motor − load, where there is a load scale.
-fn on_difference(bench: &Bench<'_>, fitted: &Fitted) -> Option<Difference> {
-    let transmitted = bench.transmitted(fitted);
-    let path = difference::Path {
-        position: &bench.dataset.train.position,
-        transmitted: &transmitted,
-        hold: bench.dataset.hold,
-    };
-    difference::difference(bench.dataset, bench.motion, path)
+/// What the training record gives to motor − load.
+fn path<'a>(dataset: &'a Dataset, transmitted: &'a [f64]) -> difference::Path<'a> {
+    difference::Path {
+        position: &dataset.train.position,
+        transmitted,
+        hold: dataset.hold,
+    }
 }
 
 /// The declared model and the extended one, each with the bristle that it has.

@@ -5,10 +5,14 @@
 //! Judged on held-out blocks like the force, but accepted only where the amplitude is beyond the
 //! encoders' counts.
 //!
+//! Wind-up is judged by the recorded effort. What motor − load keeps in the end is told by what the
+//! load's own motion asks for, where that leaves less ([`carried`]).
+//!
 //! A gap between rigid flanks is judged by the motion: the load coasts, or waits, while the motor
 //! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
 //! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
+mod carried;
 mod columns;
 mod edges;
 mod flanks;
@@ -86,15 +90,45 @@ pub(crate) fn difference(
     let declared = output.declared(dataset);
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
     let selection = selection::select(&output, declared.clone(), &mut |_| ());
-    let apart = &output.apart;
-    let fits = [&declared, &selection.model].map(|ways| apart.fit(ways));
-    let rms_um = fits.each_ref().map(|fitted| apart.rms_um(fitted));
-    let mut difference = Difference::of(fits, rms_um, selection.scored);
+    let fits = [&declared, &selection.model].map(|ways| output.apart.fit(ways));
+    Some(Difference::of(fits, selection.scored))
+}
+
+/// What motor − load keeps of a judged difference. The wind-up is that by the load's own motion
+/// where that leaves less.
+pub(crate) fn settled(
+    mut difference: Difference,
+    dataset: &Dataset,
+    motion: &Kinematics,
+    path: Path<'_>,
+) -> Difference {
+    let Some(apart) = Apart::on(motion, path) else {
+        return difference;
+    };
+    let unit = dataset.kind.moving_velocity();
+    let refitted = |fitted: &FittedWays| {
+        let carried = carried::instead(&apart, &fitted.ways(), unit);
+        carried.map_or_else(
+            || fitted.clone(),
+            |ways| apart.where_known(&ways).fit(&ways),
+        )
+    };
+    let is_same = difference.declared.ways() == difference.extended.ways();
+    difference.extended = refitted(&difference.extended);
+    difference.declared = if is_same {
+        difference.extended.clone()
+    } else {
+        refitted(&difference.declared)
+    };
+    difference.before_um = apart.rms_um(&difference.declared);
+    difference.after_um = apart.rms_um(&difference.extended);
+    let apart = apart.where_known(&difference.extended.ways());
     let residual = apart.residual(&difference.extended);
     let wound = difference.extended.of(EffectName::Compliance);
     let wound = wound.map(|(way, own)| apart.predicted(way, own));
-    difference.left = left::left(apart, &residual, wound, output.count);
-    Some(difference)
+    let count = dataset.resolution.max(dataset.load_resolution);
+    difference.left = left::left(&apart, &residual, wound, count);
+    difference
 }
 
 /// Motor − load as an output that judges.
@@ -306,7 +340,7 @@ impl MotorLoad<'_> {
     fn is_physical(&self, way: Way, own: &[f64]) -> bool {
         let least = FEWEST_COUNTS * self.count;
         match way {
-            Way::Constant => false,
+            Way::Constant | Way::Carried(_) => false,
             Way::Play(behind) => GAP_FACTOR.contains(&own[0]) && behind.gap >= least,
             // The force has judged its width: beside wind-up the factor of its lag is no test.
             Way::Flanks(flanks) => flanks.gap() >= least,
@@ -337,7 +371,7 @@ fn is_enough(gain: &Gain) -> bool {
 /// The quantity for people: width, stiffness, wave number.
 fn parameter(way: Way, own: &[f64]) -> f64 {
     match way {
-        Way::Constant => 0.0,
+        Way::Constant | Way::Carried(_) => 0.0,
         Way::WindUp { .. } => 1.0 / own[0],
         Way::Play(behind) => behind.gap,
         Way::Flanks(flanks) => flanks.gap(),
@@ -355,19 +389,15 @@ fn stiffness(gap: Option<(Way, &[f64])>, wind_up: Way, own: &[f64]) -> f64 {
 }
 
 impl Difference {
-    fn of(
-        [declared, extended]: [FittedWays; 2],
-        [before_um, after_um]: [f64; 2],
-        scored: Vec<Scored>,
-    ) -> Self {
+    fn of([declared, extended]: [FittedWays; 2], scored: Vec<Scored>) -> Self {
         let is_declared = |name: &EffectName| declared.of(*name).is_some();
         let gap = extended.of(EffectName::Backlash);
         let wind_up = extended.of(EffectName::Compliance);
         Self {
             found: extended.names().filter(|name| !is_declared(name)).collect(),
             scored,
-            before_um,
-            after_um,
+            before_um: 0.0,
+            after_um: 0.0,
             gap: gap.map(|(way, own)| parameter(way, own)),
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
@@ -456,7 +486,8 @@ mod tests {
             transmitted: &axis.motion.effort_lp,
             hold: axis.dataset.hold,
         };
-        difference(&axis.dataset, &axis.motion, path).unwrap()
+        let difference = difference(&axis.dataset, &axis.motion, path).unwrap();
+        settled(difference, &axis.dataset, &axis.motion, path)
     }
 
     #[test]

@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
+use super::carried::Carried;
 use super::edges::Flanks;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
@@ -55,6 +56,8 @@ pub(crate) enum Way {
     Constant,
     /// A spring between them, and whether the motor's own side has friction.
     WindUp { motor_friction: bool },
+    /// A spring between them, wound up by what moves the load.
+    Carried(Carried),
     /// A gap, and the load behind it.
     Play(Behind),
     /// A gap between flanks that wind up.
@@ -68,7 +71,7 @@ impl Way {
     pub(crate) const fn called(self) -> Called {
         match self {
             Self::Constant => Called::Structure("constant"),
-            Self::WindUp { .. } => Called::Effect(EffectName::Compliance),
+            Self::WindUp { .. } | Self::Carried(_) => Called::Effect(EffectName::Compliance),
             Self::Play(_) | Self::Flanks(_) => Called::Effect(EffectName::Backlash),
             Self::Pitch { .. } => Called::Effect(EffectName::PitchError),
         }
@@ -86,6 +89,7 @@ impl Way {
                 let held = held.iter().take(if motor_friction { 4 } else { 2 });
                 held.map(|column| path.at_rows(column)).collect()
             }
+            Self::Carried(carried) => carried.columns(motion, position, apart),
             Self::Play(behind) => vec![low_passed(behind.follow(position, motion.period_s))],
             Self::Flanks(flanks) => vec![low_passed(flanks.lag(apart))],
             Self::Pitch { per_length } => {
@@ -126,6 +130,16 @@ impl FittedWays {
         self.0.iter().filter_map(|(way, _)| way.called().name())
     }
 
+    /// A way by its place, with its coefficients.
+    pub(crate) fn at(&self, place: usize) -> Option<(Way, &[f64])> {
+        self.0.get(place).map(|(way, own)| (*way, own.as_slice()))
+    }
+
+    /// All ways.
+    pub(crate) fn ways(&self) -> Vec<Way> {
+        self.0.iter().map(|(way, _)| *way).collect()
+    }
+
     /// The way that came in last, with its coefficients.
     pub(crate) fn last(&self) -> Option<(Way, &[f64])> {
         self.0.last().map(|(way, own)| (*way, own.as_slice()))
@@ -160,12 +174,28 @@ impl<'a> Apart<'a> {
         })
     }
 
+    /// The same, judged where the states of such ways are known.
+    pub(super) fn where_known(&self, ways: &[Way]) -> Self {
+        let mut mask = self.mask.clone();
+        for way in ways {
+            if let Way::Carried(carried) = way {
+                mask = carried.known(self.motion, self.path.position, self.raw, &mask);
+            }
+        }
+        Self {
+            target: self.target.clone(),
+            mask,
+            ..*self
+        }
+    }
+
     /// The columns of a way.
     pub(crate) fn columns(&self, way: Way) -> Vec<Vec<f64>> {
         way.columns(self.motion, self.path, self.raw)
     }
 
-    fn design(&self, ways: &[Way]) -> Vec<Vec<f64>> {
+    /// The columns of several ways.
+    pub(super) fn design(&self, ways: &[Way]) -> Vec<Vec<f64>> {
         ways.iter().flat_map(|way| self.columns(*way)).collect()
     }
 
@@ -212,12 +242,13 @@ impl<'a> Apart<'a> {
             .collect()
     }
 
-    /// Rms of what fitted ways leave, µm (µrad).
+    /// Rms of what fitted ways leave where their states are known, µm (µrad).
     pub(crate) fn rms_um(&self, fitted: &FittedWays) -> f64 {
         let residual = self.residual(fitted);
+        let known = self.where_known(&fitted.ways());
         let inside = residual
             .iter()
-            .zip(&self.mask)
+            .zip(&known.mask)
             .filter(|(_, inside)| **inside);
         let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (left, _)| {
             (sum + left.powi(2), count + 1.0)

@@ -38,6 +38,13 @@ const DESCENTS: i32 = 3;
 /// Share of the samples that lie beyond the range at either end: impacts.
 const BEYOND: f64 = 0.005;
 
+/// Place of the motor's own Coulomb friction among the columns of its own side.
+const OWN_FRICTION: usize = 1;
+/// Seconds with so many times the effort of the median one are left out. Chosen: between slow and
+/// fast strokes it differs by up to four times, and a loop that bounces between the flanks brings
+/// ten.
+const VIOLENT: f64 = 5.0;
+
 /// Flanks with what speaks for a gap between them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judged {
@@ -51,7 +58,7 @@ pub(crate) struct Judged {
 }
 
 /// The motor's balance of forces on a record.
-struct Balance<'a> {
+pub(super) struct Balance<'a> {
     motion: &'a Kinematics,
     effort: &'a [f64],
     hold: EffortHold,
@@ -71,16 +78,17 @@ pub(crate) fn judged(apart: &Apart<'_>, count: f64) -> Option<Judged> {
 }
 
 impl<'a> Balance<'a> {
-    fn of(apart: &Apart<'a>) -> Self {
+    pub(super) fn of(apart: &Apart<'a>) -> Self {
         let motion = apart.motion;
         let pairs = motion.fitted.iter().zip(&motion.slow);
+        let mask: Vec<bool> = pairs.map(|(fitted, slow)| *fitted || *slow).collect();
         Self {
             motion,
             effort: apart.path.transmitted,
             hold: apart.path.hold,
             difference: apart.raw,
             own: [of_motor(motion), vec![vec![1.0; motion.len()]]].concat(),
-            mask: pairs.map(|(fitted, slow)| *fitted || *slow).collect(),
+            mask: calm(motion, mask),
         }
     }
 
@@ -95,17 +103,40 @@ impl<'a> Balance<'a> {
         (high > low).then_some((low, high))
     }
 
-    /// A function of motor − load at the time at which the effort of a row acts; low-passed.
-    fn column(&self, at_row: impl Fn(usize) -> f64) -> Vec<f64> {
+    /// What is told of each row, at the time at which the effort of the row acts.
+    fn held(&self, at_row: impl Fn(usize) -> f64) -> Vec<f64> {
         let last = self.difference.len() - 1;
         let rows = 0..=last;
-        let raw: Vec<f64> = match self.hold {
+        match self.hold {
             EffortHold::Instant => rows.map(at_row).collect(),
             EffortHold::ZeroOrder => rows
                 .map(|row| 0.5 * (at_row(row) + at_row((row + 1).min(last))))
                 .collect(),
-        };
-        self.motion.low_passed(&raw)
+        }
+    }
+
+    /// A function of motor − load at the time at which the effort of a row acts; low-passed.
+    fn column(&self, at_row: impl Fn(usize) -> f64) -> Vec<f64> {
+        self.motion.low_passed(&self.held(at_row))
+    }
+
+    /// Sum of squares of the effort that columns at the rows, low-passed, leave beside the motor's
+    /// own side.
+    pub(super) fn left_by_all(&self, columns: &[Vec<f64>]) -> f64 {
+        let held = columns.iter().map(|column| self.held(|row| column[row]));
+        self.blocks(&held.collect::<Vec<_>>()).fit().sse
+    }
+
+    /// The same of one column, that of the wind-up. Friction of the motor's own side only holds
+    /// back: where it would have to push, there is none.
+    pub(super) fn left_by(&mut self, wound: &[f64]) -> f64 {
+        let held = [self.held(|row| wound[row])];
+        let fit = self.blocks(&held).fit();
+        if fit.coefficients[OWN_FRICTION] >= 0.0 {
+            return fit.sse;
+        }
+        self.own.remove(OWN_FRICTION);
+        self.blocks(&held).fit().sse
     }
 
     /// Rate of motor − load where a condition on it holds.
@@ -202,6 +233,32 @@ impl<'a> Balance<'a> {
             sees_flanks: sees(&fit) && stiffness > 0.0,
         }
     }
+}
+
+/// A mask without the seconds in which the axis bounces between its flanks: there the strokes are
+/// faster than the samples, and their force hides that of all others.
+fn calm(motion: &Kinematics, mut mask: Vec<bool>) -> Vec<bool> {
+    let second = ((1.0 / motion.period_s).round() as usize).max(1);
+    let rms = |(efforts, mask): (&[f64], &[bool])| {
+        let inside = efforts.iter().zip(mask).filter(|(_, inside)| **inside);
+        let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (effort, _)| {
+            (sum + effort.powi(2), count + 1.0)
+        });
+        (count > 0.0).then(|| f64::sqrt(sum / count))
+    };
+    let seconds = motion.effort.chunks(second).zip(mask.chunks(second));
+    let efforts: Vec<Option<f64>> = seconds.map(rms).collect();
+    let mut sorted: Vec<f64> = efforts.iter().copied().flatten().collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(median) = sorted.get(sorted.len() / 2) else {
+        return mask;
+    };
+    for (mask, effort) in mask.chunks_mut(second).zip(&efforts) {
+        if effort.is_some_and(|effort| effort > VIOLENT * median) {
+            mask.fill(false);
+        }
+    }
+    mask
 }
 
 #[cfg(test)]
