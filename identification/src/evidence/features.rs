@@ -32,6 +32,8 @@ pub(crate) struct Family {
     pub over: &'static str,
     /// Effects whose own equation may leave this, where the axis has another shape of them.
     pub shapes: &'static [EffectName],
+    /// Structures without a name that go with the same.
+    pub nameless: &'static [&'static str],
     /// Whether it is a shift in time of a kind.
     pub is_shift: bool,
     /// What that looks like, and what to do next.
@@ -102,6 +104,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "acceleration times position",
         shapes: &[PositionDependentInertia],
+        nameless: &[],
         is_shift: false,
         looks_like: "inertia that changes with position: declare position_dependent_inertia, or record shorter strokes at several places",
         columns: |scene| {
@@ -113,6 +116,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "acceleration times time",
         shapes: &[Payload],
+        nameless: &[],
         is_shift: false,
         looks_like: "inertia that changes during the record: declare payload, or record one load at a time",
         columns: |scene| scene.times(|row| scene.acceleration(row), &scene.s, &[1, 2, 3]),
@@ -120,6 +124,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "the size of the acceleration",
         shapes: &[LoadDependentFriction, TorqueSaturation],
+        nameless: &[],
         is_shift: false,
         looks_like: "a force that acceleration and braking share: a drive or gear that gives less one way, or an inclined load",
         columns: |scene| {
@@ -131,6 +136,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "the transmitted force by direction",
         shapes: &[LoadDependentFriction, Presliding],
+        nameless: &[],
         is_shift: false,
         looks_like: "friction that grows with load: declare load_dependent_friction",
         columns: |scene| {
@@ -142,6 +148,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "the rate of the acceleration",
         shapes: &[Presliding],
+        nameless: &[],
         is_shift: true,
         looks_like: "a current loop or a time shift that depends on the motion: check the time stamps, or record the current instead of the command",
         columns: |scene| {
@@ -155,6 +162,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "velocity times position or time",
         shapes: &[PositionDependentFriction, FrictionDrift],
+        nameless: &[],
         is_shift: false,
         looks_like: "viscous friction that changes with position or time: record at one temperature and place",
         columns: |scene| {
@@ -166,6 +174,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "direction times position",
         shapes: &[PositionDependentFriction],
+        nameless: &[],
         is_shift: false,
         looks_like: "friction that changes with position otherwise than by a parabola: record the travel in parts",
         columns: |scene| scene.times(|row| scene.direction(row), &scene.u, &[1, 2, 3]),
@@ -173,6 +182,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "direction times time",
         shapes: &[FrictionDrift],
+        nameless: &[],
         is_shift: false,
         looks_like: "friction that changes during the record: record a warm axis, or declare friction_drift",
         columns: |scene| scene.times(|row| scene.direction(row), &scene.s, &[1, 2, 3]),
@@ -180,6 +190,7 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "velocity by direction",
         shapes: &[Stribeck, QuadraticDrag, ViscousAsymmetry, Presliding],
+        nameless: &[],
         is_shift: false,
         looks_like: "friction of another law over velocity: record more speeds, both ways",
         columns: |scene| {
@@ -193,13 +204,16 @@ pub(crate) static FAMILIES: [Family; 11] = [
     Family {
         over: "position",
         shapes: &[],
+        nameless: &["force over position"],
         is_shift: false,
         looks_like: "a force over position: a spring, a balance, a cable; record slow strokes over the whole travel",
         columns: |scene| hats(&scene.motion.position_lp, scene.motion, 12),
     },
     Family {
         over: "time",
-        shapes: &[],
+        // Where strokes back and forth are not alike, friction that drifts is a force that drifts.
+        shapes: &[FrictionDrift],
+        nameless: &["force over time", "drifting force"],
         is_shift: false,
         looks_like: "a force that drifts: something else acts on the axis during the record",
         columns: |scene| hats(&scene.motion.time_s, scene.motion, 8),

@@ -32,6 +32,7 @@ use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::fit::span::Span;
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::rounding;
@@ -141,8 +142,11 @@ impl Remainder {
 
     /// Up to which size, percent of the effort of motion, an effect that the model does not have
     /// may be another shape of one that it has.
-    fn allowed_to(&self, effect: EffectName) -> f64 {
-        let of_its_kind = |one: &&Structure| one.family.shapes.contains(&effect);
+    fn allowed_to(&self, effect: Called) -> f64 {
+        let of_its_kind = |one: &&Structure| match effect {
+            Called::Effect(name) => one.family.shapes.contains(&name),
+            Called::Structure(words) => one.family.nameless.contains(&words),
+        };
         let allowed = self.structures.iter().filter(of_its_kind);
         allowed.fold(0.0, |most, one| one.allowed_percent.max(most))
     }
@@ -270,7 +274,7 @@ impl ResidualStructure {
         let candidate = self.candidate.as_ref();
         let matters = |one: &&Scored| {
             let gain = sized(one.gain, left.amount.percent);
-            let allowed = one.effect.name().map_or(0.0, |name| left.allowed_to(name));
+            let allowed = left.allowed_to(one.effect);
             left.matters(&gain) && gain.percent >= allowed
         };
         let counts = candidate.filter(|one| matters(one) && !has_gap);
@@ -294,10 +298,7 @@ impl ResidualStructure {
             100.0 * gain.share
         );
         let left = &self.left.extended;
-        let allowed = vetoed
-            .effect
-            .name()
-            .map_or(0.0, |name| left.allowed_to(name));
+        let allowed = left.allowed_to(vetoed.effect);
         let limit = UNEXPLAINED_PERCENT.max(allowed);
         if gain.share >= UNEXPLAINED_SHARE && gain.percent * left.whole >= limit {
             Reason::unexplained(words + ": record both again in one state of the axis")
