@@ -32,6 +32,7 @@ pub const CLEAN: &[Clean] = &[
     Clean { name: "jittered-stamps", build: jittered_stamps },
     Clean { name: "jitter-with-velocity", build: jitter_with_velocity },
     Clean { name: "lost-rows", build: lost_rows },
+    Clean { name: "folded-rounding", build: folded_rounding },
     Clean { name: "coarse-encoder", build: coarse_encoder },
     Clean { name: "interpolation-error", build: interpolation_error },
     Clean { name: "switched-controller", build: switched_controller },
@@ -143,12 +144,18 @@ fn jitter_with_velocity(draw: &mut Draw) -> Rig {
 
 /// One row in a hundred did not arrive.
 fn lost_rows(draw: &mut Draw) -> Rig {
-    let mut rig = fast(draw);
+    let mut rig = plain(draw);
     rig.sensing.stamps = Stamps {
         jitter_s: 0.0,
         lost_share: 0.01,
     };
     rig
+}
+
+/// A drive that rounds the velocity at 8 kHz and is logged at 1 kHz: at a constant speed the
+/// rounding is always caught in the same phase, and looks like a force.
+fn folded_rounding(draw: &mut Draw) -> Rig {
+    fast(draw)
 }
 
 /// Five micrometres, cut off.
