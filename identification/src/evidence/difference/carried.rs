@@ -30,9 +30,7 @@ use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
 use crate::motion::bodies::minus;
-use crate::motion::derivatives::Derivatives;
 use crate::motion::kinematics::Kinematics;
-use crate::record::units::EffortHold;
 
 /// Deflections that are tried, in moving-velocity units times a second: 0.3 to 300 µm on a linear
 /// axis.
@@ -90,39 +88,26 @@ struct LoadMotion {
     velocity: Vec<f64>,
     /// Low-passed.
     acceleration: Vec<f64>,
-    /// Rate of motor − load in contact, low-passed.
+    /// Rate of the wind-up, low-passed.
     rate: Vec<f64>,
 }
 
 impl LoadMotion {
-    fn of(
-        motion: &Kinematics,
-        position: &[f64],
-        apart: &[f64],
-        touches: impl Fn(f64) -> bool,
-    ) -> Self {
+    fn of(motion: &Kinematics, position: &[f64], apart: &[f64], flanks: Option<Flanks>) -> Self {
+        let wind_up = |d: &f64| flanks.map_or(*d, |flanks| flanks.wind_up(*d));
+        let wound: Vec<f64> = apart.iter().map(wind_up).collect();
         let position = minus(position, apart);
-        let of = |signal: &[f64]| {
+        let by_piece = |signal: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>| -> Vec<f64> {
             let pieces = motion.pieces.iter().cloned();
-            let each = pieces.map(|piece| {
-                Derivatives::new(&signal[piece], motion.period_s, EffortHold::Instant)
-            });
-            each.map(|of_piece| (of_piece.velocity, of_piece.acceleration))
-                .reduce(|(mut v, mut a), (more_v, more_a)| {
-                    v.extend(more_v);
-                    a.extend(more_a);
-                    (v, a)
-                })
-                .unwrap_or_default()
+            let raw: Vec<f64> = pieces
+                .flat_map(|piece| derivative(&signal[piece], motion.period_s))
+                .collect();
+            motion.low_passed(&raw)
         };
-        let (velocity, acceleration) = of(&position);
-        let (rate, _) = of(apart);
-        let pairs = rate.into_iter().zip(apart);
-        let rate = pairs.map(|(rate, d)| if touches(*d) { rate } else { 0.0 });
         Self {
-            velocity: motion.low_passed(&velocity),
-            acceleration: motion.low_passed(&acceleration),
-            rate: motion.low_passed(&rate.collect::<Vec<f64>>()),
+            velocity: by_piece(&position, slope),
+            acceleration: by_piece(&position, bow),
+            rate: by_piece(&wound, slope),
             position,
         }
     }
@@ -131,7 +116,7 @@ impl LoadMotion {
     fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
         let of_piece = |piece: &Range<usize>| {
             let bend = friction.bend(&self.position[piece.clone()], &self.velocity[piece.clone()]);
-            let rate = Derivatives::new(&bend, motion.period_s, EffortHold::Instant).velocity;
+            let rate = slope(&bend, motion.period_s);
             (bend, rate)
         };
         let (bend, rate): (Vec<_>, Vec<_>) = motion.pieces.iter().map(of_piece).unzip();
@@ -144,12 +129,36 @@ impl LoadMotion {
     }
 }
 
+/// First derivative at the rows by the central differences over two and four rows: within half a
+/// percent up to a tenth of the sample rate. The ends stand still.
+fn slope(x: &[f64], period_s: f64) -> Vec<f64> {
+    at_rows(x, |x| {
+        (8.0 * (x[3] - x[1]) - (x[4] - x[0])) / (12.0 * period_s)
+    })
+}
+
+/// Second derivative, in the same way: within a fifth of a percent.
+fn bow(x: &[f64], period_s: f64) -> Vec<f64> {
+    at_rows(x, |x| {
+        (16.0 * (x[1] + x[3]) - 30.0 * x[2] - x[0] - x[4]) / (12.0 * period_s.powi(2))
+    })
+}
+
+/// A function of each row and two neighbours on either side; zero where they are not all there.
+fn at_rows(x: &[f64], of_five: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let mut values = vec![0.0; x.len()];
+    for (value, five) in values.iter_mut().skip(2).zip(x.windows(5)) {
+        *value = of_five(five);
+    }
+    values
+}
+
 /// Wind-up that the load's motion asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Carried {
     /// Friction of the load.
     pub friction: LoadFriction,
-    /// Where the flanks of a gap are in contact; without a gap always.
+    /// The flanks of a gap; without one everything that is between motor and load is wound up.
     pub flanks: Option<Flanks>,
 }
 
@@ -159,16 +168,15 @@ impl Carried {
     /// Place of the bend's.
     const FRICTION: usize = 3;
 
-    /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of motor −
-    /// load in contact, bend, rate of the bend.
+    /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
+    /// wind-up, bend, rate of the bend.
     pub(super) fn columns(
         self,
         motion: &Kinematics,
         position: &[f64],
         apart: &[f64],
     ) -> Vec<Vec<f64>> {
-        let touches = |d| self.flanks.is_none_or(|flanks| flanks.touches(d));
-        let load = LoadMotion::of(motion, position, apart, touches);
+        let load = LoadMotion::of(motion, position, apart, self.flanks);
         let rubbed = load.rubbed(motion, self.friction);
         load.plain().into_iter().chain(rubbed).collect()
     }
@@ -201,8 +209,7 @@ impl Carried {
             _ => None,
         };
         let flanks = others.iter().find_map(is_flanks);
-        let touches = |d| flanks.is_none_or(|flanks: Flanks| flanks.touches(d));
-        let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, touches);
+        let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks);
         let design = apart.design(others).into_iter().chain(load.plain());
         let design: Vec<Vec<f64>> = design.collect();
         let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
@@ -299,6 +306,8 @@ mod tests {
     use super::*;
     use crate::evidence::difference::columns::Path;
     use crate::fit::made::{Axis, on};
+    use crate::motion::derivatives::Derivatives;
+    use crate::record::units::EffortHold;
     use crate::simulate::made::{record, two_sines};
 
     const FRICTION: LoadFriction = LoadFriction {
