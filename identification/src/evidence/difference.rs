@@ -32,7 +32,7 @@ use self::search::{best_gap, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
     DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,
-    FEWEST_COUNTS, GAP_FACTOR,
+    FEWEST_COUNTS, GAP_FACTOR, IMPACTS,
 };
 use crate::evidence::verdict::Reason;
 use crate::fit::blocks::{Fit, Gain};
@@ -417,14 +417,20 @@ impl Difference {
     /// What no accepted effect explains; impacts between rigid flanks are excused.
     #[must_use]
     pub(crate) fn reason(&self) -> Option<Reason> {
-        let gap = self.extended.of(EffectName::Backlash);
-        let is_rigid = |(way, _): &(Way, &[f64])| matches!(way, Way::Play(_));
-        let Left { over, rms } = self.left.filter(|_| !gap.as_ref().is_some_and(is_rigid))?;
+        let Left { over, rms } = self.left.filter(|_| !self.is_impacts())?;
         Some(Reason::unexplained(format!(
             "motor − load that goes with {over} ({:.2} µm rms) otherwise than by a gap, a stiffness \
              or a pitch error",
             1.0e6 * rms
         )))
+    }
+
+    /// Whether what is left may be impacts between rigid flanks.
+    fn is_impacts(&self) -> bool {
+        match self.extended.of(EffectName::Backlash) {
+            Some((Way::Play(behind), _)) => self.after_um <= 1.0e6 * IMPACTS * behind.gap,
+            _ => false,
+        }
     }
 
     /// Amplitude and wave number of the pitch error, if one was found.
@@ -576,6 +582,22 @@ mod tests {
         let stiffness = difference.stiffness.unwrap();
         assert!((stiffness / 5.0e6 - 1.0).abs() < 0.02, "{stiffness}");
         assert!(difference.moves_apart() && difference.gap.is_none());
+    }
+
+    #[test]
+    fn impacts_between_rigid_flanks_are_excused_up_to_a_tenth_of_the_gap() {
+        let behind = Behind {
+            gap: 50.0e-6,
+            ..Behind::default()
+        };
+        let left = |after_um: f64, way: Way| Difference {
+            extended: FittedWays::made(vec![(way, vec![1.0])]),
+            after_um,
+            ..Difference::with_structure()
+        };
+        let is_told = |after_um, way| left(after_um, way).reason().is_some();
+        assert!(!is_told(5.0, Way::Play(behind)) && is_told(5.1, Way::Play(behind)));
+        assert!(is_told(0.1, Way::Constant));
     }
 
     #[test]

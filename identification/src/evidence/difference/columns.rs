@@ -258,6 +258,14 @@ impl<'a> Apart<'a> {
 }
 
 #[cfg(test)]
+impl FittedWays {
+    /// Of these ways.
+    pub(crate) fn made(ways: Vec<(Way, Vec<f64>)>) -> Self {
+        Self(ways)
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::fit::made::{Axis, axis, usual};
