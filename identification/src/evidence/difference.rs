@@ -12,6 +12,7 @@
 //! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
 //! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
+mod by_the_load;
 mod carried;
 mod columns;
 mod edges;
@@ -24,6 +25,7 @@ use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
+pub(crate) use self::by_the_load::{ByTheLoad, Known};
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
 use self::flanks::Judged;
@@ -66,6 +68,8 @@ pub(crate) struct Difference {
     pub gap: Option<f64>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<f64>,
+    /// What the load's own motion tells, where it explains the wind-up better than the effort.
+    pub by_the_load: Option<ByTheLoad>,
     /// The largest structure that no accepted effect explains, beyond the counts.
     left: Option<Left>,
     declared: FittedWays,
@@ -120,6 +124,14 @@ pub(crate) fn settled(
     } else {
         refitted(&difference.declared)
     };
+    let ways = difference.extended.ways();
+    let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
+    let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place));
+    if let Some(told) = told {
+        difference.stiffness = Some(told.stiffness.value);
+        difference.gap = told.gap.map(|gap| gap.value).or(difference.gap);
+    }
+    difference.by_the_load = told;
     difference.before_um = apart.rms_um(&difference.declared);
     difference.after_um = apart.rms_um(&difference.extended);
     let apart = apart.where_known(&difference.extended.ways());
@@ -402,6 +414,7 @@ impl Difference {
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
                 .map(|(way, own)| stiffness(gap, way, own)),
+            by_the_load: None,
             left: None,
             declared,
             extended,

@@ -6,11 +6,11 @@
 
 use std::collections::BTreeMap;
 
-use axis_model::EffectName::TorqueRipple;
+use axis_model::EffectName::{self, TorqueRipple};
 use axis_model::vocabulary::{Backlash, Compliance, PitchError, Presliding};
 use axis_model::{Effect, Estimate};
 
-use crate::evidence::difference::Difference;
+use crate::evidence::difference::{ByTheLoad, Difference, Known};
 use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::bench::Bench;
@@ -46,7 +46,64 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
             orders.map(|order| of_an_order(findings, order)).collect(),
         ),
     ];
-    table(of_outputs)
+    let mut parameters = table(of_outputs);
+    let difference = stages.difference.as_ref();
+    if let Some(told) = difference.and_then(|difference| difference.by_the_load.as_ref()) {
+        for (name, estimate) in of_the_load(findings, told) {
+            parameters.replace(name, estimate);
+        }
+    }
+    parameters
+}
+
+impl Parameters {
+    /// A parameter by motion of the load, which knows it better than any output before.
+    fn replace(&mut self, name: &str, estimate: Estimate) {
+        self.from.insert(name.into(), ranking::DIFFERENCE);
+        self.estimates.insert(name.into(), estimate);
+    }
+}
+
+/// What the load's own motion tells: masses and the screw; the friction as far as the model has it.
+fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, Estimate)> {
+    let (effort, length) = (
+        findings.dataset.effort.unit(),
+        findings.dataset.kind.position_unit(),
+    );
+    let known = |known: Known, unit: String| about(known.value, known.half_width, unit);
+    let mut own = vec![
+        (
+            "load_inertia",
+            known(told.mass, format!("{effort} s^2/{length}")),
+        ),
+        (
+            "compliance_stiffness",
+            known(told.stiffness, format!("{effort}/{length}")),
+        ),
+        (
+            "compliance_damping",
+            known(told.damping, format!("{effort} s/{length}")),
+        ),
+    ];
+    own.extend(
+        told.gap
+            .map(|gap| ("backlash_gap", known(gap, length.into()))),
+    );
+    let extended = &findings.models.extended;
+    if extended.deflection.is_some() {
+        own.push((
+            "presliding_deflection",
+            known(told.deflection, length.into()),
+        ));
+    }
+    if extended.fitted.of(EffectName::Stribeck).is_some() {
+        own.push(("stribeck_excess", known(told.excess, effort.into())));
+        own.push((
+            "stribeck_velocity",
+            known(told.velocity, format!("{length}/s")),
+        ));
+    }
+    own
 }
 
 /// Entries of outputs as a table; a name that comes again gets a number.

@@ -46,14 +46,16 @@ pub(super) fn mechanics(
 ) -> (MechanicsForm, &'static str) {
     let gap: Option<&Backlash<Estimate>> = identified!(effects, Backlash);
     let masses = Masses::of(effects, gap);
-    let stiffness = masses.stiffness_n_per_m(identified!(effects, Compliance));
-    let reduced_kg = masses.reduced_kg();
+    let compliance: Option<&Compliance<Estimate>> = identified!(effects, Compliance);
+    let stiffness = masses.stiffness_n_per_m(compliance);
+    let usual = 2.0 * SCREW_DAMPING * (stiffness * masses.reduced_kg()).sqrt();
+    let damping = compliance.and_then(|own| own.damping.as_ref());
     let form = MechanicsForm {
         lead_m_per_rev: known.lead_m,
         motor_inertia_kg: masses.motor_kg,
         table_mass_kg: masses.table_kg,
         screw_stiffness_n_per_m: stiffness,
-        screw_damping_n_s_per_m: 2.0 * SCREW_DAMPING * (stiffness * reduced_kg).sqrt(),
+        screw_damping_n_s_per_m: damping.map_or(usual, |own| own.value.max(0.0)),
         backlash_m: gap.map_or(0.0, |gap| gap.gap.value),
         gravity_n: 0.0,
         start_m: 0.0,

@@ -20,10 +20,12 @@
 
 use std::ops::Range;
 
+use axis_model::EffectName;
+
 use super::columns::{Apart, Way};
 use super::edges::Flanks;
 use super::flanks::Balance;
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, GAP_FACTOR};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::descend;
@@ -45,6 +47,8 @@ const SETTLED: f64 = 5.0;
 /// Rounds of descents over the three, each with half the steps of the one before.
 const ROUNDS: i32 = 4;
 
+/// Rounds in which the width of a gap settles: what it is off by falls to less than a third in each.
+const FLANK_ROUNDS: usize = 5;
 /// Of what a wind-up leaves of the effort at least this part is left where its parts are free. Of
 /// machines with gaps of 100 µm whose flanks strike it is 0.84 and more, without strikes 0.99. Where
 /// a gap went into the friction it is 0.27 and less: what is swallowed unseen is less than the noise
@@ -63,6 +67,15 @@ pub(crate) struct LoadFriction {
 }
 
 impl LoadFriction {
+    /// The same with deflection, rise and velocity times factors.
+    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
+        Self {
+            deflection: self.deflection * deflection,
+            rise: self.rise * rise,
+            velocity: self.velocity * velocity,
+        }
+    }
+
     /// The bend of the bristle along a path, in Coulomb levels.
     fn bend(self, position: &[f64], velocity: &[f64]) -> Vec<f64> {
         let (mut bend, mut before) = (0.0_f64, position.first().copied().unwrap_or(0.0));
@@ -163,10 +176,14 @@ pub(crate) struct Carried {
 }
 
 impl Carried {
+    /// Number of its columns.
+    pub(super) const WIDTH: usize = 5;
     /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
-    const MASS: usize = 0;
+    pub(super) const MASS: usize = 0;
+    /// Place of that of the rate of the wind-up.
+    pub(super) const DAMPING: usize = 2;
     /// Place of the bend's.
-    const FRICTION: usize = 3;
+    pub(super) const FRICTION: usize = 3;
 
     /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
     /// wind-up, bend, rate of the bend.
@@ -281,9 +298,37 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<
     let carried = Carried::best(apart, &changed, unit);
     changed.insert(place, Way::Carried(carried));
     let apart = &apart.where_known(&changed);
+    let changed = between_refined_flanks(apart, changed);
     let gain = Gain::of(&apart.cross_validate(ways), &apart.cross_validate(&changed));
     let is_better = gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T;
     (is_better && is_in_effort(apart, &changed, place)).then_some(changed)
+}
+
+/// The same ways with flanks as far apart as motor − load says. The balance of the motor's forces
+/// finds them through the noise of the effort; beside a wind-up without noise the factor of the
+/// way across the gap tells how much wider they stand, and comes to one.
+fn between_refined_flanks(apart: &Apart<'_>, mut ways: Vec<Way>) -> Vec<Way> {
+    for _ in 0..FLANK_ROUNDS {
+        let fitted = apart.fit(&ways);
+        let Some((Way::Flanks(flanks), own)) = fitted.of(EffectName::Backlash) else {
+            break;
+        };
+        if !GAP_FACTOR.contains(&own[0]) {
+            break;
+        }
+        let wider = flanks.wider_by(own[0]);
+        for way in &mut ways {
+            *way = match *way {
+                Way::Flanks(_) => Way::Flanks(wider),
+                Way::Carried(carried) => Way::Carried(Carried {
+                    flanks: Some(wider),
+                    ..carried
+                }),
+                other => other,
+            };
+        }
+    }
+    ways
 }
 
 /// Whether the effort has a wind-up in it: as well as each of its parts were it free.
@@ -302,7 +347,7 @@ fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::evidence::difference::columns::Path;
     use crate::fit::made::{Axis, on};
@@ -310,17 +355,17 @@ mod tests {
     use crate::record::units::EffortHold;
     use crate::simulate::made::{record, two_sines};
 
-    const FRICTION: LoadFriction = LoadFriction {
+    pub(in crate::evidence::difference) const FRICTION: LoadFriction = LoadFriction {
         deflection: 20.0e-6,
         rise: 0.4,
         velocity: 4.0e-3,
     };
-    const UNIT: f64 = 1.0e-3;
-    const STIFFNESS: f64 = 5.0e6;
+    pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;
+    pub(in crate::evidence::difference) const STIFFNESS: f64 = 5.0e6;
 
     /// 60 kg with 25 N and 200 N s/m behind 5 N/µm and 30 kg, 4 N of noise in the effort; `more` is
     /// what motor − load has beside the wind-up, by the bend.
-    fn axis(more: impl Fn(f64) -> f64) -> Axis {
+    pub(in crate::evidence::difference) fn axis(more: impl Fn(f64) -> f64) -> Axis {
         let load = two_sines(6000);
         let of = |x: &[f64]| Derivatives::new(x, 1.0e-3, EffortHold::Instant);
         let moved = of(&load);
@@ -342,7 +387,7 @@ mod tests {
         on(made)
     }
 
-    fn apart(axis: &Axis) -> Apart<'_> {
+    pub(in crate::evidence::difference) fn apart(axis: &Axis) -> Apart<'_> {
         let path = Path {
             position: &axis.dataset.train.position,
             transmitted: &axis.motion.effort_lp,
@@ -351,7 +396,7 @@ mod tests {
         Apart::on(&axis.motion, path).unwrap()
     }
 
-    const WAYS: [Way; 2] = [
+    pub(in crate::evidence::difference) const WAYS: [Way; 2] = [
         Way::Constant,
         Way::WindUp {
             motor_friction: false,

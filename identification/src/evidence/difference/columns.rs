@@ -77,6 +77,22 @@ impl Way {
         }
     }
 
+    /// Number of its columns.
+    pub(crate) const fn width(self) -> usize {
+        match self {
+            Self::Constant | Self::Play(_) | Self::Flanks(_) => 1,
+            Self::WindUp { motor_friction } => {
+                if motor_friction {
+                    4
+                } else {
+                    2
+                }
+            }
+            Self::Carried(_) => Carried::WIDTH,
+            Self::Pitch { .. } => 2,
+        }
+    }
+
     /// Its columns, low-passed, on a record with such a motor − load.
     fn columns(self, motion: &Kinematics, path: Path<'_>, apart: &[f64]) -> Vec<Vec<f64>> {
         let position = path.position;
@@ -215,7 +231,7 @@ impl<'a> Apart<'a> {
     pub(crate) fn fit(&self, ways: &[Way]) -> FittedWays {
         let coefficients = self.blocks(ways).fit().coefficients;
         let mut rest = coefficients.into_iter();
-        let mut own = |way: Way| rest.by_ref().take(self.columns(way).len()).collect();
+        let mut own = |way: Way| rest.by_ref().take(way.width()).collect();
         FittedWays(ways.iter().map(|way| (*way, own(*way))).collect())
     }
 

@@ -19,6 +19,16 @@ impl Flanks {
         self.high - self.low
     }
 
+    /// The same about their middle, so many times as far apart.
+    pub(super) fn wider_by(self, factor: f64) -> Self {
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * factor * self.gap());
+        Self {
+            low: middle - half,
+            high: middle + half,
+            ..self
+        }
+    }
+
     /// Motor − load within the gap, about its middle: what of it is no wind-up.
     pub(crate) fn lag(self, difference: &[f64]) -> Vec<f64> {
         let middle = 0.5 * (self.low + self.high);

@@ -18,9 +18,10 @@
 //! The rivals of a gap are a spring without one, `K·d`, and one that stiffens, `K·d + K₃·d³`.
 //! Units: m or rad, s, unit of the effort.
 
+use super::by_the_load::Known;
 use super::columns::{Apart, of_motor};
 use super::edges::Flanks;
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, FEWEST_COUNTS};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
@@ -40,6 +41,8 @@ const BEYOND: f64 = 0.005;
 
 /// Place of the motor's own Coulomb friction among the columns of its own side.
 const OWN_FRICTION: usize = 1;
+/// Places of what the motor's own side has without friction: mass and offset.
+const OWN_WITHOUT_FRICTION: [usize; 2] = [0, 3];
 /// Seconds with so many times the effort of the median one are left out. Chosen: between slow and
 /// fast strokes it differs by up to four times, and a loop that bounces between the flanks brings
 /// ten.
@@ -137,6 +140,31 @@ impl<'a> Balance<'a> {
         }
         self.own.remove(OWN_FRICTION);
         self.blocks(&held).fit().sse
+    }
+
+    /// The stiffness as the effort shows it beside a wind-up that is known without the effort.
+    /// Friction of the motor's own side is asked only where it is seen: beside that of the load it
+    /// would take half a percent of the stiffness away.
+    pub(super) fn stiffness(&self, wound: &[f64]) -> Option<Known> {
+        let column = self.held(|row| wound[row]);
+        let all: Vec<&[f64]> = self
+            .own
+            .iter()
+            .chain([&column])
+            .map(Vec::as_slice)
+            .collect();
+        let plain: Vec<&[f64]> = OWN_WITHOUT_FRICTION.iter().map(|own| all[*own]).collect();
+        let [rubbed, plain] = [all, [plain, vec![&column]].concat()]
+            .map(|columns| Blocks::new(&columns, self.effort, &self.mask, self.motion.period_s));
+        let [with, without] = [&rubbed, &plain].map(Blocks::cross_validate);
+        let gain = Gain::of(&without, &with);
+        let is_rubbed = gain.share >= DIFFERENCE_SHARE
+            && gain.t >= DIFFERENCE_T
+            && with.coefficients[OWN_FRICTION] > 0.0;
+        let blocks = if is_rubbed { rubbed } else { plain };
+        let value = *blocks.fit().coefficients.last()?;
+        let half_width = *blocks.half_widths().last()?;
+        (value > 0.0).then_some(Known { value, half_width })
     }
 
     /// Rate of motor − load where a condition on it holds.
