@@ -6,7 +6,8 @@
 //! encoders' counts.
 //!
 //! Wind-up is judged by the recorded effort. What motor − load keeps in the end is told by what the
-//! load's own motion asks for, where that leaves less ([`carried`]).
+//! load's own motion asks for, where that leaves less ([`carried`]), and so are masses, screw and
+//! friction then ([`by_the_load`]).
 //!
 //! A gap between rigid flanks is judged by the motion: the load coasts, or waits, while the motor
 //! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
@@ -17,7 +18,9 @@ mod carried;
 mod columns;
 mod edges;
 mod flanks;
+mod known;
 mod left;
+mod load;
 mod search;
 
 use std::cell::OnceCell;
@@ -25,10 +28,11 @@ use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
-pub(crate) use self::by_the_load::{ByTheLoad, Known};
+pub(crate) use self::by_the_load::ByTheLoad;
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
 use self::flanks::Judged;
+pub(crate) use self::known::Known;
 use self::left::Left;
 use self::search::{best_gap, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};

@@ -123,9 +123,9 @@ pub(crate) const DIFFERENCE_RMS_COUNTS: f64 = 1.0;
 /// A gap is as wide as it is: the factor that a fit would give its lag must be near one. Chosen.
 pub(crate) const GAP_FACTOR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
-/// What impacts between rigid flanks leave of motor − load, rms, as a share of the gap: 0.01 to 0.07
-/// on simulated records. A loop that bounces on springy flanks, taken for rigid ones, leaves 0.12
-/// and more.
+/// What impacts between rigid flanks leave of motor − load, rms, as a share of the gap: 0.01 to
+/// 0.07 on simulated records. A loop that bounces on springy flanks, taken for rigid ones, leaves
+/// 0.12 and more.
 pub(crate) const IMPACTS: f64 = 0.1;
 
 /// Structure of motor − load that no effect explains counts beyond so many counts of the coarser

@@ -96,7 +96,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
             known(told.deflection, length.into()),
         ));
     }
-    if extended.fitted.of(EffectName::Stribeck).is_some() {
+    if extended.fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
         own.push(("stribeck_excess", known(told.excess, effort.into())));
         own.push((
             "stribeck_velocity",

@@ -12,37 +12,11 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
-use super::carried::{Carried, LoadFriction};
 use super::columns::{Apart, Way};
 use super::flanks::Balance;
+use super::known::Known;
+use super::load::{Carried, LoadFriction};
 use crate::fit::blocks::Blocks;
-
-/// A value with the half width of its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Known {
-    /// Value.
-    pub value: f64,
-    /// Half width of its interval.
-    pub half_width: f64,
-}
-
-impl Known {
-    const fn new(value: f64, half_width: f64) -> Self {
-        Self { value, half_width }
-    }
-
-    /// So many times as large.
-    fn of(self, whole: f64) -> Self {
-        Self::new(self.value * whole, self.half_width * whole.abs())
-    }
-
-    /// The product with another.
-    fn times(self, other: Self) -> Self {
-        let relative = (self.half_width / self.value).hypot(other.half_width / other.value);
-        let value = self.value * other.value;
-        Self::new(value, (value * relative).abs())
-    }
-}
 
 /// What the load's motion tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,13 +168,6 @@ mod tests {
         let apart = apart(&axis);
         assert_eq!(told(&apart, &WAYS, 1), None);
         assert_eq!(told(&apart, &WAYS, 7), None);
-    }
-
-    #[test]
-    fn a_product_is_as_uncertain_as_both_its_factors() {
-        let product = Known::new(2.0, 0.03 * 2.0).times(Known::new(-5.0, 0.04 * 5.0));
-        assert!((product.value + 10.0).abs() < 1.0e-12);
-        assert!((product.half_width - 0.5).abs() < 1.0e-12, "{product:?}");
     }
 
     #[test]

@@ -1,16 +1,8 @@
-//! Wind-up as the load's own motion asks for it.
+//! Wind-up as the load's own motion asks for it ([`load`](super::load)).
 //!
 //! The recorded effort is noisy, and noise of the effort over the stiffness is wind-up that never
 //! was: 20 N over 120 N/µm are 17 counts of 10 nm. What the spring transmits moves the load, and
-//! the load's motion was measured:
-//!
-//! ```text
-//! K·w + C·ẇ = M2·a2 + Fc2·z + d·ż + Fv2·v2 + F0
-//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·exp(−(v2/vs)²)
-//! ```
-//!
-//! w is the wind-up, z the bend of a bristle whose level falls with the velocity (LuGre: Canudas de
-//! Wit et al., IEEE TAC 40, 1995). Everything but δ, rise and vs is linear.
+//! the load's motion was measured.
 //!
 //! Free coefficients could take a gap for friction. The effort tells: what the spring transmits is
 //! in it as K·w, so the wind-up must explain the effort as well as its own parts do when each is
@@ -18,21 +10,17 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
-use std::ops::Range;
-
 use axis_model::EffectName;
 
 use super::columns::{Apart, Way};
-use super::edges::Flanks;
 use super::flanks::Balance;
+use super::load::{Carried, LoadFriction, LoadMotion};
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, GAP_FACTOR};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
-use crate::motion::bodies::minus;
-use crate::motion::kinematics::Kinematics;
 
 /// Deflections that are tried, in moving-velocity units times a second: 0.3 to 300 µm on a linear
 /// axis.
@@ -41,204 +29,37 @@ const DEFLECTIONS: (f64, f64, u32) = (3.0e-4, 0.3, 16);
 const VELOCITIES: [f64; 3] = [0.5, 2.0, 8.0];
 /// How far the level rises at rest, to start from.
 const RISE: f64 = 0.3;
-/// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
-/// less than a hundredth of it is left.
-const SETTLED: f64 = 5.0;
 /// Rounds of descents over the three, each with half the steps of the one before.
 const ROUNDS: i32 = 4;
 
-/// Rounds in which the width of a gap settles: what it is off by falls to less than a third in each.
+/// Rounds in which the width of a gap settles: what it is off by falls to less than a third in
+/// each.
 const FLANK_ROUNDS: usize = 5;
 /// Of what a wind-up leaves of the effort at least this part is left where its parts are free. Of
-/// machines with gaps of 100 µm whose flanks strike it is 0.84 and more, without strikes 0.99. Where
-/// a gap went into the friction it is 0.27 and less: what is swallowed unseen is less than the noise
-/// of the effort over the stiffness.
+/// machines with gaps of 100 µm whose flanks strike it is 0.84 and more, without strikes 0.99.
+/// Where a gap went into the friction it is 0.27 and less: what is swallowed unseen is less than
+/// the noise of the effort over the stiffness.
 const TIED_PART: f64 = 0.5;
 
-/// Friction on the load over its own displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LoadFriction {
-    /// Deflection δ over which its force builds up.
-    pub deflection: f64,
-    /// How much higher the level is at rest, as a share of the Coulomb level.
-    pub rise: f64,
-    /// Velocity at which that has fallen to 1/e.
-    pub velocity: f64,
-}
-
-impl LoadFriction {
-    /// The same with deflection, rise and velocity times factors.
-    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
-        Self {
-            deflection: self.deflection * deflection,
-            rise: self.rise * rise,
-            velocity: self.velocity * velocity,
-        }
-    }
-
-    /// The bend of the bristle along a path, in Coulomb levels.
-    fn bend(self, position: &[f64], velocity: &[f64]) -> Vec<f64> {
-        let (mut bend, mut before) = (0.0_f64, position.first().copied().unwrap_or(0.0));
-        let rows = position.iter().zip(velocity);
-        let bends = rows.map(|(x, v)| {
-            let step = x - before;
-            before = *x;
-            if step != 0.0 {
-                let level = 1.0 + self.rise * (-(v / self.velocity).powi(2)).exp();
-                let end = level.copysign(step);
-                bend = end + (bend - end) * (-step.abs() / (self.deflection * level)).exp();
-            }
-            bend
-        });
-        bends.collect()
-    }
-}
-
-/// The load's motion at the rows.
-struct LoadMotion {
-    position: Vec<f64>,
-    /// Low-passed.
-    velocity: Vec<f64>,
-    /// Low-passed.
-    acceleration: Vec<f64>,
-    /// Rate of the wind-up, low-passed.
-    rate: Vec<f64>,
-}
-
-impl LoadMotion {
-    fn of(motion: &Kinematics, position: &[f64], apart: &[f64], flanks: Option<Flanks>) -> Self {
-        let wind_up = |d: &f64| flanks.map_or(*d, |flanks| flanks.wind_up(*d));
-        let wound: Vec<f64> = apart.iter().map(wind_up).collect();
-        let position = minus(position, apart);
-        let by_piece = |signal: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>| -> Vec<f64> {
-            let pieces = motion.pieces.iter().cloned();
-            let raw: Vec<f64> = pieces
-                .flat_map(|piece| derivative(&signal[piece], motion.period_s))
-                .collect();
-            motion.low_passed(&raw)
-        };
-        Self {
-            velocity: by_piece(&position, slope),
-            acceleration: by_piece(&position, bow),
-            rate: by_piece(&wound, slope),
-            position,
-        }
-    }
-
-    /// The bend and its rate, low-passed.
-    fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
-        let of_piece = |piece: &Range<usize>| {
-            let bend = friction.bend(&self.position[piece.clone()], &self.velocity[piece.clone()]);
-            let rate = slope(&bend, motion.period_s);
-            (bend, rate)
-        };
-        let (bend, rate): (Vec<_>, Vec<_>) = motion.pieces.iter().map(of_piece).unzip();
-        motion.all_low_passed(&[bend.concat(), rate.concat()])
-    }
-
-    /// What does not depend on the friction's parameters.
-    fn plain(&self) -> [Vec<f64>; 3] {
-        [&self.acceleration, &self.velocity, &self.rate].map(Clone::clone)
-    }
-}
-
-/// First derivative at the rows by the central differences over two and four rows: within half a
-/// percent up to a tenth of the sample rate. The ends stand still.
-fn slope(x: &[f64], period_s: f64) -> Vec<f64> {
-    at_rows(x, |x| {
-        (8.0 * (x[3] - x[1]) - (x[4] - x[0])) / (12.0 * period_s)
-    })
-}
-
-/// Second derivative, in the same way: within a fifth of a percent.
-fn bow(x: &[f64], period_s: f64) -> Vec<f64> {
-    at_rows(x, |x| {
-        (16.0 * (x[1] + x[3]) - 30.0 * x[2] - x[0] - x[4]) / (12.0 * period_s.powi(2))
-    })
-}
-
-/// A function of each row and two neighbours on either side; zero where they are not all there.
-fn at_rows(x: &[f64], of_five: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-    let mut values = vec![0.0; x.len()];
-    for (value, five) in values.iter_mut().skip(2).zip(x.windows(5)) {
-        *value = of_five(five);
-    }
-    values
-}
-
-/// Wind-up that the load's motion asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carried {
-    /// Friction of the load.
-    pub friction: LoadFriction,
-    /// The flanks of a gap; without one everything that is between motor and load is wound up.
-    pub flanks: Option<Flanks>,
-}
-
-impl Carried {
-    /// Number of its columns.
-    pub(super) const WIDTH: usize = 5;
-    /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
-    pub(super) const MASS: usize = 0;
-    /// Place of that of the rate of the wind-up.
-    pub(super) const DAMPING: usize = 2;
-    /// Place of the bend's.
-    pub(super) const FRICTION: usize = 3;
-
-    /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
-    /// wind-up, bend, rate of the bend.
-    pub(super) fn columns(
-        self,
-        motion: &Kinematics,
-        position: &[f64],
-        apart: &[f64],
-    ) -> Vec<Vec<f64>> {
-        let load = LoadMotion::of(motion, position, apart, self.flanks);
-        let rubbed = load.rubbed(motion, self.friction);
-        load.plain().into_iter().chain(rubbed).collect()
-    }
-
-    /// The rows of a mask at which the bend is known: nobody recorded it at the start of a piece.
-    pub(super) fn known(
-        self,
-        motion: &Kinematics,
-        position: &[f64],
-        apart: &[f64],
-        mask: &[bool],
-    ) -> Vec<bool> {
-        let travel = SETTLED * self.friction.deflection * (1.0 + self.friction.rise);
-        let of_piece = |piece: &Range<usize>| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            let rows = piece.clone().map(move |row| {
-                let x = position[row] - apart[row];
-                (low, high) = (low.min(x), high.max(x));
-                mask[row] && high - low >= travel
-            });
-            rows.collect::<Vec<bool>>()
-        };
-        motion.pieces.iter().flat_map(of_piece).collect()
-    }
-
-    /// The best beside other ways; `unit` is the moving velocity.
-    fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Self {
-        let is_flanks = |way: &Way| match way {
-            Way::Flanks(flanks) => Some(*flanks),
-            _ => None,
-        };
-        let flanks = others.iter().find_map(is_flanks);
-        let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks);
-        let design = apart.design(others).into_iter().chain(load.plain());
-        let design: Vec<Vec<f64>> = design.collect();
-        let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        let (target, mask) = (&apart.target, &apart.mask);
-        let rows = Rows::new(&columns, target, mask, apart.motion.period_s);
-        let left = |friction: LoadFriction| {
-            let rubbed = load.rubbed(apart.motion, friction);
-            Blocks::with(&rows, &rubbed).fit().sse
-        };
-        let friction = descended(start(unit, &left), unit, &left);
-        Self { friction, flanks }
-    }
+/// The best wind-up beside other ways; `unit` is the moving velocity.
+fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
+    let is_flanks = |way: &Way| match way {
+        Way::Flanks(flanks) => Some(*flanks),
+        _ => None,
+    };
+    let flanks = others.iter().find_map(is_flanks);
+    let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks);
+    let design = apart.design(others).into_iter().chain(load.plain());
+    let design: Vec<Vec<f64>> = design.collect();
+    let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
+    let (target, mask) = (&apart.target, &apart.mask);
+    let rows = Rows::new(&columns, target, mask, apart.motion.period_s);
+    let left = |friction: LoadFriction| {
+        let rubbed = load.rubbed(apart.motion, friction);
+        Blocks::with(&rows, &rubbed).fit().sse
+    };
+    let friction = descended(start(unit, &left), unit, &left);
+    Carried { friction, flanks }
 }
 
 /// The best of a grid.
@@ -295,7 +116,7 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<
         .position(|way| matches!(way, Way::WindUp { .. }))?;
     let mut changed = ways.to_vec();
     changed.remove(place);
-    let carried = Carried::best(apart, &changed, unit);
+    let carried = best(apart, &changed, unit);
     changed.insert(place, Way::Carried(carried));
     let apart = &apart.where_known(&changed);
     let changed = between_refined_flanks(apart, changed);
@@ -438,24 +259,5 @@ pub(super) mod tests {
     fn without_wind_up_there_is_nothing_to_carry() {
         let axis = axis(|_| 0.0);
         assert_eq!(instead(&apart(&axis), &WAYS[..1], UNIT), None);
-    }
-
-    #[test]
-    fn a_bend_is_known_once_the_bristle_has_given_way() {
-        let axis = axis(|_| 0.0);
-        let carried = Carried {
-            friction: FRICTION,
-            flanks: None,
-        };
-        let apart = apart(&axis);
-        let mask = vec![true; 6000];
-        let position = &axis.dataset.train.position;
-        let known = carried.known(&axis.motion, position, apart.raw, &mask);
-        let first = known.iter().position(|known| *known).unwrap();
-        let load = two_sines(6000);
-        let travel = SETTLED * 20.0e-6 * 1.4;
-        assert!((load[first] - load[0]).abs() >= travel);
-        assert!((load[first - 1] - load[0]).abs() < travel);
-        assert!(known[first..].iter().all(|known| *known));
     }
 }

@@ -15,8 +15,8 @@ use std::f64::consts::TAU;
 
 use axis_model::EffectName;
 
-use super::carried::Carried;
 use super::edges::Flanks;
+use super::load::Carried;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;

@@ -18,9 +18,9 @@
 //! The rivals of a gap are a spring without one, `K·d`, and one that stiffens, `K·d + K₃·d³`.
 //! Units: m or rad, s, unit of the effort.
 
-use super::by_the_load::Known;
 use super::columns::{Apart, of_motor};
 use super::edges::Flanks;
+use super::known::Known;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, FEWEST_COUNTS};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::search::descend;

@@ -1,0 +1,40 @@
+//! A value with its interval.
+
+/// A value with the half width of its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Known {
+    /// Value.
+    pub value: f64,
+    /// Half width of its interval.
+    pub half_width: f64,
+}
+
+impl Known {
+    /// A value with its half width.
+    pub(super) const fn new(value: f64, half_width: f64) -> Self {
+        Self { value, half_width }
+    }
+
+    /// So many times as large.
+    pub(super) fn of(self, whole: f64) -> Self {
+        Self::new(self.value * whole, self.half_width * whole.abs())
+    }
+
+    /// The product with another.
+    pub(super) fn times(self, other: Self) -> Self {
+        let half_width = (self.half_width * other.value).hypot(other.half_width * self.value);
+        Self::new(self.value * other.value, half_width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_product_is_as_uncertain_as_both_its_factors() {
+        let product = Known::new(2.0, 0.03 * 2.0).times(Known::new(-5.0, 0.04 * 5.0));
+        assert!((product.value + 10.0).abs() < 1.0e-12);
+        assert!((product.half_width - 0.5).abs() < 1.0e-12, "{product:?}");
+    }
+}

@@ -1,0 +1,255 @@
+//! The load's motion, and the wind-up that it asks for.
+//!
+//! ```text
+//! K·w + C·ẇ = M2·a2 + Fc2·z + d·ż + Fv2·v2 + F0
+//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·exp(−(v2/vs)²)
+//! ```
+//!
+//! w is the wind-up, z the bend of a bristle whose level falls with the velocity (LuGre: Canudas de
+//! Wit et al., IEEE TAC 40, 1995). Everything but δ, rise and vs is linear.
+//!
+//! Units: m or rad, s, unit of the effort.
+
+use std::ops::Range;
+
+use super::edges::Flanks;
+use crate::motion::bodies::minus;
+use crate::motion::kinematics::Kinematics;
+
+/// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
+/// less than a hundredth of it is left.
+const SETTLED: f64 = 5.0;
+
+/// Friction on the load over its own displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LoadFriction {
+    /// Deflection δ over which its force builds up.
+    pub deflection: f64,
+    /// How much higher the level is at rest, as a share of the Coulomb level.
+    pub rise: f64,
+    /// Velocity at which that has fallen to 1/e.
+    pub velocity: f64,
+}
+
+impl LoadFriction {
+    /// The same with deflection, rise and velocity times factors.
+    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
+        Self {
+            deflection: self.deflection * deflection,
+            rise: self.rise * rise,
+            velocity: self.velocity * velocity,
+        }
+    }
+
+    /// The bend of the bristle along a path, in Coulomb levels.
+    pub(super) fn bend(self, position: &[f64], velocity: &[f64]) -> Vec<f64> {
+        let (mut bend, mut before) = (0.0_f64, position.first().copied().unwrap_or(0.0));
+        let rows = position.iter().zip(velocity);
+        let bends = rows.map(|(x, v)| {
+            let step = x - before;
+            before = *x;
+            if step != 0.0 {
+                let level = 1.0 + self.rise * (-(v / self.velocity).powi(2)).exp();
+                let end = level.copysign(step);
+                bend = end + (bend - end) * (-step.abs() / (self.deflection * level)).exp();
+            }
+            bend
+        });
+        bends.collect()
+    }
+}
+
+/// The load's motion at the rows.
+pub(super) struct LoadMotion {
+    position: Vec<f64>,
+    /// Low-passed.
+    velocity: Vec<f64>,
+    /// Low-passed.
+    acceleration: Vec<f64>,
+    /// Rate of the wind-up, low-passed.
+    rate: Vec<f64>,
+}
+
+impl LoadMotion {
+    /// Of a record with such a motion of its motor, and such a motor − load.
+    pub(super) fn of(
+        motion: &Kinematics,
+        position: &[f64],
+        apart: &[f64],
+        flanks: Option<Flanks>,
+    ) -> Self {
+        let wind_up = |d: &f64| flanks.map_or(*d, |flanks| flanks.wind_up(*d));
+        let wound: Vec<f64> = apart.iter().map(wind_up).collect();
+        let position = minus(position, apart);
+        let by_piece = |signal: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>| -> Vec<f64> {
+            let pieces = motion.pieces.iter().cloned();
+            let raw: Vec<f64> = pieces
+                .flat_map(|piece| derivative(&signal[piece], motion.period_s))
+                .collect();
+            motion.low_passed(&raw)
+        };
+        Self {
+            velocity: by_piece(&position, slope),
+            acceleration: by_piece(&position, bow),
+            rate: by_piece(&wound, slope),
+            position,
+        }
+    }
+
+    /// The bend and its rate, low-passed.
+    pub(super) fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
+        let of_piece = |piece: &Range<usize>| {
+            let bend = friction.bend(&self.position[piece.clone()], &self.velocity[piece.clone()]);
+            let rate = slope(&bend, motion.period_s);
+            (bend, rate)
+        };
+        let (bend, rate): (Vec<_>, Vec<_>) = motion.pieces.iter().map(of_piece).unzip();
+        motion.all_low_passed(&[bend.concat(), rate.concat()])
+    }
+
+    /// What does not depend on the friction's parameters.
+    pub(super) fn plain(&self) -> [Vec<f64>; 3] {
+        [&self.acceleration, &self.velocity, &self.rate].map(Clone::clone)
+    }
+}
+
+/// First derivative at the rows by the central differences over two and four rows: within half a
+/// percent up to a tenth of the sample rate. The ends stand still.
+fn slope(x: &[f64], period_s: f64) -> Vec<f64> {
+    at_rows(x, |x| {
+        (8.0 * (x[3] - x[1]) - (x[4] - x[0])) / (12.0 * period_s)
+    })
+}
+
+/// Second derivative, in the same way: within a fifth of a percent.
+fn bow(x: &[f64], period_s: f64) -> Vec<f64> {
+    at_rows(x, |x| {
+        (16.0 * (x[1] + x[3]) - 30.0 * x[2] - x[0] - x[4]) / (12.0 * period_s.powi(2))
+    })
+}
+
+/// A function of each row and two neighbours on either side; zero where they are not all there.
+fn at_rows(x: &[f64], of_five: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let mut values = vec![0.0; x.len()];
+    for (value, five) in values.iter_mut().skip(2).zip(x.windows(5)) {
+        *value = of_five(five);
+    }
+    values
+}
+
+/// Wind-up that the load's motion asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Carried {
+    /// Friction of the load.
+    pub friction: LoadFriction,
+    /// The flanks of a gap; without one everything that is between motor and load is wound up.
+    pub flanks: Option<Flanks>,
+}
+
+impl Carried {
+    /// Number of its columns.
+    pub(super) const WIDTH: usize = 5;
+    /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
+    pub(super) const MASS: usize = 0;
+    /// Place of that of the rate of the wind-up.
+    pub(super) const DAMPING: usize = 2;
+    /// Place of the bend's.
+    pub(super) const FRICTION: usize = 3;
+
+    /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
+    /// wind-up, bend, rate of the bend.
+    pub(super) fn columns(
+        self,
+        motion: &Kinematics,
+        position: &[f64],
+        apart: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let load = LoadMotion::of(motion, position, apart, self.flanks);
+        let rubbed = load.rubbed(motion, self.friction);
+        load.plain().into_iter().chain(rubbed).collect()
+    }
+
+    /// The rows of a mask at which the bend is known: nobody recorded it at the start of a piece.
+    pub(super) fn known(
+        self,
+        motion: &Kinematics,
+        position: &[f64],
+        apart: &[f64],
+        mask: &[bool],
+    ) -> Vec<bool> {
+        let travel = SETTLED * self.friction.deflection * (1.0 + self.friction.rise);
+        let of_piece = |piece: &Range<usize>| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let rows = piece.clone().map(move |row| {
+                let x = position[row] - apart[row];
+                (low, high) = (low.min(x), high.max(x));
+                mask[row] && high - low >= travel
+            });
+            rows.collect::<Vec<bool>>()
+        };
+        motion.pieces.iter().flat_map(of_piece).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::difference::carried::tests::{FRICTION, apart, axis};
+    use crate::simulate::made::two_sines;
+
+    #[test]
+    fn derivatives_are_those_of_a_sine_up_to_a_tenth_of_the_rate() {
+        let rate = std::f64::consts::TAU * 100.0;
+        let path: Vec<f64> = (0..50)
+            .map(|row| (1.0e-3 * rate * f64::from(row)).sin())
+            .collect();
+        let (slope, bow) = (slope(&path, 1.0e-3), bow(&path, 1.0e-3));
+        assert_eq!((slope[1], slope[48], bow[1], bow[48]), (0.0, 0.0, 0.0, 0.0));
+        for row in 2..48 {
+            let angle = 1.0e-3 * rate * row as f64;
+            assert!((slope[row] / rate - angle.cos()).abs() < 5.1e-3, "{row}");
+            assert!(
+                (bow[row] / rate.powi(2) + angle.sin()).abs() < 2.0e-3,
+                "{row}"
+            );
+        }
+        assert!(
+            super::slope(&path[..3], 1.0e-3)
+                .iter()
+                .all(|slope| *slope == 0.0)
+        );
+    }
+
+    #[test]
+    fn a_bristle_bends_to_the_level_of_its_velocity_and_back() {
+        let there: Vec<f64> = (0..400).map(|row| 1.0e-6 * f64::from(row)).collect();
+        let back = there.iter().rev().copied();
+        let path: Vec<f64> = there.iter().copied().chain(back).collect();
+        let bend = |velocity: f64| FRICTION.bend(&path, &vec![velocity; path.len()]);
+        let (slow, fast) = (bend(0.0), bend(1.0));
+        assert!((slow[399] - 1.4).abs() < 1.0e-4 && (fast[399] - 1.0).abs() < 1.0e-4);
+        assert!((slow[799] + 1.4).abs() < 1.0e-4 && (fast[799] + 1.0).abs() < 1.0e-4);
+        // One deflection after the turn 2/e of both levels are left to go.
+        let turned = -1.0 + 2.0 * (-1.0_f64).exp();
+        assert!((fast[420] - turned).abs() < 0.01, "{}", fast[420]);
+    }
+
+    #[test]
+    fn a_bend_is_known_once_the_bristle_has_given_way() {
+        let axis = axis(|_| 0.0);
+        let carried = Carried {
+            friction: FRICTION,
+            flanks: None,
+        };
+        let apart = apart(&axis);
+        let mask = vec![true; 6000];
+        let position = &axis.dataset.train.position;
+        let known = carried.known(&axis.motion, position, apart.raw, &mask);
+        let first = known.iter().position(|known| *known).unwrap();
+        let load = two_sines(6000);
+        let travel = SETTLED * 20.0e-6 * 1.4;
+        assert!((load[first] - load[0]).abs() >= travel);
+        assert!((load[first - 1] - load[0]).abs() < travel);
+        assert!(known[first..].iter().all(|known| *known));
+    }
+}
