@@ -115,6 +115,7 @@ fn residual(findings: &Findings<'_>) -> ResidualReport {
         share_before: structure.share.declared,
         share_after: structure.share.extended,
         late_ms: 1.0e3 * structure.left.extended.late_s,
+        late_share: structure.left.extended.shift.share,
         looks_like: findings.verdict.looks_like.clone(),
     }
 }

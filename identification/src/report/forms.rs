@@ -185,6 +185,8 @@ pub struct ResidualReport {
     pub share_after: f64,
     /// How late the effort is against the motion by what the extended model leaves, ms.
     pub late_ms: f64,
+    /// Share of the residual's variance that this shift explains.
+    pub late_share: f64,
     /// What the structure that is left looks like, where there is any.
     pub looks_like: String,
 }

@@ -15,6 +15,8 @@ use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::bench::Bench;
 use crate::model::effects::{Named, Naming};
+use crate::model::inverse::{Model, Part};
+use crate::model::name::Called;
 use crate::report::ranking;
 
 /// A parameter with its name.
@@ -103,7 +105,38 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
             known(told.velocity, format!("{length}/s")),
         ));
     }
+    if !told.motor_rubs && has_usual_friction(extended.fitted.model()) {
+        own.push(("coulomb", known(told.coulomb, effort.into())));
+        own.push((
+            "viscous",
+            known(told.viscous, format!("{effort} s/{length}")),
+        ));
+    }
     own
+}
+
+/// Effects beside which Coulomb and viscous friction are those of the load alone: none of them is a
+/// friction of another law.
+const BESIDE_USUAL: [EffectName; 8] = [
+    EffectName::Inertia,
+    EffectName::Viscous,
+    EffectName::Coulomb,
+    EffectName::Offset,
+    EffectName::Stribeck,
+    EffectName::TorqueRipple,
+    EffectName::Delay,
+    EffectName::LoggedLate,
+];
+
+/// Whether a model has Coulomb and viscous friction, and no other but a Stribeck fall.
+fn has_usual_friction(model: &Model) -> bool {
+    let is_usual = |part: &Part| match part.called() {
+        Called::Effect(name) => BESIDE_USUAL.contains(&name),
+        Called::Structure(_) => part.effect.is_mass(),
+    };
+    model.has(EffectName::Coulomb)
+        && model.has(EffectName::Viscous)
+        && model.parts.iter().all(is_usual)
 }
 
 /// Entries of outputs as a table; a name that comes again gets a number.
@@ -262,6 +295,17 @@ mod tests {
             high: 10.5,
         };
         assert_eq!(list, [("coulomb".to_owned(), wanted)]);
+    }
+
+    #[test]
+    fn friction_of_another_law_keeps_coulomb_and_viscous_friction_with_the_effort() {
+        use crate::fit::made::{found, model};
+        use EffectName::{Coulomb, FrictionDrift, Inertia, Offset, Stribeck, Viscous};
+        let usual = model(&[Inertia, Viscous, Coulomb, Offset]);
+        assert!(has_usual_friction(&usual));
+        assert!(has_usual_friction(&usual.with(found(Stribeck, 0.02))));
+        assert!(!has_usual_friction(&usual.with(found(FrictionDrift, 2.0))));
+        assert!(!has_usual_friction(&model(&[Inertia, Coulomb, Offset])));
     }
 
     #[test]

@@ -13,7 +13,7 @@
 //! Units: m or rad, s, unit of the effort.
 
 use super::columns::{Apart, Way};
-use super::flanks::Balance;
+use super::flanks::{Balance, Stiffness};
 use super::known::Known;
 use super::load::{Carried, LoadFriction};
 use crate::fit::blocks::Blocks;
@@ -27,8 +27,12 @@ pub(crate) struct ByTheLoad {
     pub damping: Known,
     /// Mass of the load.
     pub mass: Known,
+    /// Whether the motor's own side has friction beside that of the load.
+    pub motor_rubs: bool,
     /// Coulomb level of the load.
     pub coulomb: Known,
+    /// Viscous friction of the load.
+    pub viscous: Known,
     /// Deflection of its bristle: Coulomb level over its stiffness.
     pub deflection: Known,
     /// Friction at rest beyond the Coulomb level.
@@ -50,7 +54,10 @@ pub(super) fn told(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<ByTh
     let apart = &apart.where_known(ways);
     let fitted = apart.fit(ways);
     let (way, own) = fitted.at(place)?;
-    let stiffness = Balance::of(apart).stiffness(&apart.predicted(way, own))?;
+    let Stiffness {
+        known: stiffness,
+        is_rubbed,
+    } = Balance::of(apart).stiffness(&apart.predicted(way, own))?;
     let others: Vec<Way> = ways.iter().copied().filter(|one| *one != way).collect();
     let columns = apart.columns(way);
     let bent = derivatives(apart, carried, own);
@@ -75,7 +82,9 @@ pub(super) fn told(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<ByTh
         stiffness,
         damping: damping.of(-1.0),
         mass: known(Carried::MASS).times(stiffness),
+        motor_rubs: is_rubbed,
         coulomb,
+        viscous: known(Carried::VISCOUS).times(stiffness),
         deflection: of_friction(deflection, 0),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
@@ -145,6 +154,7 @@ mod tests {
             (told.stiffness, STIFFNESS, 0.005),
             (told.mass, 60.0, 0.005),
             (told.coulomb, 25.0, 0.01),
+            (told.viscous, 200.0, 0.01),
             (told.deflection, FRICTION.deflection, 0.01),
             (told.excess, 25.0 * FRICTION.rise, 0.05),
             (told.velocity, FRICTION.velocity, 0.05),
@@ -157,7 +167,8 @@ mod tests {
             let half_width = known.half_width / known.value;
             assert!((1.0e-6..2.0 * share).contains(&half_width), "{known:?}");
         }
-        // The made axis has no damper, and no gap.
+        // The made axis has no damper, no gap and no friction of its motor.
+        assert!(!told.motor_rubs);
         assert!(told.damping.value.abs() < 1.0e-5 * STIFFNESS, "{told:?}");
         assert_eq!(told.gap, None);
     }

@@ -60,6 +60,15 @@ pub(crate) struct Judged {
     pub sees_flanks: bool,
 }
 
+/// The stiffness between motor and load.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stiffness {
+    /// Value.
+    pub known: Known,
+    /// Whether the motor's own side has friction.
+    pub is_rubbed: bool,
+}
+
 /// The motor's balance of forces on a record.
 pub(super) struct Balance<'a> {
     motion: &'a Kinematics,
@@ -145,7 +154,7 @@ impl<'a> Balance<'a> {
     /// The stiffness as the effort shows it beside a wind-up that is known without the effort.
     /// Friction of the motor's own side is asked only where it is seen: beside that of the load it
     /// would take half a percent of the stiffness away.
-    pub(super) fn stiffness(&self, wound: &[f64]) -> Option<Known> {
+    pub(super) fn stiffness(&self, wound: &[f64]) -> Option<Stiffness> {
         let column = self.held(|row| wound[row]);
         let all: Vec<&[f64]> = self
             .own
@@ -164,7 +173,10 @@ impl<'a> Balance<'a> {
         let blocks = if is_rubbed { rubbed } else { plain };
         let value = *blocks.fit().coefficients.last()?;
         let half_width = *blocks.half_widths().last()?;
-        (value > 0.0).then_some(Known { value, half_width })
+        (value > 0.0).then_some(Stiffness {
+            known: Known { value, half_width },
+            is_rubbed,
+        })
     }
 
     /// Rate of motor − load where a condition on it holds.

@@ -151,6 +151,8 @@ impl Carried {
     pub(super) const WIDTH: usize = 5;
     /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
     pub(super) const MASS: usize = 0;
+    /// Place of that of its velocity.
+    pub(super) const VISCOUS: usize = 1;
     /// Place of that of the rate of the wind-up.
     pub(super) const DAMPING: usize = 2;
     /// Place of the bend's.
