@@ -1,9 +1,8 @@
 //! What the load's own motion tells of the axis, with intervals.
 //!
 //! Wind-up that is fitted to motor − load ([`carried`](super::carried)) has its coefficients over
-//! the stiffness: M2/K, Fc2/K, C/K. The stiffness itself is in the effort alone. There the wind-up
-//! g is a column without noise, `F = M1·a1 + Fc1·sign v1 + Fv1·v1 + F0 + K·g`, so that noise of the
-//! effort does not bias K.
+//! the stiffness: M2/K, Fc2/K, C/K. The stiffness itself is in the effort alone, beside the wind-up
+//! that was measured: `F = M1·a1 + F0 + K·D(d − c) + C·ḋ in contact` ([`flanks`](super::flanks)).
 //!
 //! Intervals are those of the jackknife over held-out blocks. Deflection, rise and velocity of the
 //! bristle have them by the derivative of its columns, which are fitted beside the others; so has
@@ -57,7 +56,7 @@ pub(super) fn told(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<ByTh
     let Stiffness {
         known: stiffness,
         is_rubbed,
-    } = Balance::of(apart).stiffness(&apart.predicted(way, own))?;
+    } = Balance::of(apart).stiffness(carried.flanks)?;
     let others: Vec<Way> = ways.iter().copied().filter(|one| *one != way).collect();
     let columns = apart.columns(way);
     let bent = derivatives(apart, carried, own);

@@ -41,7 +41,9 @@ const BEYOND: f64 = 0.005;
 
 /// Place of the motor's own Coulomb friction among the columns of its own side.
 const OWN_FRICTION: usize = 1;
-/// Places of what the motor's own side has without friction: mass and offset.
+/// Places of all that the motor's own side has: mass, Coulomb and viscous friction, offset.
+const OWN: [usize; 4] = [0, OWN_FRICTION, 2, 3];
+/// Places of what it has without friction.
 const OWN_WITHOUT_FRICTION: [usize; 2] = [0, 3];
 /// Seconds with so many times the effort of the median one are left out. Chosen: between slow and
 /// fast strokes it differs by up to four times, and a loop that bounces between the flanks brings
@@ -151,27 +153,33 @@ impl<'a> Balance<'a> {
         self.blocks(&held).fit().sse
     }
 
-    /// The stiffness as the effort shows it beside a wind-up that is known without the effort.
-    /// Friction of the motor's own side is asked only where it is seen: beside that of the load it
-    /// would take half a percent of the stiffness away.
-    pub(super) fn stiffness(&self, wound: &[f64]) -> Option<Stiffness> {
-        let column = self.held(|row| wound[row]);
-        let all: Vec<&[f64]> = self
-            .own
-            .iter()
-            .chain([&column])
-            .map(Vec::as_slice)
-            .collect();
-        let plain: Vec<&[f64]> = OWN_WITHOUT_FRICTION.iter().map(|own| all[*own]).collect();
-        let [rubbed, plain] = [all, [plain, vec![&column]].concat()]
-            .map(|columns| Blocks::new(&columns, self.effort, &self.mask, self.motion.period_s));
+    /// The stiffness as the effort shows it, between flanks or of a spring without a gap. Motor −
+    /// load was measured, so noise of the effort does not bias it. Friction of the motor's own side
+    /// is asked only where it is seen: it would take half a percent of the stiffness away.
+    pub(super) fn stiffness(&self, flanks: Option<Flanks>) -> Option<Stiffness> {
+        let wind_up = |row: usize| {
+            let apart = self.difference[row];
+            flanks.map_or(apart, |flanks| flanks.wind_up(apart))
+        };
+        let touches = |d| flanks.is_none_or(|flanks| flanks.touches(d));
+        let (rate, wound) = (self.rate(touches), self.column(wind_up));
+        let of = |own: &[usize]| {
+            let own = own.iter().map(|place| self.own[*place].as_slice());
+            let columns: Vec<&[f64]> = own.chain([rate.as_slice(), wound.as_slice()]).collect();
+            Blocks::new(&columns, self.effort, &self.mask, self.motion.period_s)
+        };
+        let [rubbed, plain] = [&OWN[..], &OWN_WITHOUT_FRICTION[..]].map(of);
         let [with, without] = [&rubbed, &plain].map(Blocks::cross_validate);
         let gain = Gain::of(&without, &with);
         let is_rubbed = gain.share >= DIFFERENCE_SHARE
             && gain.t >= DIFFERENCE_T
             && with.coefficients[OWN_FRICTION] > 0.0;
-        let blocks = if is_rubbed { rubbed } else { plain };
-        let value = *blocks.fit().coefficients.last()?;
+        let (fit, blocks) = if is_rubbed {
+            (with, rubbed)
+        } else {
+            (without, plain)
+        };
+        let value = *fit.coefficients.last()?;
         let half_width = *blocks.half_widths().last()?;
         (value > 0.0).then_some(Stiffness {
             known: Known { value, half_width },
