@@ -16,6 +16,7 @@
 //! ([`mod@crate::evidence::reversal::gap`]), of the effort about reversals.
 
 use crate::evidence::free_run::Summary;
+use crate::evidence::free_run::decision::Accepted;
 use crate::evidence::reversal::Presliding;
 use crate::evidence::thresholds::{BRISTLE_TIE_RATIO, GAP_TIE_RATIO};
 
@@ -66,11 +67,23 @@ impl Witnesses {
             (None, None) => self.by_inverse(self.is_suspicious()),
             (None, Some(seen)) if !seen.controller_known => self.by_followed_run(seen),
             (None, Some(seen)) if seen.accepted.undecided => self.by_tie(seen),
-            (None, Some(seen)) => AtReversals {
-                presliding: seen.accepted.presliding,
-                backlash: seen.accepted.backlash,
-                unexplained: false,
-            },
+            (None, Some(seen)) => self.by_run(seen),
+        }
+    }
+
+    /// The run decides. Where it sees nothing and leaves something, an effort that clearly bends as
+    /// under a bristle says that there is more than it was told.
+    fn by_run(&self, seen: Summary) -> AtReversals {
+        let Accepted {
+            presliding,
+            backlash,
+            ..
+        } = seen.accepted;
+        let sees_nothing = !presliding && !backlash;
+        AtReversals {
+            presliding,
+            backlash,
+            unexplained: sees_nothing && seen.something_left && self.is_clearly_a_bristle(),
         }
     }
 
@@ -152,7 +165,6 @@ pub(crate) fn deflection(inverse: Option<&Presliding>, free_run: Option<f64>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::free_run::decision::Accepted;
 
     const NOTHING: AtReversals = AtReversals {
         presliding: false,
@@ -299,9 +311,14 @@ mod tests {
             ),
             ("it sees both", heard(None, [true, true, false]), BOTH),
             (
-                "it sees nothing",
-                heard(Some(inverse(0.3, true)), [false; 3]),
+                "it sees nothing, and neither does the effort clearly",
+                heard(Some(inverse(0.5, true)), [false; 3]),
                 NOTHING,
+            ),
+            (
+                "it sees nothing of what the effort clearly shows",
+                heard(Some(inverse(0.499, true)), [false; 3]),
+                UNEXPLAINED,
             ),
             (
                 "it is not suspicious",
