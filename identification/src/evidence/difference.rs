@@ -38,7 +38,7 @@ use self::search::{best_gap, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
     DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,
-    FEWEST_COUNTS, GAP_FACTOR, IMPACTS,
+    FEWEST_COUNTS, GAP_FACTOR, IMPACTS, STIFFNESS_AGREES,
 };
 use crate::evidence::verdict::Reason;
 use crate::fit::blocks::{Fit, Gain};
@@ -131,6 +131,7 @@ pub(crate) fn settled(
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
     let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place));
+    let told = told.filter(|told| difference.agrees_with(told));
     if let Some(told) = told {
         difference.stiffness = Some(told.stiffness.value);
         difference.gap = told.gap.map(|gap| gap.value).or(difference.gap);
@@ -440,6 +441,13 @@ impl Difference {
              or a pitch error",
             1.0e6 * rms
         )))
+    }
+
+    /// Whether the load's motion tells the stiffness that the effort told. Where a loop bounces
+    /// between its flanks it does not, and neither is right.
+    fn agrees_with(&self, told: &ByTheLoad) -> bool {
+        let stiffness = self.stiffness.unwrap_or(f64::NAN);
+        (told.stiffness.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
     }
 
     /// Whether what is left may be impacts between rigid flanks.
