@@ -161,7 +161,7 @@ fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
     if own[Carried::MASS] <= 0.0 || own[Carried::FRICTION] <= 0.0 {
         return false;
     }
-    let mut balance = Balance::of(apart);
+    let balance = Balance::of(apart);
     let free = balance.left_by_all(&apart.columns(way));
     let tied = balance.left_by(&apart.predicted(way, own));
     free >= TIED_PART * tied

@@ -43,6 +43,8 @@ const BEYOND: f64 = 0.005;
 const OWN_FRICTION: usize = 1;
 /// Places of all that the motor's own side has: mass, Coulomb and viscous friction, offset.
 const OWN: [usize; 4] = [0, OWN_FRICTION, 2, 3];
+/// Places of what it has without Coulomb friction.
+const OWN_WITHOUT_COULOMB: [usize; 3] = [0, 2, 3];
 /// Places of what it has without friction.
 const OWN_WITHOUT_FRICTION: [usize; 2] = [0, 3];
 /// Seconds with so many times the effort of the median one are left out. Chosen: between slow and
@@ -143,14 +145,13 @@ impl<'a> Balance<'a> {
 
     /// The same of one column, that of the wind-up. Friction of the motor's own side only holds
     /// back: where it would have to push, there is none.
-    pub(super) fn left_by(&mut self, wound: &[f64]) -> f64 {
+    pub(super) fn left_by(&self, wound: &[f64]) -> f64 {
         let held = [self.held(|row| wound[row])];
         let fit = self.blocks(&held).fit();
         if fit.coefficients[OWN_FRICTION] >= 0.0 {
             return fit.sse;
         }
-        self.own.remove(OWN_FRICTION);
-        self.blocks(&held).fit().sse
+        self.blocks_beside(&OWN_WITHOUT_COULOMB, &held).fit().sse
     }
 
     /// The stiffness as the effort shows it, between flanks or of a spring without a gap. Motor −
@@ -162,13 +163,9 @@ impl<'a> Balance<'a> {
             flanks.map_or(apart, |flanks| flanks.wind_up(apart))
         };
         let touches = |d| flanks.is_none_or(|flanks| flanks.touches(d));
-        let (rate, wound) = (self.rate(touches), self.column(wind_up));
-        let of = |own: &[usize]| {
-            let own = own.iter().map(|place| self.own[*place].as_slice());
-            let columns: Vec<&[f64]> = own.chain([rate.as_slice(), wound.as_slice()]).collect();
-            Blocks::new(&columns, self.effort, &self.mask, self.motion.period_s)
-        };
-        let [rubbed, plain] = [&OWN[..], &OWN_WITHOUT_FRICTION[..]].map(of);
+        let columns = [self.rate(touches), self.column(wind_up)];
+        let [rubbed, plain] =
+            [&OWN[..], &OWN_WITHOUT_FRICTION[..]].map(|own| self.blocks_beside(own, &columns));
         let [with, without] = [&rubbed, &plain].map(Blocks::cross_validate);
         let gain = Gain::of(&without, &with);
         let is_rubbed = gain.share >= DIFFERENCE_SHARE
@@ -198,8 +195,13 @@ impl<'a> Balance<'a> {
     }
 
     fn blocks(&self, columns: &[Vec<f64>]) -> Blocks {
-        let all = self.own.iter().chain(columns).map(Vec::as_slice);
-        let all: Vec<&[f64]> = all.collect();
+        self.blocks_beside(&OWN, columns)
+    }
+
+    /// Columns beside some of the motor's own side, by their places.
+    fn blocks_beside(&self, own: &[usize], columns: &[Vec<f64>]) -> Blocks {
+        let own = own.iter().map(|place| self.own[*place].as_slice());
+        let all: Vec<&[f64]> = own.chain(columns.iter().map(Vec::as_slice)).collect();
         Blocks::new(&all, self.effort, &self.mask, self.motion.period_s)
     }
 

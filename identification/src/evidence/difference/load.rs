@@ -15,6 +15,7 @@ use std::ops::Range;
 use super::edges::Flanks;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
+use crate::simulate::friction::bend_after;
 
 /// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
 /// less than a hundredth of it is left.
@@ -48,11 +49,8 @@ impl LoadFriction {
         let bends = rows.map(|(x, v)| {
             let step = x - before;
             before = *x;
-            if step != 0.0 {
-                let level = 1.0 + self.rise * (-(v / self.velocity).powi(2)).exp();
-                let end = level.copysign(step);
-                bend = end + (bend - end) * (-step.abs() / (self.deflection * level)).exp();
-            }
+            let level = 1.0 + self.rise * (-(v / self.velocity).powi(2)).exp();
+            bend = level * bend_after(bend / level, step, self.deflection * level);
             bend
         });
         bends.collect()
