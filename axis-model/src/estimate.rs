@@ -77,10 +77,12 @@ mod tests {
         let stribeck = Effect::from(Stribeck {
             excess: estimate(-3.0),
             velocity: estimate(2.0e-3),
+            exponent: Some(estimate(2.1)),
         });
         let stated = Effect::from(Stribeck {
             excess: 0.0,
             velocity: 2.0e-3,
+            exponent: Some(2.0),
         });
         assert_eq!(stribeck.stated(), stated);
         let pitch = Effect::from(PitchError {

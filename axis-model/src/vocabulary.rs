@@ -74,7 +74,10 @@ vocabulary! {
         excess: EFFORT, 0.0 => 1.0e6,
         /// velocity at which 1/e of the excess is left
         velocity: VELOCITY, 1.0e-6 => 1.0,
-    } optional {}
+    } optional {
+        /// exponent of the fall exp(-|v/velocity|^exponent); 2 where it is not known
+        exponent: RATIO, 0.5 => 2.0,
+    }
 
     /// hysteretic displacement before the contact slips
     presliding: Presliding, Reversals, {

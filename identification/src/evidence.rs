@@ -23,6 +23,7 @@ pub(crate) mod difference;
 pub(crate) mod effort;
 pub(crate) mod features;
 pub(crate) mod findings;
+pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;
 pub(crate) mod plausibility;

@@ -9,6 +9,7 @@ use crate::evidence::all_rows::AllRows;
 use crate::evidence::difference::{self, Difference};
 use crate::evidence::effort;
 use crate::evidence::findings::{Findings, Stages};
+use crate::evidence::forms;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::plausibility;
 use crate::evidence::rank;
@@ -101,7 +102,7 @@ fn findings<'a>(
 fn declared(pair: Pair<'_>) -> Model {
     let mut model = Model::declared(pair.bench.dataset);
     tuning::prepare(pair, &mut model);
-    model
+    forms::chosen(pair, model)
 }
 
 /// Forward selection on the effort, with the validation record's veto.

@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::ranges::{Quantity, Ranged, ranged};
 
 ranged! {
-    /// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−(v /
-    /// vs)²)`, in newtons.
+    /// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−|v /
+    /// vs|^p)`, in newtons.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Sliding {
         /// Coulomb friction Fc.
@@ -27,6 +27,10 @@ ranged! {
         pub static_n: f64 [0.0 => 1.0e6],
         /// Stribeck velocity vs.
         pub stribeck_velocity_m_per_s: f64 [1.0e-6 => 1.0],
+        /// Exponent p of the fall: 2 with Gauss, 1 with Tustin, ½ with Bo and Pavelescu
+        /// (Armstrong-Hélouvry, Dupont, Canudas de Wit 1994).
+        #[serde(default = "gaussian")]
+        pub stribeck_exponent: f64 [0.5 => 2.0],
         /// Viscous friction Fv.
         pub viscous_n_s_per_m: f64 [0.0 => 1.0e7],
         /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and
@@ -46,13 +50,22 @@ impl Sliding {
     /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
     #[must_use]
     pub fn level_n(&self, v: f64) -> f64 {
-        let ratio = v / self.stribeck_velocity_m_per_s;
         let fall = if self.static_n == self.coulomb_n {
             0.0
         } else {
-            (self.static_n - self.coulomb_n) * (-ratio * ratio).exp()
+            (self.static_n - self.coulomb_n) * (-self.power(v)).exp()
         };
         (self.coulomb_n + fall) * (1.0 + self.coulomb_asymmetry * sign(v))
+    }
+
+    /// |v / vs|^p, the square as a product.
+    fn power(&self, v: f64) -> f64 {
+        let ratio = v / self.stribeck_velocity_m_per_s;
+        if self.stribeck_exponent == gaussian() {
+            ratio * ratio
+        } else {
+            ratio.abs().powf(self.stribeck_exponent)
+        }
     }
 
     /// Viscous coefficient at a velocity, quadratic drag included as `q |v|`.
@@ -61,6 +74,11 @@ impl Sliding {
         self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v))
             + self.quadratic_drag_n_s2_per_m2 * v.abs()
     }
+}
+
+/// Exponent of a fall of which none is stated.
+pub(crate) const fn gaussian() -> f64 {
+    2.0
 }
 
 fn sign(v: f64) -> f64 {

@@ -20,6 +20,7 @@ fn dry(coulomb_n: f64) -> Sliding {
         coulomb_n,
         static_n: coulomb_n,
         stribeck_velocity_m_per_s: 1.0e-3,
+        stribeck_exponent: 2.0,
         viscous_n_s_per_m: 0.0,
         coulomb_asymmetry: 0.0,
         viscous_asymmetry: 0.0,

@@ -17,6 +17,7 @@
 
 use axis_model::EffectName;
 
+use crate::evidence::forms::{self, beats};
 use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, Vetoed, is_enough};
 use crate::evidence::thresholds::{
     CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, OUTSIDER, VETO_PART,
@@ -88,14 +89,6 @@ fn has_outsider(model: &Model) -> bool {
     found.any(|part| part.effect.is_nearest_outsider())
 }
 
-/// Whether a model beats another as an effect beats no effect.
-fn beats(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
-    is_enough(&Gain::of(
-        &bench.cross_validate(other),
-        &bench.cross_validate(model),
-    ))
-}
-
 impl Output for Effort<'_> {
     type Model = Model;
 
@@ -155,7 +148,7 @@ impl Output for Effort<'_> {
 
     fn refined(&self, mut model: Model) -> Model {
         tuning::refine(self.pair, &mut model);
-        model
+        forms::chosen(self.pair, model)
     }
 }
 

@@ -9,9 +9,10 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::fit::blocks::{Blocks, Fit};
-use crate::fit::fitted::{Estimate, Fitted, Term};
+use crate::fit::fitted::{Estimate, Fitted, Searched, Term};
 use crate::fit::rows::Rows;
 use crate::fit::span::Span;
+use crate::model::effects::Effect;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
@@ -37,7 +38,9 @@ pub(crate) struct Gathered {
 }
 
 type Columns = Arc<Vec<Vec<f64>>>;
-type Kept = HashMap<(Called, u64), Columns>;
+/// Effect, nonlinear parameter, form, number of columns.
+type Key = (Called, u64, u64, usize);
+type Kept = HashMap<Key, Columns>;
 
 /// A record on which models are fitted; it keeps the low-passed columns of the terms that it has
 /// seen last.
@@ -75,7 +78,8 @@ impl<'a> Bench<'a> {
 
     /// Low-passed columns of a part.
     fn columns(&self, part: &Part) -> Columns {
-        let key = (part.called(), part.parameter.to_bits());
+        let [parameter, form] = [part.parameter, part.effect.form()].map(f64::to_bits);
+        let key = (part.called(), parameter, form, part.width());
         if let Some(known) = self.kept().get(&key) {
             return Arc::clone(known);
         }
@@ -85,7 +89,7 @@ impl<'a> Bench<'a> {
         columns
     }
 
-    fn keep(&self, key: (Called, u64), columns: Columns) {
+    fn keep(&self, key: Key, columns: Columns) {
         let mut kept = self.kept();
         let count: usize = kept.values().map(|columns| columns.len()).sum();
         if count * self.motion.len() > KEPT_VALUES {
@@ -206,14 +210,40 @@ impl<'a> Bench<'a> {
         span.outside(&own).iter().map(|value| value * value).sum()
     }
 
+    /// Errors on held-out blocks of a fit that may move, linearised, the nonlinear parameter and the
+    /// form of a part.
+    #[must_use]
+    pub(crate) fn cross_validate_about(&self, fitted: &Fitted, place: usize) -> Fit {
+        let searched = [Searched::Parameter, Searched::Form].map(|what| (place, what));
+        self.blocks(&self.design_about(fitted, &searched))
+            .cross_validate()
+    }
+
+    /// Columns and target of a fitted model with its slopes by what was searched.
+    fn design_about(&self, fitted: &Fitted, searched: &[(usize, Searched)]) -> Design {
+        let slope = |(place, what): &(usize, Searched)| match what {
+            Searched::Parameter => self.derivative(fitted, *place),
+            Searched::Form => self.derivative_by_form(fitted, *place),
+        };
+        let mut design = self.design(fitted.model());
+        design.columns.extend(searched.iter().map(slope));
+        design
+    }
+
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
-    /// linearised, the nonlinear parameters.
+    /// linearised, the nonlinear parameters, and the forms that are not the usual ones.
     #[must_use]
     pub(crate) fn estimates(&self, fitted: &Fitted) -> Vec<Estimate> {
         let model = fitted.model();
-        let tuned = |place: &usize| model.parts[*place].effect.is_tuned();
-        let tuned: Vec<usize> = model.outwards().into_iter().filter(tuned).collect();
-        self.estimates_with(fitted, &tuned)
+        let of_part = |place: usize| {
+            let part = &model.parts[place];
+            let parameter = part.effect.is_tuned().then_some(Searched::Parameter);
+            let form = part.is_reshaped().then_some(Searched::Form);
+            let searched = parameter.into_iter().chain(form);
+            searched.map(move |what| (place, what))
+        };
+        let searched: Vec<_> = model.outwards().into_iter().flat_map(of_part).collect();
+        self.estimates_with(fitted, &searched)
     }
 
     /// The same where the nonlinear parameters are known.
@@ -222,17 +252,14 @@ impl<'a> Bench<'a> {
         self.estimates_with(fitted, &[])
     }
 
-    fn estimates_with(&self, fitted: &Fitted, tuned: &[usize]) -> Vec<Estimate> {
-        let mut design = self.design(fitted.model());
-        let columns = design.columns.len();
-        let slopes = tuned.iter().map(|place| self.derivative(fitted, *place));
-        design.columns.extend(slopes);
+    fn estimates_with(&self, fitted: &Fitted, searched: &[(usize, Searched)]) -> Vec<Estimate> {
+        let design = self.design_about(fitted, searched);
         let blocks = self.blocks(&design);
         let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
-        let (own, parameters) = half_widths.split_at(columns);
-        fitted.estimates(own, |place| {
-            let among = tuned.iter().position(|tuned| *tuned == place)?;
-            Some(parameters[among])
+        let (own, others) = half_widths.split_at(design.columns.len() - searched.len());
+        fitted.estimates(own, |place, what| {
+            let among = searched.iter().position(|one| *one == (place, what))?;
+            Some(others[among])
         })
     }
 
@@ -249,10 +276,23 @@ impl<'a> Bench<'a> {
     fn derivative(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
         let part = &fitted.model().parts[place];
         let step = part.effect.derivative_step(part.parameter);
-        let [up, down] = [step, -step]
-            .map(|step| self.predict_lp(&fitted.with_parameter(place, part.parameter + step)));
-        let pairs = up.iter().zip(&down);
-        pairs.map(|(up, down)| (up - down) / (2.0 * step)).collect()
+        let at = |step: f64| fitted.with_parameter(place, part.parameter + step);
+        self.slope([&at(-step), &at(step)], 2.0 * step)
+    }
+
+    /// Derivative of the prediction by the form of a part, over its neighbours; low-passed.
+    fn derivative_by_form(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
+        let effect = fitted.model().parts[place].effect;
+        let (below, above) = neighbours(effect);
+        let at = |form: &'static dyn Effect| fitted.with_form(place, form);
+        self.slope([&at(below), &at(above)], above.form() - below.form())
+    }
+
+    /// Slope of the prediction between two fits that are so far apart.
+    fn slope(&self, ends: [&Fitted; 2], apart: f64) -> Vec<f64> {
+        let [low, high] = ends.map(|fitted| self.predict_lp(fitted));
+        let pairs = low.iter().zip(&high);
+        pairs.map(|(low, high)| (high - low) / apart).collect()
     }
 
     /// Sum of squares that a model leaves in the sample.
@@ -379,6 +419,15 @@ impl Design {
             ..self
         }
     }
+}
+
+/// The forms of an effect on both sides of its own; at an end its own.
+fn neighbours(effect: &'static dyn Effect) -> (&'static dyn Effect, &'static dyn Effect) {
+    let forms = effect.forms();
+    let own = |form: &&'static dyn Effect| form.form() == effect.form();
+    let place = forms.iter().position(own).unwrap_or(0);
+    let at = |place: usize| forms.get(place).copied().unwrap_or(effect);
+    (at(place.saturating_sub(1)), at(place + 1))
 }
 
 /// Adds weighted columns to a sum.

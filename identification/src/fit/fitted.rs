@@ -5,6 +5,7 @@
 
 use axis_model::EffectName;
 
+use crate::model::effects::Effect;
 use crate::model::inverse::{Model, Part};
 
 /// A model with its coefficients.
@@ -32,6 +33,17 @@ pub(crate) struct Estimate {
     pub own: Vec<(f64, f64)>,
     /// Half width of its nonlinear parameter, where that is a quantity.
     pub parameter_half_width: Option<f64>,
+    /// Half width of what tells its forms apart, where that was found.
+    pub form_half_width: Option<f64>,
+}
+
+/// What of a part is found by a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Searched {
+    /// Its nonlinear parameter.
+    Parameter,
+    /// Its form.
+    Form,
 }
 
 /// The first values of a list, taken off it.
@@ -88,13 +100,22 @@ impl Fitted {
         }
     }
 
-    /// Its parts with half widths: those of the columns in their order, and those of the parts with
-    /// a tuned parameter, by place.
+    /// The same coefficients with another form of a part.
+    #[must_use]
+    pub(crate) fn with_form(&self, place: usize, form: &'static dyn Effect) -> Self {
+        Self {
+            model: self.model.with_form(place, form),
+            own: self.own.clone(),
+        }
+    }
+
+    /// Its parts with half widths: those of the columns in their order, and those of what was
+    /// searched, by place.
     #[must_use]
     pub(crate) fn estimates(
         &self,
         half_widths: &[f64],
-        tuned: impl Fn(usize) -> Option<f64>,
+        searched: impl Fn(usize, Searched) -> Option<f64>,
     ) -> Vec<Estimate> {
         let mut rest = half_widths;
         let mut estimate = |(place, term): (usize, Term<'_>)| {
@@ -103,7 +124,8 @@ impl Fitted {
             Estimate {
                 part: term.part.clone(),
                 own: own.collect(),
-                parameter_half_width: tuned(place),
+                parameter_half_width: searched(place, Searched::Parameter),
+                form_half_width: searched(place, Searched::Form),
             }
         };
         self.terms().enumerate().map(&mut estimate).collect()
@@ -170,9 +192,10 @@ mod tests {
 
     #[test]
     fn half_widths_go_to_the_columns_in_order_and_to_parameters_by_place() {
-        let estimates = mixed().estimates(&[1.0, 0.3, 0.4, 2.5], |place| {
-            (place == 1).then_some(1.0e-4)
+        let estimates = mixed().estimates(&[1.0, 0.3, 0.4, 2.5], |place, what| {
+            (place == 1 && what == Searched::Parameter).then_some(1.0e-4)
         });
+        assert!(estimates.iter().all(|one| one.form_half_width.is_none()));
         assert_eq!(estimates[0].own, [(90.0, 1.0)]);
         assert_eq!(estimates[2].own, [(3.0, 0.3), (4.0, 0.4)]);
         assert_eq!(estimates[3].own, [(25.0, 2.5)]);
@@ -189,6 +212,7 @@ mod tests {
             part: found(Delay, 0.002),
             own: own.to_vec(),
             parameter_half_width,
+            form_half_width: None,
         };
         for (own, half_width, certain) in [
             (&[(3.0, 3.0)][..], None, false),

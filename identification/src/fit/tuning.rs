@@ -15,6 +15,8 @@ use crate::model::inverse::{Model, Part};
 const DELAY_CUTOFF_HZ: f64 = 30.0;
 /// The linearisation about the last fit is renewed so often.
 const RENEWALS: usize = 3;
+/// First step of the search among forms: halved until it is one.
+const LARGEST_STEP_OF_FORMS: f64 = 32.0;
 /// Rounds of the joint refinement.
 const ROUNDS: usize = 2;
 
@@ -174,6 +176,29 @@ fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
     let sse = |parameter: f64| bench.sse(&at(parameter));
     let best = descend(parameter, step, effect.bounds(bench.motion), &sse);
     *model = at(best);
+}
+
+/// The model with the nonlinear parameter of one part refined.
+#[must_use]
+pub(crate) fn refined_at(pair: Pair<'_>, mut model: Model, place: usize) -> Model {
+    refine_one(pair, &mut model, place);
+    model
+}
+
+/// The model with the form of a part that leaves the least, each form with its nonlinear parameter
+/// where it leaves the least.
+#[must_use]
+pub(crate) fn reshaped(pair: Pair<'_>, model: &Model, place: usize) -> Model {
+    let part = &model.parts[place];
+    let (bench, forms) = (pair.of(part.effect), part.effect.forms());
+    let own = |form: &&'static dyn Effect| form.form() == part.effect.form();
+    let Some(start) = forms.iter().position(own) else {
+        return model.clone();
+    };
+    let at = |form: f64| refined_at(pair, model.with_form(place, forms[form as usize]), place);
+    let sse = |form: f64| bench.sse(&at(form));
+    let bounds = (0.0, forms.len() as f64 - 1.0);
+    at(descend(start as f64, LARGEST_STEP_OF_FORMS, bounds, &sse))
 }
 
 #[cfg(test)]

@@ -80,6 +80,8 @@ pub(crate) struct Naming<'a> {
     pub parameter: f64,
     /// Half width of its 95 % interval, where it was found.
     pub parameter_half_width: Option<f64>,
+    /// Half width of the 95 % interval of its form ([`Effect::form`]), where that was found.
+    pub form_half_width: Option<f64>,
     /// Coefficients with the half widths of their intervals.
     pub coefficients: &'a [(f64, f64)],
     /// The axis.
@@ -233,6 +235,22 @@ pub(crate) trait Effect: Sync {
         false
     }
 
+    /// Forms of the same effect in the order of [`Effect::form`], the usual one last; it is one of
+    /// them. Empty where there is no choice.
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &[]
+    }
+
+    /// The same form with a size of its own for each direction, where there is one.
+    fn by_direction(&self) -> Option<&'static dyn Effect> {
+        None
+    }
+
+    /// What tells its forms apart: an exponent.
+    fn form(&self) -> f64 {
+        0.0
+    }
+
     /// Start values of the nonlinear parameter; one dummy value where there is none.
     fn grid(&self, _motion: &Kinematics, _setting: &Setting<'_>) -> Vec<f64> {
         vec![0.0]
@@ -347,7 +365,7 @@ pub(crate) static LIBRARY: [&dyn Effect; 20] = [
     &coulomb::Coulomb,
     &offset::Offset,
     &viscous_asymmetry::ViscousAsymmetry,
-    &stribeck::Stribeck,
+    stribeck::GAUSSIAN,
     &torque_ripple::TorqueRipple,
     &position_dependent_friction::PositionDependentFriction,
     &friction_drift::FrictionDrift,
@@ -524,6 +542,7 @@ mod tests {
         let naming = Naming {
             parameter,
             parameter_half_width: Some(0.1 * parameter),
+            form_half_width: None,
             coefficients: &[(3.0, 0.3), (4.0, 0.4)],
             dataset: &Dataset {
                 lead_m_per_rev: Some(0.01),

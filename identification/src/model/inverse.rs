@@ -71,10 +71,20 @@ impl Part {
         self.effect.width(self.parameter)
     }
 
-    /// Whether it is the same effect with the same nonlinear parameter.
+    /// Whether it is the same effect with the same nonlinear parameter, of the same form.
     #[must_use]
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.called() == other.called() && self.parameter == other.parameter
+        self.called() == other.called()
+            && self.parameter == other.parameter
+            && self.effect.form() == other.effect.form()
+            && self.width() == other.width()
+    }
+
+    /// Whether it has another form than the usual one.
+    #[must_use]
+    pub(crate) fn is_reshaped(&self) -> bool {
+        let usual = self.effect.forms().last();
+        usual.is_some_and(|usual| usual.form() != self.effect.form())
     }
 
     /// Whether it has this name.
@@ -179,6 +189,14 @@ impl Model {
     pub(crate) fn with_parameter(&self, place: usize, parameter: f64) -> Self {
         let mut model = self.clone();
         model.parts[place].parameter = parameter;
+        model
+    }
+
+    /// The model with another form of a part.
+    #[must_use]
+    pub(crate) fn with_form(&self, place: usize, form: &'static dyn Effect) -> Self {
+        let mut model = self.clone();
+        model.parts[place].effect = form;
         model
     }
 

@@ -90,8 +90,16 @@ fn in_shares(parameters: &Table, travel: Travel) -> Table {
         "friction_drift_viscous_gain",
         viscous,
     );
+    by_direction(&mut table, coulomb);
     over_position(&mut table, coulomb, travel);
     table
+}
+
+/// A fall that differs by direction says of an offset that it is an asymmetry of the friction.
+fn by_direction(table: &mut Table, coulomb: Option<f64>) {
+    if table.remove("stribeck_excess_by_direction").is_some() {
+        share(table, "offset", "coulomb_asymmetry", coulomb);
+    }
 }
 
 /// Replaces an effort by its share of another.
@@ -208,6 +216,37 @@ mod tests {
                 "{key} = {value}"
             );
         }
+    }
+
+    #[test]
+    fn an_offset_beside_a_fall_by_direction_is_an_asymmetry_of_the_friction() {
+        let coulomb_and_fall = [
+            ("coulomb", 100.0),
+            ("offset", -20.0),
+            ("stribeck_excess", 50.0),
+            ("stribeck_velocity", 0.01),
+            ("stribeck_exponent", 1.5),
+        ];
+        let found = effects(&report(&coulomb_and_fall), travel(0.0, 0.1));
+        assert_near(&only(&found, EffectName::Offset), &[("offset", -20.0)]);
+        let by_direction = [
+            &coulomb_and_fall[..],
+            &[("stribeck_excess_by_direction", -10.0)],
+        ];
+        let found = effects(&report(&by_direction.concat()), travel(0.0, 0.1));
+        let asymmetry = only(&found, EffectName::CoulombAsymmetry);
+        assert_near(&asymmetry, &[("coulomb_asymmetry", -0.2)]);
+        assert!(
+            found
+                .iter()
+                .all(|effect| effect.name() != EffectName::Offset)
+        );
+        let fall = [
+            ("stribeck_excess", 50.0),
+            ("stribeck_velocity", 0.01),
+            ("stribeck_exponent", 1.5),
+        ];
+        assert_near(&only(&found, EffectName::Stribeck), &fall);
     }
 
     #[test]

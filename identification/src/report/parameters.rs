@@ -201,6 +201,7 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
         estimate.part.effect.parameters(&Naming {
             parameter: estimate.part.parameter,
             parameter_half_width: estimate.parameter_half_width,
+            form_half_width: estimate.form_half_width,
             coefficients: &estimate.own,
             dataset: findings.dataset,
         })

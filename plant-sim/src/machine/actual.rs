@@ -10,7 +10,7 @@ use toml::Spanned;
 use super::forms::ActualForm;
 use super::source::{MachineError, Source, Start};
 use crate::effects::Effects;
-use crate::friction::{Law, Sliding};
+use crate::friction::{Law, Sliding, gaussian};
 
 /// What an axis really has, besides its mechanics.
 pub(super) struct Actual {
@@ -28,6 +28,7 @@ const FRICTIONLESS: Sliding = Sliding {
     coulomb_n: 0.0,
     static_n: 0.0,
     stribeck_velocity_m_per_s: 1.0e-3,
+    stribeck_exponent: 2.0,
     viscous_n_s_per_m: 0.0,
     coulomb_asymmetry: 0.0,
     viscous_asymmetry: 0.0,
@@ -152,6 +153,7 @@ fn curve(effects: &[Effect]) -> Sliding {
             Effect::Stribeck(own) => {
                 curve.static_n = curve.coulomb_n + own.excess;
                 curve.stribeck_velocity_m_per_s = own.velocity;
+                curve.stribeck_exponent = own.exponent.unwrap_or_else(gaussian);
             }
             Effect::Viscous(own) => curve.viscous_n_s_per_m = own.viscous,
             Effect::CoulombAsymmetry(own) => curve.coulomb_asymmetry = own.coulomb_asymmetry,
@@ -201,6 +203,29 @@ mod tests {
         )
         .unwrap();
         assert_eq!(machine, Machine::reference());
+    }
+
+    #[test]
+    fn a_fall_has_the_exponent_that_is_stated() {
+        for (stated, power) in [
+            ("", 4.0),
+            (", exponent = 1.0", 2.0),
+            (", exponent = 0.5", 2.0_f64.sqrt()),
+        ] {
+            let machine = machine(&format!(
+                "[axis.actual.effects]\ncoulomb_n = 400.0\nviscous_n_s_per_m = 0.0\n\
+                 stribeck = {{ excess_n = 120.0, velocity_m_per_s = 1.5e-3{stated} }}",
+            ));
+            let sliding = machine.unwrap().axes[0].actual.sliding;
+            let wanted = 400.0 + 120.0 * (-power).exp();
+            for v in [3.0e-3, -3.0e-3] {
+                assert!((sliding.level_n(v) - wanted).abs() < 1.0e-9, "{stated} {v}");
+            }
+        }
+        let refused = machine(
+            "[axis.actual.effects]\ncoulomb_n = 1.0\nstribeck = { excess_n = 1.0, velocity_m_per_s = 1e-3, exponent = 3.0 }",
+        );
+        assert!(refused.unwrap_err().contains("exponent: must be 0.5 to 2"));
     }
 
     #[test]

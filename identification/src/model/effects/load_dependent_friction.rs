@@ -248,6 +248,7 @@ mod tests {
         let naming = Naming {
             parameter: MOTOR_SHARE,
             parameter_half_width: None,
+            form_half_width: None,
             coefficients: &[(RATIO, 0.01)],
             dataset: &axis(usual).dataset,
         };

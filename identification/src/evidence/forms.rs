@@ -1,0 +1,153 @@
+//! Which form an effect has: the exponent of a Stribeck fall.
+//!
+//! The usual form stays unless another one beats it as an effect beats no effect ([`is_enough`]). A
+//! fall of another exponent would leave something that looks like drag, asymmetry or a drift, and
+//! one that is not the same both ways what looks like friction of another law.
+
+use crate::evidence::selection::is_enough;
+use crate::fit::bench::Bench;
+use crate::fit::blocks::Gain;
+use crate::fit::tuning::{self, Pair};
+use crate::model::effects::{self, Effect};
+use crate::model::inverse::{Model, Part};
+
+/// Whether a model beats another as an effect beats no effect.
+#[must_use]
+pub(crate) fn beats(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
+    is_enough(&Gain::of(
+        &bench.cross_validate(other),
+        &bench.cross_validate(model),
+    ))
+}
+
+/// The model, each part in the form that the record asks for.
+#[must_use]
+pub(crate) fn chosen(pair: Pair<'_>, mut model: Model) -> Model {
+    for place in 0..model.parts.len() {
+        let called = model.parts[place].called();
+        if let Some(usual) = effects::find(called).filter(|usual| !usual.forms().is_empty()) {
+            model = of_part(pair, model, place, usual);
+        }
+    }
+    model
+}
+
+/// The model with one of its parts in the form that the record asks for.
+fn of_part(pair: Pair<'_>, model: Model, place: usize, usual: &'static dyn Effect) -> Model {
+    let part = &model.parts[place];
+    let plain = if part.is_same(&Part {
+        effect: usual,
+        ..part.clone()
+    }) {
+        model
+    } else {
+        tuning::refined_at(pair, model.with_form(place, usual), place)
+    };
+    let shaped = curved(pair, plain, place);
+    let Some(by_direction) = shaped.parts[place].effect.by_direction() else {
+        return shaped;
+    };
+    let two_sizes = shaped.with_form(place, by_direction);
+    if beats(pair.bench, &two_sizes, &shaped) {
+        curved(pair, tuning::refined_at(pair, two_sizes, place), place)
+    } else {
+        shaped
+    }
+}
+
+/// The model with another curve of a part, where that beats the one it has.
+fn curved(pair: Pair<'_>, model: Model, place: usize) -> Model {
+    let bench = pair.bench;
+    let about = bench.cross_validate_about(&bench.fit(&model), place);
+    if !is_enough(&Gain::of(&bench.cross_validate(&model), &about)) {
+        return model;
+    }
+    let other = tuning::reshaped(pair, &model, place);
+    if beats(bench, &other, &model) {
+        other
+    } else {
+        model
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::{Axis, axis, found, model, usual};
+    use axis_model::EffectName::{Coulomb, Inertia, Offset, Stribeck, Viscous};
+
+    /// An axis with a fall of 15 N over 10 mm/s by an exponent, and `by_direction` of it the other
+    /// size against negative motion.
+    fn falling(exponent: f64, by_direction: f64) -> Axis {
+        axis(|motion, row| {
+            let fall = (-(motion.velocity[row] / 0.01).abs().powf(exponent)).exp();
+            let direction = motion.direction[row];
+            usual(motion, row) + 15.0 * fall * direction * (1.0 + by_direction * direction)
+        })
+    }
+
+    /// The fall in the form that the record asks for, with its estimate.
+    fn form(axis: &Axis) -> crate::fit::fitted::Estimate {
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let usual = model(&[Inertia, Viscous, Coulomb, Offset]);
+        let start = usual.with(found(Stribeck, 0.01));
+        let model = chosen(pair, tuning::refined_at(pair, start, 4));
+        bench.estimates(&bench.fit(&model)).remove(4)
+    }
+
+    #[test]
+    fn an_exponent_is_found_with_an_interval_that_holds_it() {
+        for exponent in [0.5, 0.7, 1.0, 1.3] {
+            let found = form(&falling(exponent, 0.0));
+            let half = found.form_half_width.expect("it is not the usual form");
+            let off = (found.part.effect.form() - exponent).abs();
+            assert!(
+                off <= half.max(0.025) && half < 0.3,
+                "{exponent}: {off} ± {half}"
+            );
+            assert_eq!(found.own.len(), 1, "{exponent}");
+        }
+    }
+
+    #[test]
+    fn a_gaussian_fall_stays_the_usual_one() {
+        let found = form(&falling(2.0, 0.0));
+        assert!(!found.part.is_reshaped());
+        assert_eq!((found.form_half_width, found.own.len()), (None, 1));
+    }
+
+    #[test]
+    fn a_fall_that_differs_by_direction_has_a_size_for_each() {
+        for exponent in [1.0, 2.0] {
+            let found = form(&falling(exponent, 0.25));
+            let off = (found.part.effect.form() - exponent).abs();
+            assert!(off <= 0.05, "{exponent}: {off}");
+            let sizes = found.own.iter().zip([15.0, 0.25 * 15.0]);
+            for ((value, half), wanted) in sizes {
+                assert!(
+                    (value - wanted).abs() < half.max(0.02 * wanted),
+                    "{value} ± {half}"
+                );
+            }
+            assert_eq!(found.own.len(), 2);
+        }
+    }
+
+    #[test]
+    fn a_form_that_is_not_needed_any_more_is_given_back() {
+        let axis = falling(2.0, 0.0);
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let usual = model(&[Inertia, Viscous, Coulomb, Offset]).with(found(Stribeck, 0.01));
+        let other = usual.with_form(4, usual.parts[4].effect.forms()[20]);
+        assert!(other.parts[4].is_reshaped());
+        assert!(!chosen(pair, other).parts[4].is_reshaped());
+    }
+}
