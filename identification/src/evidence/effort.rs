@@ -18,10 +18,11 @@
 use axis_model::EffectName;
 
 use crate::evidence::forms::{self, beats};
-use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, Vetoed, is_enough};
+use crate::evidence::selection::{
+    self, Candidate, Output, Scored, Selection, Vetoed, is_enough, is_large_outside,
+};
 use crate::evidence::thresholds::{
-    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, OUTSIDER, VETO_PART,
-    VETO_RATIO,
+    CERTAIN_T, EFFORT_PERCENT, EFFORT_SHARE, LOAD_INERTIA, NAMELESS_SHARE, VETO_PART, VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
@@ -214,12 +215,6 @@ impl Effort<'_> {
         let extended = tuning::settled(low, extended.clone(), effect);
         Gain::of(&low.cross_validate(model), &low.cross_validate(&extended))
     }
-}
-
-/// Whether a gain is large enough for a name outside the list.
-fn is_large_outside(gain: &Gain) -> bool {
-    let (share, percent) = OUTSIDER;
-    gain.share >= share && gain.percent >= percent
 }
 
 fn is_outsider(candidate: &Candidate<Model>) -> bool {

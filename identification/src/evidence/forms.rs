@@ -1,23 +1,29 @@
-//! Which form an effect has: the exponent of a Stribeck fall.
+//! Which form an effect has: the exponent of a Stribeck fall, the curve of friction over position.
 //!
 //! The usual form stays unless another one beats it as an effect beats no effect ([`is_enough`]). A
 //! fall of another exponent would leave something that looks like drag, asymmetry or a drift, and
 //! one that is not the same both ways what looks like friction of another law.
 
-use crate::evidence::selection::is_enough;
+use crate::evidence::selection::{is_enough, is_large_outside};
 use crate::fit::bench::Bench;
 use crate::fit::blocks::Gain;
+use crate::fit::search::smallest;
 use crate::fit::tuning::{self, Pair};
-use crate::model::effects::{self, Effect};
+use crate::model::effects::{self, Effect, Setting};
 use crate::model::inverse::{Model, Part};
+
+/// More coefficients than these are a curve.
+const MOST_COEFFICIENTS: usize = 2;
 
 /// Whether a model beats another as an effect beats no effect.
 #[must_use]
 pub(crate) fn beats(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
-    is_enough(&Gain::of(
-        &bench.cross_validate(other),
-        &bench.cross_validate(model),
-    ))
+    is_enough(&gain(bench, model, other))
+}
+
+/// Gain of a model over another.
+fn gain(bench: &Bench<'_>, model: &Model, other: &Model) -> Gain {
+    Gain::of(&bench.cross_validate(other), &bench.cross_validate(model))
 }
 
 /// The model, each part in the form that the record asks for.
@@ -28,8 +34,45 @@ pub(crate) fn chosen(pair: Pair<'_>, mut model: Model) -> Model {
         if let Some(usual) = effects::find(called).filter(|usual| !usual.forms().is_empty()) {
             model = of_part(pair, model, place, usual);
         }
+        model = with_best_choice(pair.bench, model, place);
     }
     model
+}
+
+/// The model with the choice of a part that the held-out error asks for. That is the best of those
+/// with one or two coefficients, unless one with more of them beats it, and removes as much as a
+/// nearest outsider has to: such a curve can be anything.
+fn with_best_choice(bench: &Bench<'_>, model: Model, place: usize) -> Model {
+    let effect = model.parts[place].effect;
+    if effect.is_tuned() {
+        return model;
+    }
+    let setting = Setting {
+        dataset: bench.dataset,
+        residual: &[],
+    };
+    let choices = effect.grid(bench.motion, &setting).into_iter();
+    let (plain, curves): (Vec<f64>, Vec<f64>) =
+        choices.partition(|choice| effect.width(*choice) <= MOST_COEFFICIENTS);
+    let error = |choice: f64| {
+        let fit = bench.cross_validate(&model.with_parameter(place, choice));
+        fit.held_out.iter().sum()
+    };
+    let Some(plain) = smallest(&plain, &error) else {
+        return model;
+    };
+    let with = |choice: f64| model.with_parameter(place, choice);
+    curves
+        .into_iter()
+        .map(with)
+        .fold(with(plain), |best, curve| {
+            let gain = gain(bench, &curve, &best);
+            if is_enough(&gain) && is_large_outside(&gain) {
+                curve
+            } else {
+                best
+            }
+        })
 }
 
 /// The model with one of its parts in the form that the record asks for.
@@ -74,7 +117,9 @@ fn curved(pair: Pair<'_>, model: Model, place: usize) -> Model {
 mod tests {
     use super::*;
     use crate::fit::made::{Axis, axis, found, model, usual};
-    use axis_model::EffectName::{Coulomb, Inertia, Offset, Stribeck, Viscous};
+    use axis_model::EffectName::{
+        Coulomb, Inertia, Offset, PositionDependentFriction, Stribeck, Viscous,
+    };
 
     /// An axis with a fall of 15 N over 10 mm/s by an exponent, and `by_direction` of it the other
     /// size against negative motion.
@@ -149,5 +194,30 @@ mod tests {
         let other = usual.with_form(4, usual.parts[4].effect.forms()[20]);
         assert!(other.parts[4].is_reshaped());
         assert!(!chosen(pair, other).parts[4].is_reshaped());
+    }
+
+    /// Number of coefficients of friction over position that a curve of it asks for.
+    fn coefficients(curve: impl Fn(f64) -> f64) -> usize {
+        let (middle, half) = axis(usual).dataset.travel();
+        let axis = axis(|motion, row| {
+            let u = (motion.position_lp[row] - middle) / half;
+            usual(motion, row) + curve(u) * motion.direction[row]
+        });
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let usual = model(&[Inertia, Viscous, Coulomb, Offset]);
+        let model = chosen(pair, usual.with(found(PositionDependentFriction, 2.0)));
+        model.parts[4].width()
+    }
+
+    #[test]
+    fn friction_over_position_is_a_curve_only_where_a_parabola_leaves_much() {
+        assert_eq!(coefficients(|u| 6.0 * u), 1);
+        assert_eq!(coefficients(|u| 6.0 * u - 4.0 * u * u), 2);
+        let worn = |u: f64| 8.0 * (-((u - 0.3) / 0.4).powi(2)).exp();
+        assert!(coefficients(worn) >= 8);
     }
 }

@@ -8,7 +8,7 @@
 
 use axis_model::EffectName;
 
-use crate::evidence::thresholds::{EFFORT_PERCENT, EFFORT_SHARE, EFFORT_T, MOST_EFFECTS};
+use crate::evidence::thresholds::{EFFORT_PERCENT, EFFORT_SHARE, EFFORT_T, MOST_EFFECTS, OUTSIDER};
 use crate::fit::blocks::Gain;
 use crate::model::inverse::Model;
 use crate::model::name::Called;
@@ -140,6 +140,13 @@ pub(crate) fn select<O: Output>(
 #[must_use]
 pub(crate) fn is_enough(gain: &Gain) -> bool {
     gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT && is_certain(gain)
+}
+
+/// Whether a gain is large enough for a name outside the list.
+#[must_use]
+pub(crate) fn is_large_outside(gain: &Gain) -> bool {
+    let (share, percent) = OUTSIDER;
+    gain.share >= share && gain.percent >= percent
 }
 
 /// Whether a gain is more than chance.

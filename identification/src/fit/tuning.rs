@@ -95,8 +95,13 @@ pub(crate) fn extended(
     let with = |parameter: f64| model.with(Part::found(effect, parameter));
     let sse = |parameter: f64| {
         if effect.stage() == Stage::Force {
-            let part = Part::found(effect, parameter);
-            bench.beside(&fixed, &part).fit().sse
+            let blocks = bench.beside(&fixed, &Part::found(effect, parameter));
+            // A choice is between numbers of columns: more of them always fit better.
+            if effect.is_tuned() {
+                blocks.fit().sse
+            } else {
+                blocks.cross_validate().held_out.iter().sum()
+            }
         } else {
             bench.sse(&settled(bench, with(parameter), effect))
         }

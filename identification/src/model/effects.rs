@@ -13,6 +13,7 @@ use crate::record::units::AxisKind;
 
 pub(crate) mod by_motion;
 pub(crate) mod coulomb;
+pub(crate) mod curve;
 pub(crate) mod delay;
 pub(crate) mod friction_drift;
 pub(crate) mod hum;

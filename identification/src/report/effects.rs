@@ -9,12 +9,17 @@
 //! Fc + c exp(−t / τ)                    =  Fc (1 + g exp(−t / τ))
 //! ```
 //!
+//! Friction over position that was found as a smooth curve is put as its nearest parabola: the
+//! vocabulary has no curve.
+//!
 //! An interval is scaled with its value: what is uncertain about the friction itself is left out.
 
 use std::collections::BTreeMap;
 
 use axis_model::{Effect, EffectName, Estimate, Parameter, TorqueRipple};
 
+use crate::model::effects::curve;
+use crate::model::effects::position_dependent_friction::knot_name;
 use crate::report::forms::Report;
 
 /// Parameters by the name that a report gives them.
@@ -69,6 +74,8 @@ fn key(parameter: &Parameter) -> String {
 /// is nothing to take a share of.
 fn in_shares(parameters: &Table, travel: Travel) -> Table {
     let mut table = parameters.clone();
+    parabola_of_a_curve(&mut table);
+    let parameters = table.clone();
     let above_zero = |key: &str| parameters.get(key).filter(|own| own.value > 0.0);
     let viscous = above_zero("viscous").map(|own| own.value);
     share(
@@ -135,6 +142,38 @@ fn over_position(table: &mut Table, coulomb: Option<f64>, travel: Travel) {
     if let Some(b) = b {
         let b = b.scaled(1.0 / (half * half * level), &unit("2"));
         table.insert(QUADRATIC.into(), b);
+    }
+}
+
+/// Replaces the knots of a curve by the parabola that is nearest to them, without its constant: that
+/// is a part of the friction's level.
+fn parabola_of_a_curve(table: &mut Table) {
+    let key = |place: usize| knot_name(place + 1);
+    let known: Vec<Estimate> = (0..).map_while(|place| table.remove(&key(place))).collect();
+    let Some(first) = known.first().cloned() else {
+        return;
+    };
+    let values = known.iter().map(|own| own.value);
+    let mut points: Vec<(f64, f64)> = (0..known.len())
+        .map(|place| curve::knot(place, known.len()))
+        .zip(values)
+        .collect();
+    points.push((0.0, 0.0));
+    let mean = |of: &dyn Fn(f64, f64) -> f64| {
+        let sum: f64 = points.iter().map(|(u, y)| of(*u, *y)).sum();
+        sum / points.len() as f64
+    };
+    // 1, u and u² − ⟨u²⟩ are orthogonal over knots that lie evenly about zero.
+    let square = mean(&|u, _| u * u);
+    let bend = |u: f64| u * u - square;
+    let slope = mean(&|u, y| u * y) / square;
+    let curvature = mean(&|u, y| bend(u) * y) / mean(&|u, _| bend(u).powi(2));
+    let level = mean(&|_, y| y) - curvature * square;
+    if let Some(coulomb) = table.get_mut("coulomb") {
+        *coulomb = coulomb.moved(level);
+    }
+    for (name, value) in [(LINEAR, slope), (QUADRATIC, curvature)] {
+        table.insert(name.into(), first.moved(value - first.value));
     }
 }
 
@@ -247,6 +286,32 @@ mod tests {
             ("stribeck_exponent", 1.5),
         ];
         assert_near(&only(&found, EffectName::Stribeck), &fall);
+    }
+
+    #[test]
+    fn a_curve_over_position_becomes_its_nearest_parabola() {
+        // 300 N in the middle of the travel, and a parabola with 20 u − 30 u² at the knots.
+        let at = |place: usize| {
+            let u = curve::knot(place, 8);
+            20.0 * u - 30.0 * u * u
+        };
+        let names: Vec<String> = (1..=8).map(knot_name).collect();
+        let mut parameters: Vec<(&str, f64)> = vec![("coulomb", 300.0)];
+        let knots = names.iter().enumerate();
+        parameters.extend(knots.map(|(place, name)| (name.as_str(), at(place))));
+        let found = effects(&report(&parameters), travel(0.0, 0.1));
+        let wanted = [
+            ("position_dependent_friction_linear", 20.0 / 0.1 / 300.0),
+            (
+                "position_dependent_friction_quadratic",
+                -30.0 / 0.01 / 300.0,
+            ),
+        ];
+        assert_near(
+            &only(&found, EffectName::PositionDependentFriction),
+            &wanted,
+        );
+        assert_near(&only(&found, EffectName::Coulomb), &[("coulomb", 300.0)]);
     }
 
     #[test]

@@ -10,6 +10,8 @@ use crate::motion::excitation;
 use crate::report::figures;
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
+mod beyond;
+
 /// All remarks, the strongest first.
 pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     let (dataset, stage) = (findings.dataset, &findings.stages.reversals);
@@ -30,6 +32,8 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     };
     list.extend(said.sentence());
     list.extend(of_another_day(&findings.changes));
+    let model = findings.models.extended.fitted.model();
+    list.extend(beyond::beyond_the_travel(dataset, model));
     let found = findings.found.names();
     list.extend(excitation::warnings(dataset, findings.motion, found));
     list

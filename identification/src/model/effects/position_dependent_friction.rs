@@ -1,14 +1,28 @@
 //! Friction that depends on position: `sign(v)·(a u + b u²)`, with u the position scaled to −1…1
-//! over the travel of the training record.
+//! over the travel of the training record, or `sign(v)·c(u)` with a smooth curve ([`curve`]) where
+//! a worn or dirty place asks for it.
 
 use axis_model::EffectName;
 
-use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting, polynomial};
+use super::{
+    Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, curve, polynomial,
+};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
-/// sign(v)·(a u + b u²).
+/// sign(v)·(a u + b u²), or sign(v)·c(u).
 pub(crate) struct PositionDependentFriction;
+
+/// What a report calls the force at a knot of the curve, counted from one.
+#[must_use]
+pub(crate) fn knot_name(number: usize) -> String {
+    format!("{}_knot_{number}", EffectName::PositionDependentFriction)
+}
+
+/// Number of intervals of the curve, where the choice is one.
+fn intervals(choice: f64) -> Option<usize> {
+    (choice >= curve::INTERVALS[0]).then_some(choice as usize)
+}
 
 impl Effect for PositionDependentFriction {
     fn called(&self) -> Called {
@@ -16,17 +30,20 @@ impl Effect for PositionDependentFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "sign(v) (a u + b u^2), u = position over the travel, -1 to 1"
+        "sign(v) (a u + b u^2) or sign(v) c(u), u = position over the travel, -1 to 1"
     }
 
-    fn columns(&self, motion: &Kinematics, dataset: &Dataset, terms: f64) -> Vec<Vec<f64>> {
+    fn columns(&self, motion: &Kinematics, dataset: &Dataset, choice: f64) -> Vec<Vec<f64>> {
         let directions = motion.direction.iter().copied();
         let pairs = polynomial::over_travel(motion, dataset).zip(directions);
-        polynomial::columns(pairs, terms)
+        match intervals(choice) {
+            Some(intervals) => curve::columns(pairs, intervals),
+            None => polynomial::columns(pairs, choice),
+        }
     }
 
-    fn width(&self, terms: f64) -> usize {
-        polynomial::width(terms)
+    fn width(&self, choice: f64) -> usize {
+        intervals(choice).unwrap_or_else(|| polynomial::width(choice))
     }
 
     fn is_level(&self) -> bool {
@@ -37,8 +54,11 @@ impl Effect for PositionDependentFriction {
         Against::Position
     }
 
-    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::level(polynomial::value(own, at.scaled))
+    fn action(&self, at: &Instant, choice: f64, own: &[f64]) -> Action {
+        Action::level(match intervals(choice) {
+            Some(_) => curve::value(own, at.scaled),
+            None => polynomial::value(own, at.scaled),
+        })
     }
 
     fn start(&self, _: &Dataset) -> f64 {
@@ -46,19 +66,28 @@ impl Effect for PositionDependentFriction {
     }
 
     fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
-        polynomial::TERMS.to_vec()
+        [&polynomial::TERMS[..], &curve::INTERVALS].concat()
+    }
+
+    /// A curve may not take away more than all of the friction.
+    fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
+        intervals(fitted.parameter).is_none() || fitted.own.iter().all(|own| *own > -fitted.coulomb)
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        let name = [
-            "position_dependent_friction_linear",
-            "position_dependent_friction_quadratic",
-        ];
-        let known = name.iter().enumerate().take(naming.coefficients.len());
-        known
-            .map(|(place, name)| {
-                naming.coefficient(name, place, naming.effort_unit(" over half the travel"))
-            })
-            .collect()
+        let name = EffectName::PositionDependentFriction.as_str();
+        if intervals(naming.parameter).is_some() {
+            let at_knot =
+                |place| naming.coefficient(&knot_name(place + 1), place, naming.effort_unit(""));
+            return (0..naming.coefficients.len()).map(at_knot).collect();
+        }
+        let known = ["linear", "quadratic"]
+            .iter()
+            .zip(0..naming.coefficients.len());
+        let term = |(term, place): (&&str, usize)| {
+            let unit = naming.effort_unit(" over half the travel");
+            naming.coefficient(&format!("{name}_{term}"), place, unit)
+        };
+        known.map(term).collect()
     }
 }
