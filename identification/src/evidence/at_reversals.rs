@@ -193,7 +193,7 @@ mod tests {
             deflection: 3.0e-6,
             t: 2.0,
             accepted,
-            repeats: true,
+            elsewhere: Some(ratio),
         }
     }
 

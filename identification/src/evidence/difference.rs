@@ -98,7 +98,8 @@ pub(crate) fn difference(
     let declared = output.declared(dataset);
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
     let selection = selection::select(&output, declared.clone(), &mut |_| ());
-    let fits = [&declared, &selection.model].map(|ways| output.apart.fit(ways));
+    let fit = |ways: &Vec<Way>| output.apart.where_known(ways).fit(ways);
+    let fits = [&declared, &selection.model].map(fit);
     Some(Difference::of(fits, selection.scored))
 }
 
@@ -167,7 +168,7 @@ impl Output for MotorLoad<'_> {
     type Model = Vec<Way>;
 
     fn candidates(&self, ways: &Vec<Way>, round: usize) -> Vec<Candidate<Vec<Way>>> {
-        let base = self.apart.cross_validate(ways);
+        let base = self.apart.where_known(ways).cross_validate(ways);
         let is_open = |name: &EffectName| !has(ways, *name);
         let open = EFFECTS.into_iter().filter(is_open);
         let judged = open.filter_map(|name| self.judged(ways, &base, name, round));
@@ -189,7 +190,7 @@ impl Output for MotorLoad<'_> {
 
     /// Friction of the motor's own side may show only beside what came in.
     fn refined(&self, ways: Vec<Way>) -> Vec<Way> {
-        let is_wind_up = |way: &Way| matches!(way, Way::WindUp { .. });
+        let is_wind_up = |way: &Way| matches!(way, Way::WindUp { .. } | Way::HalfOf { .. });
         let Some(place) = ways.iter().position(is_wind_up) else {
             return ways;
         };
@@ -227,18 +228,31 @@ impl MotorLoad<'_> {
     }
 
     /// Wind-up beside other ways: with friction of the motor's own side where that helps and can
-    /// be.
+    /// be. Where the motor comes out with a mass that it cannot have, it gets half of the axis',
+    /// unless that explains less.
     fn best_wind_up(&self, ways: &[Way]) -> Way {
         let [plain, rubbed] = [false, true].map(|motor_friction| Way::WindUp { motor_friction });
         let with = |way: Way| [ways, &[way]].concat();
-        let fit = |way: Way| self.apart.cross_validate(&with(way));
-        let gain = Gain::of(&fit(plain), &fit(rubbed));
-        let fitted = self.apart.fit(&with(rubbed));
-        let can_be = fitted
-            .last()
-            .is_some_and(|(way, own)| self.is_physical(way, own));
-        if can_be && gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T {
-            rubbed
+        let can_be = |apart: &Apart<'_>, way: Way| {
+            let fitted = apart.fit(&with(way));
+            let last = fitted.last();
+            last.is_some_and(|(way, own)| self.is_physical(way, own))
+        };
+        let helps = |apart: &Apart<'_>, [from, to]: [Way; 2]| {
+            let [before, after] = [from, to].map(|way| apart.cross_validate(&with(way)));
+            let gain = Gain::of(&before, &after);
+            gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+        };
+        let apart = &self.apart;
+        if can_be(apart, rubbed) && helps(apart, [plain, rubbed]) {
+            return rubbed;
+        }
+        let half = Way::HalfOf {
+            motor_mass: 0.5 * self.inertia,
+        };
+        let moving = &apart.where_known(&[half]);
+        if !can_be(apart, plain) && can_be(moving, half) && !helps(moving, [half, rubbed]) {
+            half
         } else {
             plain
         }
@@ -300,8 +314,12 @@ impl MotorLoad<'_> {
             let base = self.apart.cross_validate(beside);
             return Some(self.scored(model, &base, round));
         }
-        let way = self.best(name, ways)?;
-        Some(self.scored([ways, &[way]].concat(), base, round))
+        let model = [ways, &[self.best(name, ways)?]].concat();
+        if matches!(model.last(), Some(Way::HalfOf { .. })) {
+            let base = self.apart.where_known(&model).cross_validate(ways);
+            return Some(self.scored(model, &base, round));
+        }
+        Some(self.scored(model, base, round))
     }
 
     /// Whether the way that came in last belongs to a springy gap that matters to the effort: how
@@ -327,7 +345,7 @@ impl MotorLoad<'_> {
 
     /// A model with its last way, beside what fits without that.
     fn scored(&self, model: Vec<Way>, base: &Fit, round: usize) -> Candidate<Vec<Way>> {
-        let fitted = self.apart.fit(&model);
+        let fitted = self.apart.where_known(&model).fit(&model);
         let (way, own) = fitted.last().unwrap_or((Way::Constant, &[]));
         let scored = Scored {
             effect: way.called(),
@@ -342,7 +360,8 @@ impl MotorLoad<'_> {
 
     /// What a way removes on held-out blocks.
     fn gain(&self, way: Way, base: &Fit, model: &[Way]) -> Gain {
-        let gain = Gain::of(base, &self.apart.cross_validate(model));
+        let apart = self.apart.where_known(model);
+        let gain = Gain::of(base, &apart.cross_validate(model));
         match (way, self.springy()) {
             // The force decides; how much it is in counts motor − load knows.
             (Way::Flanks(_), Some(judged)) => Gain {
@@ -351,6 +370,13 @@ impl MotorLoad<'_> {
             },
             _ => gain,
         }
+    }
+
+    /// Whether the encoders can show what a spring of this softness winds up by.
+    fn is_visible(&self, softness: f64) -> bool {
+        let efforts = self.apart.path.transmitted.iter();
+        let largest = efforts.fold(0.0_f64, |most, effort| most.max(effort.abs()));
+        softness > 0.0 && softness * largest >= FEWEST_COUNTS * self.count
     }
 
     /// Whether coefficients can be those of a way, and the encoders can show it.
@@ -362,11 +388,10 @@ impl MotorLoad<'_> {
             // The force has judged its width: beside wind-up the factor of its lag is no test.
             Way::Flanks(flanks) => flanks.gap() >= least,
             Way::Pitch { .. } => own[0].hypot(own[1]) >= least,
+            Way::HalfOf { .. } => self.is_visible(own[0]) && own[1] <= 0.0,
             Way::WindUp { .. } => {
-                let efforts = self.apart.path.transmitted.iter();
-                let largest = efforts.fold(0.0_f64, |most, effort| most.max(effort.abs()));
                 let motor_mass = -own[1] / own[0];
-                let is_visible = own[0] > 0.0 && own[0] * largest >= least;
+                let is_visible = self.is_visible(own[0]);
                 // Friction of the motor holds the load back; what pushes it on is a gap.
                 let is_friction = own.get(2).is_none_or(|step| *step <= 0.0);
                 is_visible && motor_mass > 0.0 && motor_mass < self.inertia && is_friction
@@ -389,7 +414,7 @@ fn is_enough(gain: &Gain) -> bool {
 fn parameter(way: Way, own: &[f64]) -> f64 {
     match way {
         Way::Constant | Way::Carried(_) => 0.0,
-        Way::WindUp { .. } => 1.0 / own[0],
+        Way::WindUp { .. } | Way::HalfOf { .. } => 1.0 / own[0],
         Way::Play(behind) => behind.gap,
         Way::Flanks(flanks) => flanks.gap(),
         Way::Pitch { per_length } => per_length,
@@ -430,6 +455,14 @@ impl Difference {
     #[must_use]
     pub(crate) const fn moves_apart(&self) -> bool {
         self.gap.is_some() || self.stiffness.is_some()
+    }
+
+    /// Whether the stiffness goes with a mass of the motor that was assumed: that of the load, and
+    /// with it the stiffness, is between zero and twice of what it was taken for.
+    #[must_use]
+    pub(crate) fn assumes_a_mass(&self) -> bool {
+        let wound = self.extended.of(EffectName::Compliance);
+        matches!(wound, Some((Way::HalfOf { .. }, _)))
     }
 
     /// What no accepted effect explains; impacts between rigid flanks are excused.
@@ -668,6 +701,7 @@ mod tests {
         let pitch = Way::Pitch { per_length: 500.0 };
         let softest = 2.0e-6 / largest;
         let [plain, rubbed] = [false, true].map(|motor_friction| Way::WindUp { motor_friction });
+        let half = Way::HalfOf { motor_mass: 45.0 };
         let flanks = |high: f64| {
             Way::Flanks(Flanks {
                 high,
@@ -700,6 +734,9 @@ mod tests {
                 &[1.01 * softest, -30.0 * softest, 1.0e-6, 0.0],
                 false,
             ),
+            (half, &[1.01 * softest, -1.0e-6, 0.0], true),
+            (half, &[0.99 * softest, -1.0e-6, 0.0], false),
+            (half, &[1.01 * softest, 1.0e-6, 0.0], false),
             (Way::Constant, &[1.0], false),
         ] {
             assert_eq!(output.is_physical(way, own), wanted, "{way:?} {own:?}");

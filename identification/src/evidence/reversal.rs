@@ -16,7 +16,7 @@ use axis_model::EffectName;
 use self::bristle::deflections;
 use self::gap::{Plant, SeenGap};
 use crate::evidence::thresholds::{
-    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SUSPICION_RATIO,
+    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SUSPICION_RATIO, VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
@@ -48,8 +48,9 @@ pub(crate) struct Presliding {
     pub t: f64,
     /// Whether presliding is accepted.
     pub accepted: bool,
-    /// Whether the same bristle leaves less of another record too.
-    pub repeats: bool,
+    /// What the same bristle leaves of another record, over what rigid friction leaves there; `None`
+    /// where that has no reversals.
+    pub elsewhere: Option<f64>,
 }
 
 /// Judges presliding for a model, on its record and on another one; `None` where the model has no
@@ -61,7 +62,7 @@ pub(crate) fn presliding(
     fitted: &Fitted,
 ) -> Option<Presliding> {
     let motion = bench.motion;
-    if motion.slow.iter().filter(|slow| **slow).count() < FEWEST_REVERSAL_ROWS {
+    if !has_reversals(motion) {
         return None;
     }
     let observed = Observed::new(bench, fitted)?;
@@ -74,7 +75,7 @@ pub(crate) fn presliding(
         deflection,
         t,
         accepted: false,
-        repeats: leaves_less(other, &other.fit(fitted.model()), deflection),
+        elsewhere: ratio(other, &other.fit(fitted.model()), deflection),
     };
     Some(Presliding {
         accepted: seen.is_clear(resolution(bench.dataset)),
@@ -100,26 +101,40 @@ pub(crate) fn gap(bench: &Bench<'_>, other: &Bench<'_>, fitted: &Fitted) -> Opti
     gap::best([&observed, &elsewhere], plant, unit, count)
 }
 
-/// Whether a bristle leaves less of a record than rigid friction, by what counts as suspicious.
-fn leaves_less(bench: &Bench<'_>, fitted: &Fitted, deflection: f64) -> bool {
-    let left = [None, Some(deflection)].map(|width| error_rms(bench, fitted, width));
-    matches!(left, [Some(rigid), Some(dahl)] if dahl < SUSPICION_RATIO * rigid)
+/// What a bristle leaves of a record, over what rigid friction leaves.
+fn ratio(bench: &Bench<'_>, fitted: &Fitted, deflection: f64) -> Option<f64> {
+    if !has_reversals(bench.motion) {
+        return None;
+    }
+    let left = |width| error_rms(bench, fitted, width);
+    Some(left(Some(deflection))? / left(None)?.max(f64::MIN_POSITIVE))
+}
+
+/// Whether a motion has enough samples about reversals to be judged there.
+fn has_reversals(motion: &Kinematics) -> bool {
+    motion.slow.iter().filter(|slow| **slow).count() >= FEWEST_REVERSAL_ROWS
 }
 
 impl Presliding {
-    /// Whether a bristle leaves clearly less, at enough reversals, and is not below the smallest
-    /// deflection that shows.
+    /// Whether a bristle leaves clearly less, at enough reversals, is not below the smallest
+    /// deflection that shows, and another record does not contradict it.
     fn is_clear(&self, smallest: f64) -> bool {
         self.dahl <= BRISTLE_RATIO * self.rigid
             && self.t >= BRISTLE_T
             && self.deflection >= smallest
+            && self.elsewhere.is_none_or(|ratio| ratio <= VETO_RATIO)
+    }
+
+    /// Whether the same bristle leaves less of another record too.
+    fn repeats(&self) -> bool {
+        self.elsewhere.is_some_and(|ratio| ratio < SUSPICION_RATIO)
     }
 
     /// Whether a bristle leaves less, at enough reversals of both records, but not so much less
     /// that it is one.
     pub(crate) fn is_suspicious(&self) -> bool {
         !self.accepted
-            && self.repeats
+            && self.repeats()
             && self.t >= BRISTLE_T
             && self.dahl < SUSPICION_RATIO * self.rigid
     }
@@ -257,7 +272,7 @@ mod tests {
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let bench = Bench::new(&dataset, &motion);
         let seen = presliding(&bench, &bench, &fitted).unwrap();
-        assert!(seen.repeats);
+        assert!(seen.repeats());
         assert!(seen.accepted && seen.t > BRISTLE_T, "{seen:?}");
         assert!(
             (seen.deflection / DEFLECTION_M - 1.0).abs() < 0.01,
@@ -278,7 +293,11 @@ mod tests {
         let rigid = Bench::new(&dataset, &motion);
         let seen = presliding(&rigid, &rigid, &fitted).unwrap();
         assert!(!seen.accepted && seen.rigid < seen.dahl, "{seen:?}");
-        assert!(!presliding(&bench, &rigid, &fitted).unwrap().repeats);
+        let contradicted = presliding(&bench, &rigid, &fitted).unwrap();
+        assert!(
+            !contradicted.repeats() && !contradicted.accepted,
+            "{contradicted:?}"
+        );
     }
 
     #[test]
@@ -298,7 +317,7 @@ mod tests {
         deflection: 1.0e-5,
         t: 9.0,
         accepted: true,
-        repeats: true,
+        elsewhere: Some(0.5),
     };
 
     #[test]
@@ -308,7 +327,7 @@ mod tests {
                 dahl,
                 t,
                 accepted,
-                repeats,
+                elsewhere: Some(if repeats { 0.84 } else { 0.85 }),
                 ..ACCEPTED
             };
             seen.is_suspicious()
@@ -334,6 +353,14 @@ mod tests {
         assert!(!clear(1.41, 9.0, 9.0e-6));
         assert!(!clear(0.1, 1.19, 9.0e-6));
         assert!(!clear(0.1, 9.0, 2.9e-6));
+        let there = |elsewhere| {
+            Presliding {
+                elsewhere,
+                ..ACCEPTED
+            }
+            .is_clear(3.0e-6)
+        };
+        assert!(there(None) && there(Some(1.05)) && !there(Some(1.06)));
     }
 
     #[test]

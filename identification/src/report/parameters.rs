@@ -249,8 +249,13 @@ fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Ef
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
     let gap = difference.gap.map(|gap| gap_of(gap, length));
     let compliance = difference.stiffness.map(|stiffness| {
+        let half_width = if difference.assumes_a_mass() {
+            stiffness
+        } else {
+            0.0
+        };
         Effect::from(Compliance {
-            stiffness: plain(stiffness, &stiffness_unit),
+            stiffness: about(stiffness, half_width, stiffness_unit),
             damping: None,
         })
     });

@@ -1,6 +1,7 @@
 //! Remarks: what stands behind a decision, and what the record or its description cannot give.
 
 use crate::evidence::another_day::Change;
+use crate::evidence::difference::Difference;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::reversal::Presliding;
@@ -34,10 +35,17 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     list.extend(of_another_day(&findings.changes));
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
+    let difference = findings.stages.difference.as_ref();
+    let assumes = difference.is_some_and(Difference::assumes_a_mass);
+    list.extend(assumes.then(|| OF_HALF_THE_MASS.to_owned()));
     let found = findings.found.names();
     list.extend(excitation::warnings(dataset, findings.motion, found));
     list
 }
+
+const OF_HALF_THE_MASS: &str = "compliance: the record does not tell the motor's mass from the load's; \
+                                the stiffness is that of two equal masses, and between zero and twice \
+                                as much with others: record faster accelerations";
 
 const RAN_AWAY: &str = "the simulated axis ran away (an error beyond its travel): the loop of the \
                         identified model is not stable, and no free run was used as evidence";

@@ -113,7 +113,7 @@ fn descended(
 pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<Way>> {
     let place = ways
         .iter()
-        .position(|way| matches!(way, Way::WindUp { .. }))?;
+        .position(|way| matches!(way, Way::WindUp { .. } | Way::HalfOf { .. }))?;
     let mut changed = ways.to_vec();
     changed.remove(place);
     let carried = best(apart, &changed, unit);

@@ -56,6 +56,9 @@ pub(crate) enum Way {
     Constant,
     /// A spring between them, and whether the motor's own side has friction.
     WindUp { motor_friction: bool },
+    /// The same with a motor of an assumed mass, where the effort goes so closely with the motion
+    /// that the record does not tell the motor's own part of it.
+    HalfOf { motor_mass: f64 },
     /// A spring between them, wound up by what moves the load.
     Carried(Carried),
     /// A gap, and the load behind it.
@@ -71,7 +74,9 @@ impl Way {
     pub(crate) const fn called(self) -> Called {
         match self {
             Self::Constant => Called::Structure("constant"),
-            Self::WindUp { .. } | Self::Carried(_) => Called::Effect(EffectName::Compliance),
+            Self::WindUp { .. } | Self::HalfOf { .. } | Self::Carried(_) => {
+                Called::Effect(EffectName::Compliance)
+            }
             Self::Play(_) | Self::Flanks(_) => Called::Effect(EffectName::Backlash),
             Self::Pitch { .. } => Called::Effect(EffectName::PitchError),
         }
@@ -88,6 +93,7 @@ impl Way {
                     2
                 }
             }
+            Self::HalfOf { .. } => 3,
             Self::Carried(_) => Carried::WIDTH,
             Self::Pitch { .. } => 2,
         }
@@ -101,9 +107,16 @@ impl Way {
             Self::Constant => vec![vec![1.0; motion.len()]],
             Self::WindUp { motor_friction } => {
                 let force = path.transmitted.to_vec();
-                let held = [vec![force], of_motor(motion)].concat();
+                let held: Vec<Vec<f64>> = [force].into_iter().chain(of_motor(motion)).collect();
                 let held = held.iter().take(if motor_friction { 4 } else { 2 });
                 held.map(|column| path.at_rows(column)).collect()
+            }
+            Self::HalfOf { motor_mass } => {
+                let [acceleration, direction, velocity] = of_motor(motion);
+                let pairs = path.transmitted.iter().zip(&acceleration);
+                let onward = pairs.map(|(force, a)| force - motor_mass * a).collect();
+                let held = [onward, direction, velocity];
+                held.iter().map(|column| path.at_rows(column)).collect()
             }
             Self::Carried(carried) => carried.columns(motion, position, apart),
             Self::Play(behind) => vec![low_passed(behind.follow(position, motion.period_s))],
@@ -119,10 +132,10 @@ impl Way {
 
 /// What inertia and friction of the motor's own side go with: acceleration, direction and velocity
 /// of the motor, low-passed.
-pub(crate) fn of_motor(motion: &Kinematics) -> Vec<Vec<f64>> {
+pub(crate) fn of_motor(motion: &Kinematics) -> [Vec<f64>; 3] {
     let velocity = motion.low_passed(&motion.velocity);
     let direction: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
-    vec![
+    [
         motion.low_passed(&motion.acceleration),
         motion.low_passed(&direction),
         velocity,
@@ -194,8 +207,16 @@ impl<'a> Apart<'a> {
     pub(super) fn where_known(&self, ways: &[Way]) -> Self {
         let mut mask = self.mask.clone();
         for way in ways {
-            if let Way::Carried(carried) = way {
-                mask = carried.known(self.motion, self.path.position, self.raw, &mask);
+            match way {
+                Way::Carried(carried) => {
+                    mask = carried.known(self.motion, self.path.position, self.raw, &mask);
+                }
+                // At rest the motor's friction is whatever holds.
+                Way::HalfOf { .. } => {
+                    let pairs = mask.iter_mut().zip(&self.motion.fitted);
+                    pairs.for_each(|(inside, moving)| *inside &= *moving);
+                }
+                _ => {}
             }
         }
         Self {
@@ -346,7 +367,7 @@ mod tests {
         let axis = apart_by(|x| x);
         let columns = |motor_friction| apart(&axis).columns(Way::WindUp { motor_friction });
         let force = vec![axis.motion.effort_lp.clone()];
-        let all = [force, of_motor(&axis.motion)].concat();
+        let all: Vec<Vec<f64>> = force.into_iter().chain(of_motor(&axis.motion)).collect();
         assert_eq!(columns(false), all[..2]);
         assert_eq!(columns(true), all);
         let ones = apart(&axis).columns(Way::Constant);
@@ -359,6 +380,31 @@ mod tests {
         let lag = gap.follow(&axis.dataset.train.position, 1.0e-3);
         let lag = axis.motion.low_passed(&lag);
         assert_eq!(apart(&axis).columns(Way::Play(gap)), [lag]);
+    }
+
+    #[test]
+    fn a_motor_of_an_assumed_mass_is_judged_where_it_moves() {
+        let axis = apart_by(|x| x);
+        let apart = apart(&axis);
+        let half = Way::HalfOf { motor_mass: 30.0 };
+        let [onward, direction, velocity] = &apart.columns(half)[..] else {
+            panic!("force, direction and velocity");
+        };
+        let [acceleration, wanted_direction, wanted_velocity] = &of_motor(&axis.motion);
+        assert_eq!((direction, velocity), (wanted_direction, wanted_velocity));
+        let rows = onward.iter().zip(&axis.motion.effort_lp).zip(acceleration);
+        assert!(
+            rows.into_iter()
+                .all(|((onward, u), a)| *onward == u - 30.0 * a)
+        );
+        assert!(
+            apart
+                .mask
+                .iter()
+                .zip(&axis.motion.fitted)
+                .any(|(asked, moving)| *asked && !moving)
+        );
+        assert_eq!(apart.where_known(&[half]).mask, axis.motion.fitted);
     }
 
     #[test]

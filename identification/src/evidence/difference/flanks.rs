@@ -103,7 +103,10 @@ impl<'a> Balance<'a> {
             effort: apart.path.transmitted,
             hold: apart.path.hold,
             difference: apart.raw,
-            own: [of_motor(motion), vec![vec![1.0; motion.len()]]].concat(),
+            own: of_motor(motion)
+                .into_iter()
+                .chain([vec![1.0; motion.len()]])
+                .collect(),
             mask: calm(motion, mask),
         }
     }
