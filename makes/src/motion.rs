@@ -2,11 +2,14 @@
 //!
 //! A leg goes from one place to another and stands at both ends. Its shape is a trapezoid of
 //! velocity, the polynomial of least jerk (Flash and Hogan, J. Neuroscience 5, 1985), half a turn
-//! of a circle, or whole cycles of a sine.
+//! of a circle, whole cycles of a sine, a cycloid, or a way with a sine on top.
+
+mod trades;
 
 use std::f64::consts::{PI, TAU};
 
 use crate::draw::Draw;
+use crate::motion::trades::{cycloid, schroeder};
 
 /// What is wanted at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +32,9 @@ enum Shape {
     HalfCircle,
     /// Amplitude and whole cycles.
     Sine(f64, f64),
+    Cycloid,
+    /// Amplitude and whole cycles of the sine on top of least jerk.
+    Weave(f64, f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,11 +195,20 @@ impl Leg {
                 share([0.5 * (1.0 - cos), 0.5 * PI * sin, 0.5 * PI * PI * cos])
             }
             Shape::Sine(amplitude, cycles) => {
-                let w = TAU * cycles / duration;
+                let wave = swung(amplitude, TAU * cycles / duration, t);
                 Setpoint {
-                    position: self.from + amplitude * (1.0 - libm::cos(w * t)),
-                    velocity: amplitude * w * libm::sin(w * t),
-                    acceleration: amplitude * w * w * libm::cos(w * t),
+                    position: self.from + wave.position,
+                    ..wave
+                }
+            }
+            Shape::Cycloid => share(cycloid(t / duration)),
+            Shape::Weave(amplitude, cycles) => {
+                let way = share(least_jerk(t / duration));
+                let wave = swung(amplitude, TAU * cycles / duration, t);
+                Setpoint {
+                    position: way.position + wave.position,
+                    velocity: way.velocity + wave.velocity,
+                    acceleration: way.acceleration + wave.acceleration,
                 }
             }
         }
@@ -216,6 +231,15 @@ impl Leg {
             velocity,
             acceleration,
         }
+    }
+}
+
+/// amplitude·(1 − cos w t).
+fn swung(amplitude: f64, w: f64, t: f64) -> Setpoint {
+    Setpoint {
+        position: amplitude * (1.0 - libm::cos(w * t)),
+        velocity: amplitude * w * libm::sin(w * t),
+        acceleration: amplitude * w * w * libm::cos(w * t),
     }
 }
 
@@ -370,6 +394,9 @@ pub enum Programme {
     Chirp(f64, f64, f64, f64),
     /// A plateau of drawn size, one after the other: amplitude and time of each, s.
     Steps(f64, f64, u64),
+    /// Sines side by side of one amplitude and of frequencies f, 2f, … nf: deviation of the whole,
+    /// f in Hz, n.
+    Multisine(f64, f64, u32),
 }
 
 impl Programme {
@@ -384,6 +411,9 @@ impl Programme {
                 let t = time_s % sweep_s;
                 let turns = from_hz * t + 0.5 * (to_hz - from_hz) * t * t / sweep_s;
                 amplitude * libm::sin(TAU * turns)
+            }
+            Self::Multisine(deviation, lowest_hz, lines) => {
+                deviation * schroeder(TAU * lowest_hz * time_s, lines)
             }
             Self::Steps(amplitude, each_s, seed) => {
                 let step = (time_s / each_s).floor() as u64;
