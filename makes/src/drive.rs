@@ -42,6 +42,13 @@ pub enum Flaw {
     Fading(f64, f64),
     /// Delivered effort larger by a share in one direction than in the other.
     Lopsided(f64),
+    /// The delivered effort swings by a share at a frequency, Hz: a supply that flickers.
+    Flicker(f64, f64),
+    /// No more than this is delivered, in either direction.
+    Limit(f64),
+    /// The delivered effort lags the current within a play of so much to either side: a spool that
+    /// sticks (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, ch. 2).
+    Play(f64),
 }
 
 /// A drive.
@@ -80,6 +87,7 @@ pub struct DriveState {
     waiting: VecDeque<f64>,
     current: f64,
     rate: f64,
+    played: f64,
 }
 
 /// What a drive gives.
@@ -106,7 +114,12 @@ impl Drive {
         let ripple = self.ripple.map_or(0.0, |wave| {
             wave.share * libm::cos(wave.waves * position + wave.phase)
         });
-        let effort = flawed(self.flaw, drooped * (1.0 + ripple), time_s);
+        let effort = flawed(
+            self.flaw,
+            drooped * (1.0 + ripple),
+            time_s,
+            &mut state.played,
+        );
         Delivered { current, effort }
     }
 
@@ -148,7 +161,7 @@ pub fn rounded(value: f64, quantum: f64) -> f64 {
     }
 }
 
-fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64) -> f64 {
+fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64, played: &mut f64) -> f64 {
     match flaw {
         None => effort,
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
@@ -159,6 +172,14 @@ fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64) -> f64 {
             effort * (1.0 - share * warm)
         }
         Some(Flaw::Lopsided(share)) => effort + share * effort.abs(),
+        Some(Flaw::Flicker(share, frequency_hz)) => {
+            effort * (1.0 + share * libm::sin(TAU * frequency_hz * time_s))
+        }
+        Some(Flaw::Limit(most)) => effort.clamp(-most, most),
+        Some(Flaw::Play(half)) => {
+            *played = played.clamp(effort - half, effort + half);
+            *played
+        }
     }
 }
 
@@ -230,10 +251,27 @@ mod tests {
 
     #[test]
     fn a_motor_that_fades_has_lost_63_percent_of_its_share_after_the_time_constant() {
-        let at = |time_s| flawed(Some(Flaw::Fading(0.3, 9.0)), 100.0, time_s);
+        let at = |time_s| flawed(Some(Flaw::Fading(0.3, 9.0)), 100.0, time_s, &mut 0.0);
         assert_eq!((at(-1.0), at(0.0)), (100.0, 100.0));
         assert!((at(9.0) - 81.036).abs() < 1.0e-3);
         assert!((at(1.0e3) - 70.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn a_supply_flickers_by_its_share_and_a_limit_clips() {
+        let at = |flaw, time_s| flawed(Some(flaw), 100.0, time_s, &mut 0.0);
+        assert!((at(Flaw::Flicker(0.2, 2.0), 0.125) - 120.0).abs() < 1.0e-9);
+        assert_eq!(at(Flaw::Limit(60.0), 0.0), 60.0);
+    }
+
+    #[test]
+    fn a_spool_with_play_stays_behind_by_half_of_it_on_either_way() {
+        let mut played = 0.0;
+        let mut at = |effort| flawed(Some(Flaw::Play(10.0)), effort, 0.0, &mut played);
+        assert_eq!(
+            [5.0, 30.0, 15.0, -30.0].map(&mut at),
+            [0.0, 20.0, 20.0, -20.0]
+        );
     }
 
     #[test]

@@ -9,4 +9,5 @@ pub mod field;
 pub mod friction;
 pub mod inertia;
 pub mod joint;
+pub mod resistance;
 pub mod train;

@@ -1,9 +1,27 @@
 //! Forces of place and time, and drag: what acts on a body beside joints and friction.
 //!
-//! Drag is c·v + q·v·|v| + d·v³ against motion, c by direction. A field is a force along positive
-//! motion, a function of position, velocity and time.
+//! Drag is c·v + q·v·|v| + d·v³ against motion, c by direction, and c may fall while oil warms up;
+//! what is no polynomial is in [`resistance`](super::resistance). A field is a force along positive
+//! motion, a function of position and time.
 
 use std::f64::consts::TAU;
+
+use crate::mechanics::resistance::Resistance;
+
+/// Oil that warms up from the start of the record: 1 + surplus · exp(−t/τ).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WarmOil {
+    /// Surplus at the start.
+    pub surplus: f64,
+    /// Time constant, s.
+    pub time_constant_s: f64,
+}
+
+impl WarmOil {
+    fn factor(&self, time_s: f64) -> f64 {
+        1.0 + self.surplus * libm::exp(-time_s / self.time_constant_s)
+    }
+}
 
 /// Drag of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,6 +36,10 @@ pub struct Drag {
     pub quadratic: f64,
     /// Cubic, N s³/m³ or N m s³/rad³.
     pub cubic: f64,
+    /// What changes its viscous friction with time.
+    pub oil: Option<WarmOil>,
+    /// What it has beside the polynomial.
+    pub resistance: Option<Resistance>,
 }
 
 impl Drag {
@@ -34,14 +56,16 @@ impl Drag {
 
     /// The force against positive motion.
     #[must_use]
-    pub fn against(&self, velocity: f64) -> f64 {
+    pub fn against(&self, velocity: f64, time_s: f64) -> f64 {
         let linear = if velocity >= 0.0 {
             self.forward
         } else {
             self.backward
         };
         let per_velocity = self.quadratic * velocity.abs() + self.cubic * velocity * velocity;
-        (linear + per_velocity) * velocity
+        let oil = self.oil.map_or(1.0, |oil| oil.factor(time_s));
+        let other = self.resistance.map_or(0.0, |law| law.against(velocity));
+        (linear * oil + per_velocity) * velocity + other
     }
 }
 
@@ -65,6 +89,14 @@ pub enum Field {
         stiffness: f64,
         /// Where it is slack.
         rest: f64,
+    },
+    /// −stiffness · x · (1 + (x/knee)²): a stack of disc springs that flattens one spring after the
+    /// other, to either side of its middle.
+    DiscSprings {
+        /// Stiffness in the middle.
+        stiffness: f64,
+        /// Where the secant is twice as stiff.
+        knee: f64,
     },
     /// A buffer that is touched beyond a position: pushes back only (Hunt and Crossley's contact
     /// without hysteresis, exponent one).
@@ -121,6 +153,10 @@ impl Field {
                 phase,
             } => amplitude * libm::sin(waves * position + phase),
             Self::Spring { stiffness, rest } => -stiffness * (position - rest),
+            Self::DiscSprings { stiffness, knee } => {
+                let ratio = position / knee;
+                -stiffness * position * (1.0 + ratio * ratio)
+            }
             Self::Stop { at, stiffness } => {
                 let beyond = (position - at) * at.signum();
                 -stiffness * beyond.max(0.0) * at.signum()
@@ -160,8 +196,31 @@ mod tests {
             cubic: 5.0,
             ..Drag::viscous(0, 2.0)
         };
-        assert_eq!(drag.against(1.0), 10.0);
-        assert_eq!(drag.against(-1.0), -10.0);
+        assert_eq!(drag.against(1.0, 0.0), 10.0);
+        assert_eq!(drag.against(-1.0, 0.0), -10.0);
+    }
+
+    #[test]
+    fn warm_oil_has_lost_63_percent_of_its_surplus_after_its_time_constant() {
+        let drag = Drag {
+            oil: Some(WarmOil {
+                surplus: 0.5,
+                time_constant_s: 8.0,
+            }),
+            ..Drag::viscous(0, 2.0)
+        };
+        assert_eq!(drag.against(1.0, 0.0), 3.0);
+        assert!((drag.against(1.0, 8.0) - 2.368).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn a_stack_of_disc_springs_is_twice_as_stiff_at_its_knee() {
+        let stack = Field::DiscSprings {
+            stiffness: 500.0,
+            knee: 0.04,
+        };
+        assert!((stack.at(0.04, 0.0) + 40.0).abs() < 1.0e-9);
+        assert!((stack.at(-0.04, 0.0) - 40.0).abs() < 1.0e-9);
     }
 
     #[test]

@@ -227,6 +227,8 @@ fn sign(value: f64) -> f64 {
 pub enum Scale {
     /// 1 + share · x.
     Slope(f64),
+    /// 1 + share · x²: guides that bind toward both ends.
+    Bowl(f64),
     /// 1 + share · exp(−((x − centre)/width)²): a worn or dirty place.
     Bump {
         /// Centre.
@@ -278,6 +280,7 @@ impl Scale {
     pub fn factor(&self, at: &Contact) -> f64 {
         let change = match *self {
             Self::Slope(share) => share * at.position,
+            Self::Bowl(share) => share * at.position * at.position,
             Self::Bump {
                 centre,
                 width,
@@ -520,6 +523,7 @@ mod tests {
         };
         let table = [
             (Scale::Slope(0.5), 1.1),
+            (Scale::Bowl(2.5), 1.1),
             (bump, 1.0 + 0.4 / std::f64::consts::E),
             (warm, 1.0 + 0.4 / std::f64::consts::E),
             (Scale::Film(0.5, 0.1), 1.25),

@@ -72,6 +72,8 @@ pub struct Joint {
     pub slips_at: Option<f64>,
     /// Way that is lost per way rolled and effort, 1/C; zero where nothing rolls.
     pub creep: f64,
+    /// Whether it is a freewheel, which drives the second body in positive direction only.
+    pub one_way: bool,
 }
 
 /// What a joint does in a step.
@@ -93,6 +95,7 @@ impl Joint {
             gap: 0.0,
             slips_at: None,
             creep: 0.0,
+            one_way: false,
         }
     }
 
@@ -122,7 +125,9 @@ impl Joint {
 
     fn damped(&self, spring: f64, rate: f64) -> f64 {
         let effort = spring + self.damping * rate;
-        if self.gap == 0.0 {
+        if self.one_way {
+            effort.max(0.0)
+        } else if self.gap == 0.0 {
             effort
         } else if spring == 0.0 || effort * spring < 0.0 {
             0.0

@@ -152,7 +152,7 @@ impl Train {
         state.transmitted[0] = drive;
         self.add_joints(state, &mut efforts, step_s);
         for drag in &self.drags {
-            efforts[drag.body] -= drag.against(state.velocities[drag.body]);
+            efforts[drag.body] -= drag.against(state.velocities[drag.body], state.time_s);
         }
         for (body, field) in &self.fields {
             efforts[*body] += field.at(state.positions[*body], state.time_s);
@@ -365,6 +365,24 @@ mod tests {
             train.step(&mut state, 0.0, 1.0e-5);
         }
         assert!((state.velocities[1] - 6.321).abs() < 2.0e-3);
+    }
+
+    #[test]
+    fn a_flywheel_behind_a_freewheel_is_driven_one_way_and_coasts_the_other() {
+        let clutch = Joint {
+            one_way: true,
+            ..Joint::stiff(0.0, 2.0)
+        };
+        let train = free(1.0e6).then(clutch, 0.1, 0.0, 0.0);
+        let after = |motor: f64, flywheel: f64| {
+            let mut state = train.at_rest(0.0);
+            state.velocities = vec![motor, flywheel];
+            (0..5000).for_each(|_| train.step(&mut state, 0.0, 1.0e-5));
+            state.velocities[1]
+        };
+        // 0.1 kg m² over 2 N m s/rad
+        assert!((after(10.0, 0.0) - 6.321).abs() < 2.0e-3);
+        assert_eq!(after(-10.0, 3.0), 3.0);
     }
 
     #[test]

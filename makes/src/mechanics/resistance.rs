@@ -1,0 +1,71 @@
+//! Resistance to motion that is no polynomial of velocity.
+//!
+//! - Eddy currents: a rail between magnets drags with most·2r/(1 + r²), r = v/v_c. The force falls
+//!   again above the critical velocity v_c (Wouterse, IEE Proceedings B 138, 1991).
+//! - Fluids that thin under shear: consistency·|v|ⁿ with n below one (Ostwald and de Waele's law;
+//!   Bird, Armstrong and Hassager, Dynamics of Polymeric Liquids, 1987, ch. 4).
+
+/// A law of resistance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resistance {
+    /// Eddy currents.
+    Eddy {
+        /// Largest force, at the critical velocity.
+        most: f64,
+        /// Critical velocity.
+        velocity: f64,
+    },
+    /// A fluid that thins.
+    Thinning {
+        /// Force at a velocity of one.
+        consistency: f64,
+        /// n.
+        exponent: f64,
+    },
+}
+
+impl Resistance {
+    /// The force against positive motion.
+    #[must_use]
+    pub fn against(&self, velocity: f64) -> f64 {
+        match *self {
+            Self::Eddy {
+                most,
+                velocity: critical,
+            } => {
+                let r = velocity / critical;
+                most * 2.0 * r / (1.0 + r * r)
+            }
+            Self::Thinning {
+                consistency,
+                exponent,
+            } => (consistency * libm::pow(velocity.abs(), exponent)).copysign(velocity),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_eddy_brake_drags_most_at_its_critical_velocity_and_less_above_it() {
+        let brake = Resistance::Eddy {
+            most: 60.0,
+            velocity: 0.5,
+        };
+        assert_eq!(brake.against(0.5), 60.0);
+        assert_eq!(brake.against(-0.5), -60.0);
+        assert!((brake.against(1.0) - 48.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn a_fluid_that_thins_drags_half_as_much_at_a_quarter_of_the_velocity() {
+        let glue = Resistance::Thinning {
+            consistency: 40.0,
+            exponent: 0.5,
+        };
+        assert!((glue.against(1.0) - 40.0).abs() < 1.0e-12);
+        assert!((glue.against(-0.25) + 20.0).abs() < 1.0e-12);
+    }
+}
