@@ -13,6 +13,7 @@ pub mod held_back;
 pub mod logs;
 pub mod loops;
 pub mod screws;
+pub mod unseen;
 pub mod vertical;
 
 use crate::control::Controller;
@@ -43,6 +44,8 @@ pub enum Presence {
     Present,
     /// It is not: the same axis with nothing lacking.
     Absent,
+    /// One effect alone, of a make that asks for each of its effects by name.
+    Only(Effect),
 }
 
 impl Presence {
@@ -50,9 +53,25 @@ impl Presence {
     #[must_use]
     pub fn or<T>(self, present: T, absent: T) -> T {
         match self {
-            Self::Present => present,
+            Self::Present | Self::Only(_) => present,
             Self::Absent => absent,
         }
+    }
+
+    /// Whether an effect is there.
+    #[must_use]
+    pub fn has(self, effect: Effect) -> bool {
+        match self {
+            Self::Present => true,
+            Self::Absent => false,
+            Self::Only(one) => effect == one,
+        }
+    }
+
+    /// The value of an effect, or zero where the effect is not there.
+    #[must_use]
+    pub fn size_of(self, effect: Effect, present: f64) -> f64 {
+        if self.has(effect) { present } else { 0.0 }
     }
 
     /// A value, or zero.
@@ -141,6 +160,13 @@ impl Make {
 #[must_use]
 pub fn held_back() -> Vec<Make> {
     held_back::FAMILIES.concat()
+}
+
+/// Makes that are held back after those of [`held_back()`] had been run and had become known. They
+/// are a table of their own.
+#[must_use]
+pub fn unseen() -> Vec<Make> {
+    unseen::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.
