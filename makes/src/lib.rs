@@ -13,6 +13,7 @@
 //! | [`rig`] | all of it put together and run |
 //! | [`make`] | the makes: hidden, empty, declared, another day |
 //! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
+//! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -39,7 +40,7 @@ pub mod truth;
 
 /// How one record is made, without making it.
 pub struct Recipe {
-    /// Which table it is a row of: `makes`, `held-back`, `clean`, `outside` or `spoilt`.
+    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -71,7 +72,13 @@ impl Recipe {
 pub fn recipes(seed: u64) -> Vec<Recipe> {
     let mut all = of_makes("makes", &make::all(), seed);
     all.extend(of_makes("held-back", &make::held_back(), seed));
-    all.extend(held_back_outside(seed));
+    all.extend(with_their_empty(
+        "held-back",
+        outside::held_back::HELD_BACK,
+        seed,
+    ));
+    all.extend(of_makes("unseen", &make::unseen(), seed));
+    all.extend(with_their_empty("unseen", outside::unseen::UNSEEN, seed));
     let clean = clean::CLEAN.iter();
     all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
     let outside = outside::OUTSIDE.iter();
@@ -81,12 +88,16 @@ pub fn recipes(seed: u64) -> Vec<Recipe> {
     all
 }
 
-/// Disturbances that are held back, and their machines without them.
-fn held_back_outside(seed: u64) -> impl Iterator<Item = Recipe> {
-    outside::held_back::HELD_BACK.iter().flat_map(move |row| {
+/// Disturbances on machines of their own, and these machines without them.
+fn with_their_empty(
+    table: &'static str,
+    rows: &'static [outside::Outside],
+    seed: u64,
+) -> impl Iterator<Item = Recipe> {
+    rows.iter().flat_map(move |row| {
         [
-            Recipe::of("held-back", row.name, move || row.entry(seed)),
-            Recipe::of("held-back", row.empty_name(), move || row.empty_entry(seed)),
+            Recipe::of(table, row.name, move || row.entry(seed)),
+            Recipe::of(table, row.empty_name(), move || row.empty_entry(seed)),
         ]
     })
 }
