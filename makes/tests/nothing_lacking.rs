@@ -4,8 +4,10 @@
 //! ∫F dt = M·Δv + Fv·Δx + Fc·∫sign v dt + F0·Δt, from the true motion of the run, not from its
 //! record. With its effect present the same sum leaves more, where the effect is one of effort.
 
-use makes::make::{Make, Presence, all, held_back};
+use makes::make::{Make, Presence, all, held_back, unseen};
+use makes::outside::Outside;
 use makes::outside::held_back::HELD_BACK;
+use makes::outside::unseen::UNSEEN;
 use makes::rig::Rig;
 use makes::sensing::Trace;
 use makes::truth::Effect;
@@ -14,6 +16,10 @@ use scope::{Scope, on_all_cores};
 
 /// Windows of 20 ms: longer than the swing of any joint, shorter than any move.
 const WINDOW_S: f64 = 0.02;
+
+/// Slower than this share of its largest velocity the motor may wind up its joint before a load
+/// that sticks, under any effort.
+const STANDS: f64 = 1.0e-3;
 
 /// Share of the impulse (without its mean) that the four leave, and the four.
 fn fit(rig: &Rig) -> (f64, Vec<f64>) {
@@ -37,13 +43,16 @@ fn strongest(rig: &Rig) -> f64 {
     trace.current.iter().fold(0.0, |most, f| f.abs().max(most))
 }
 
-/// Δv, Δx, ∫sign v dt, Δt and the impulse of every window in which the axis does not turn over.
+/// Δv, Δx, ∫sign v dt, Δt and the impulse of every window in which the axis moves and
+/// does not turn over.
 fn windows(trace: &Trace) -> Vec<[f64; 5]> {
     let count = (WINDOW_S / trace.step_s).round() as usize;
+    let fastest = trace.velocity.iter().fold(0.0_f64, |m, v| v.abs().max(m));
     let window = |k: usize| {
         let (from, to) = (k * count, (k + 1) * count);
         let sign = trace.velocity[from].signum();
-        let one_way = trace.velocity[from..=to].iter().all(|v| v * sign > 0.0);
+        let mut velocities = trace.velocity[from..=to].iter();
+        let one_way = velocities.all(|v| v * sign > STANDS * fastest);
         let impulse = trace.current[from..to].iter().sum::<f64>() * trace.step_s;
         let dv = trace.velocity[to] - trace.velocity[from];
         let dx = trace.motor[to] - trace.motor[from];
@@ -61,10 +70,11 @@ fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
         makes.retain(|make| kind(make));
         makes
     };
-    let (makes, others) = (of(all()), of(held_back()));
+    let (makes, others, last) = (of(all()), of(held_back()), of(unseen()));
     let some = scope.rows("makes", &makes, 4, 12);
     let held_back = scope.rows("makes held back", &others, 2, 6);
-    [some, held_back].concat()
+    let unseen = scope.rows("makes unseen", &last, 2, 6);
+    [some, held_back, unseen].concat()
 }
 
 #[test]
@@ -122,8 +132,11 @@ fn an_effect_of_effort_leaves_what_the_declared_model_cannot_say() {
 
 #[test]
 fn a_machine_held_back_lacks_nothing_without_its_disturbance() {
-    let rows = Scope::now().rows("disturbances held back", HELD_BACK, 2, 6);
-    let fits = on_all_cores(rows, |row| (fit(&row.good_rig(1)).0, fit(&row.rig(1)).0));
+    let scope = Scope::now();
+    let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
+    let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
+    let rows: Vec<Outside> = [held_back, unseen].concat();
+    let fits = on_all_cores(&rows, |row| (fit(&row.good_rig(1)).0, fit(&row.rig(1)).0));
     for (row, (good, disturbed)) in rows.iter().zip(fits) {
         println!(
             "{} {:.2} % and {:.2} %",

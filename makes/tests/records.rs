@@ -1,9 +1,10 @@
 //! What holds of every record, whatever is judged on it.
 
 use makes::draw::Draw;
-use makes::make::{Form, Make, Presence, all, held_back};
+use makes::make::{Form, Make, Presence, all, held_back, unseen};
 use makes::motion::Motion;
 use makes::outside::held_back::HELD_BACK;
+use makes::outside::unseen::UNSEEN;
 use makes::outside::{OUTSIDE, Outside};
 use makes::rig::{Kind, Rig};
 use makes::sensing::Stamps;
@@ -13,16 +14,17 @@ use scope::{Scope, on_all_cores};
 
 /// Those that are held back with them.
 fn every_make() -> Vec<Make> {
-    [all(), held_back()].concat()
+    [all(), held_back(), unseen()].concat()
 }
 
 /// As many of either as the scope runs.
 fn some_makes() -> Vec<Make> {
     let scope = Scope::now();
-    let (makes, others) = (all(), held_back());
+    let (makes, others, last) = (all(), held_back(), unseen());
     let some = scope.rows("makes", &makes, 4, 12);
     let held_back = scope.rows("makes held back", &others, 2, 6);
-    [some, held_back].concat()
+    let unseen = scope.rows("makes unseen", &last, 2, 6);
+    [some, held_back, unseen].concat()
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -99,7 +101,8 @@ fn every_disturbance_outside_the_list_changes_the_record() {
     let scope = Scope::now();
     let some = scope.rows("disturbances", OUTSIDE, 4, 12);
     let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
-    let rows: Vec<Outside> = [some, held_back].concat();
+    let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
+    let rows: Vec<Outside> = [some, held_back, unseen].concat();
     let changed = on_all_cores(&rows, |outside| {
         change(&training(&outside.rig(1)), &training(&outside.good_rig(1)))
     });
@@ -184,6 +187,22 @@ fn a_third_of_the_makes_is_held_back_and_hides_every_name() {
     assert!(several >= 3 && HELD_BACK.len() >= 4);
     let (ours, theirs) = (makes.len() + HELD_BACK.len(), all().len());
     assert!(3 * ours >= ours + theirs, "{ours} {theirs}");
+}
+
+#[test]
+fn the_unseen_makes_hide_every_name_twice_and_no_make_has_a_name_of_another_table() {
+    let makes = unseen();
+    let hidden = |effect: &Effect| makes.iter().filter(|m| m.hides.contains(effect)).count();
+    for effect in NAMES {
+        assert!(hidden(&effect) >= 2, "{effect:?}");
+    }
+    assert!(makes.len() >= 20 && UNSEEN.len() >= 8);
+    assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
+    let of_makes = every_make().into_iter().map(|make| make.name);
+    let of_outside = [OUTSIDE, HELD_BACK, UNSEEN].concat();
+    let names: Vec<&str> = of_makes.chain(of_outside.iter().map(|o| o.name)).collect();
+    let different: std::collections::BTreeSet<_> = names.iter().collect();
+    assert_eq!(different.len(), names.len());
 }
 
 #[test]
