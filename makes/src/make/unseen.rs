@@ -1,5 +1,6 @@
 //! Makes that nobody has looked at: written by somebody who had seen neither the identification
-//! nor what it says about any make, after those of [`held_back`](mod@super::held_back) had been run.
+//! nor what it says about any make, after those of [`held_back`](mod@super::held_back) had been
+//! run.
 //!
 //! No threshold is moved to suit them. They are run once, at the end, and are a table of their own.
 //! The trades are others again: cloth, wafers, glass and stone, cranes and stages, medicine,

@@ -79,8 +79,9 @@ fn theatre_fly(draw: &mut Draw, presence: Presence) -> Rig {
     rig
 }
 
-/// The fork of a stacker crane on a chain: a pallet brings its mass and its weight, and the sprocket
-/// runs out once per turn, of which the travel has two or three. The carriage's own weight is declared.
+/// The fork of a stacker crane on a chain: a pallet brings its mass and its weight, and the
+/// sprocket runs out once per turn, of which the travel has two or three. The carriage's own weight
+/// is declared.
 fn pallet_mast(draw: &mut Draw, presence: Presence) -> Rig {
     let (carriage, reflected) = (draw.near(70.0), draw.near(140.0));
     let empty = carriage + reflected;

@@ -1,7 +1,8 @@
 //! Medicine: a joint that is worn, a mill for crowns.
 //!
-//! A strain-wave gear winds up and has friction of either kind, a level and a viscous part (Taghirad
-//! and Bélanger, ASME J. Dyn. Syst. Meas. Control 120, 1998); both fall as its grease warms.
+//! A strain-wave gear winds up and has friction of either kind, a level and a viscous part
+//! (Taghirad and Bélanger, ASME J. Dyn. Syst. Meas. Control 120, 1998); both fall as its grease
+//! warms.
 
 use std::f64::consts::TAU;
 
