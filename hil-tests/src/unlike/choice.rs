@@ -12,8 +12,10 @@ use scope::Scope;
 pub const SEED: u64 = 1;
 /// The tables of the golden page, in its order.
 pub const TABLES: [&str; 4] = ["makes", "clean", "outside", "spoilt"];
+/// The table that was held back until its page was made: since then it finds bugs as the others do.
+pub const ONCE_HELD_BACK: &str = "held-back";
 /// The table that is run once, at the end.
-pub const HELD_BACK: &str = "held-back";
+pub const HELD_BACK: &str = "unseen";
 
 /// The records of a table.
 #[must_use]
@@ -29,12 +31,14 @@ pub fn chosen() -> Vec<Recipe> {
     TABLES.into_iter().flat_map(chosen_of).collect()
 }
 
-fn chosen_of(table: &str) -> Vec<Recipe> {
+/// The records of a table in the scope; prints how many of how many.
+#[must_use]
+pub fn chosen_of(table: &str) -> Vec<Recipe> {
     let all = of_table(table);
     let (quick, test) = match table {
         "makes" => (2, all.len() / Form::ALL.len() / 3),
         "clean" => (1, 2),
-        "outside" => (1, 3),
+        "outside" | ONCE_HELD_BACK => (1, 3),
         _ => (2, 6),
     };
     let count = Scope::now().pick(quick, test, all.len());
@@ -107,8 +111,10 @@ mod tests {
 
     #[test]
     fn no_record_that_is_held_back_is_in_a_table_of_the_page() {
-        assert!(!TABLES.contains(&HELD_BACK));
-        assert!(!of_table(HELD_BACK).is_empty());
-        assert!(chosen().iter().all(|recipe| recipe.table != HELD_BACK));
+        for table in [HELD_BACK, ONCE_HELD_BACK] {
+            assert!(!TABLES.contains(&table));
+            assert!(!of_table(table).is_empty());
+            assert!(chosen().iter().all(|recipe| recipe.table != table));
+        }
     }
 }

@@ -59,8 +59,7 @@ impl Motion {
     fn of(apart: &Apart<'_>, wound: Option<Vec<f64>>) -> Self {
         let motion = apart.motion;
         let plain = Plain::fit(motion);
-        let [acceleration, direction, velocity] =
-            <[Vec<f64>; 3]>::try_from(of_motor(motion)).unwrap_or_default();
+        let [acceleration, direction, velocity] = of_motor(motion);
         let force = |row: usize| {
             plain.inertia * acceleration[row]
                 + plain.viscous * velocity[row]

@@ -24,7 +24,9 @@ pub(crate) fn knot(place: usize, intervals: usize) -> f64 {
 pub(crate) fn columns(pairs: impl Iterator<Item = (f64, f64)>, intervals: usize) -> Vec<Vec<f64>> {
     let mut columns = vec![Vec::new(); intervals];
     for (row, (u, weight)) in pairs.enumerate() {
-        columns.iter_mut().for_each(|column| column.push(0.0));
+        for column in &mut columns {
+            column.push(0.0);
+        }
         for (place, share) in parts(u, intervals) {
             columns[place][row] += weight * share;
         }
