@@ -1,20 +1,13 @@
 //! What a record cannot identify, and what to record next.
 
-use axis_model::EffectName;
-
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 
 /// Warnings about a training record, one sentence each.
 #[must_use]
-pub(crate) fn warnings(
-    dataset: &Dataset,
-    motion: &Kinematics,
-    found: &[EffectName],
-) -> Vec<String> {
+pub(crate) fn warnings(dataset: &Dataset, motion: &Kinematics) -> Vec<String> {
     let mut list = dataset.notes.clone();
-    list.extend(same_force(dataset, found));
     let moving = |test: &dyn Fn(f64) -> bool| {
         motion
             .velocity_lp
@@ -58,14 +51,4 @@ pub(crate) fn reversals(motion: &Kinematics) -> usize {
         .map(|(v, _)| v.signum())
         .collect();
     signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
-}
-
-/// Explanations that no record can tell apart.
-fn same_force(dataset: &Dataset, found: &[EffectName]) -> Vec<String> {
-    let has = |name: EffectName| found.contains(&name) || dataset.declares(name);
-    let text = "offset and coulomb_asymmetry are the same force (a constant one, at rest as in motion): no record tells them apart, and offset stands for both";
-    (has(EffectName::Offset) || has(EffectName::CoulombAsymmetry))
-        .then(|| text.to_owned())
-        .into_iter()
-        .collect()
 }

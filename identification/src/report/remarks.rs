@@ -12,6 +12,7 @@ use crate::report::figures;
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
 mod beyond;
+mod directions;
 
 /// All remarks, the strongest first.
 pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
@@ -38,8 +39,10 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     let difference = findings.stages.difference.as_ref();
     let assumes = difference.is_some_and(Difference::assumes_a_mass);
     list.extend(assumes.then(|| OF_HALF_THE_MASS.to_owned()));
+    let fitted = &findings.models.extended.fitted;
     let found = findings.found.names();
-    list.extend(excitation::warnings(dataset, findings.motion, found));
+    list.extend(directions::of_an_offset(dataset, found, fitted));
+    list.extend(excitation::warnings(dataset, findings.motion));
     list
 }
 
