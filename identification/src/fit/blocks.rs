@@ -7,6 +7,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::fit::rows::{FOLDS, Rows};
 
+/// Two-sided 95 % quantiles of Student's t with one degree of freedom, two, … nine.
+const STUDENT: [f64; FOLDS - 1] = [
+    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262,
+];
+
 /// Ridge, relative to the mean diagonal: keeps equal columns from blowing up.
 const RIDGE: f64 = 1.0e-12;
 
@@ -117,13 +122,16 @@ impl Blocks {
         }
     }
 
-    /// Half widths of 95 % intervals by the jackknife over folds.
+    /// Half widths of 95 % intervals by the jackknife over folds. The folds are few, so the
+    /// quantile is that of Student's t with one degree of freedom less than there are folds (Efron
+    /// and Tibshirani, An Introduction to the Bootstrap, 1993, ch. 12).
     #[must_use]
     pub(crate) fn half_widths(&self) -> Vec<f64> {
         let away = self.away_from_their_mean();
         let of_column = |i: usize| away.iter().map(|away| away[i].powi(2)).sum::<f64>();
+        let quantile = STUDENT[(self.folds.max(2) - 2).min(STUDENT.len() - 1)];
         (0..self.scale.len() - 1)
-            .map(|i| 1.96 * (self.jackknife() * of_column(i)).sqrt())
+            .map(|i| quantile * (self.jackknife() * of_column(i)).sqrt())
             .collect()
     }
 
@@ -372,7 +380,7 @@ mod tests {
         // Without one block each: 3.5, 3.5, 2; mean 3, squares 1.5, times 2/3 is 1.
         let widths = blocks(&[(1.0, 2.0), (1.0, 2.0), (1.0, 5.0)]).half_widths();
         assert_eq!(widths.len(), 1);
-        assert!((widths[0] - 1.96).abs() < 1.0e-9, "{widths:?}");
+        assert!((widths[0] - STUDENT[1]).abs() < 1.0e-9, "{widths:?}");
     }
 
     #[test]
