@@ -22,6 +22,7 @@ mod known;
 mod left;
 mod load;
 mod search;
+mod spring;
 
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
@@ -72,6 +73,8 @@ pub(crate) struct Difference {
     pub gap: Option<f64>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<f64>,
+    /// Half width of its interval; zero where there is none.
+    pub stiffness_half_width: f64,
     /// What the load's own motion tells, where it explains the wind-up better than the effort.
     pub by_the_load: Option<ByTheLoad>,
     /// The largest structure that no accepted effect explains, beyond the counts.
@@ -136,6 +139,8 @@ pub(crate) fn settled(
     if let Some(told) = told {
         difference.stiffness = Some(told.stiffness.value);
         difference.gap = told.gap.map(|gap| gap.value).or(difference.gap);
+    } else {
+        difference.doubt_stiffness(&apart);
     }
     difference.by_the_load = told;
     difference.before_um = apart.rms_um(&difference.declared);
@@ -444,6 +449,7 @@ impl Difference {
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
                 .map(|(way, own)| stiffness(gap, way, own)),
+            stiffness_half_width: 0.0,
             by_the_load: None,
             left: None,
             declared,
@@ -457,12 +463,24 @@ impl Difference {
         self.gap.is_some() || self.stiffness.is_some()
     }
 
-    /// Whether the stiffness goes with a mass of the motor that was assumed: that of the load, and
-    /// with it the stiffness, is between zero and twice of what it was taken for.
+    /// How far the stiffness of a spring without a gap is known: as far as the rows in which the
+    /// motor moves give the same. Where they do not tell it, it may be anything up to twice what it
+    /// was taken for.
+    fn doubt_stiffness(&mut self, apart: &Apart<'_>) {
+        let ways = self.extended.ways();
+        let Some(stiffness) = self.stiffness.filter(|_| !has(&ways, EffectName::Backlash)) else {
+            return;
+        };
+        let seen = spring::on_moving_rows(apart, &ways);
+        let half_width = |seen: Known| seen.half_width + (seen.value - stiffness).abs();
+        self.stiffness_half_width = seen.map_or(stiffness, half_width);
+    }
+
+    /// Whether the stiffness may be anything from zero up.
     #[must_use]
-    pub(crate) fn assumes_a_mass(&self) -> bool {
-        let wound = self.extended.of(EffectName::Compliance);
-        matches!(wound, Some((Way::HalfOf { .. }, _)))
+    pub(crate) fn hardly_knows_the_stiffness(&self) -> bool {
+        let is_vague = |stiffness: f64| self.stiffness_half_width >= stiffness;
+        self.stiffness.is_some_and(is_vague)
     }
 
     /// What no accepted effect explains; impacts between rigid flanks are excused.
@@ -639,6 +657,9 @@ mod tests {
         assert_eq!(difference.found, [EffectName::Compliance]);
         let stiffness = difference.stiffness.unwrap();
         assert!((stiffness / 5.0e6 - 1.0).abs() < 0.02, "{stiffness}");
+        let half_width = difference.stiffness_half_width;
+        assert!((stiffness - 5.0e6).abs() < half_width, "{half_width}");
+        assert!(!difference.hardly_knows_the_stiffness(), "{half_width}");
         assert!(difference.moves_apart() && difference.gap.is_none());
     }
 

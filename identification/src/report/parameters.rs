@@ -249,11 +249,7 @@ fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Ef
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
     let gap = difference.gap.map(|gap| gap_of(gap, length));
     let compliance = difference.stiffness.map(|stiffness| {
-        let half_width = if difference.assumes_a_mass() {
-            stiffness
-        } else {
-            0.0
-        };
+        let half_width = difference.stiffness_half_width;
         Effect::from(Compliance {
             stiffness: about(stiffness, half_width, stiffness_unit),
             damping: None,

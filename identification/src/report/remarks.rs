@@ -37,8 +37,8 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
     let difference = findings.stages.difference.as_ref();
-    let assumes = difference.is_some_and(Difference::assumes_a_mass);
-    list.extend(assumes.then(|| OF_HALF_THE_MASS.to_owned()));
+    let is_vague = difference.is_some_and(Difference::hardly_knows_the_stiffness);
+    list.extend(is_vague.then(|| VAGUE_STIFFNESS.to_owned()));
     let fitted = &findings.models.extended.fitted;
     let found = findings.found.names();
     list.extend(directions::of_an_offset(dataset, found, fitted));
@@ -46,9 +46,7 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     list
 }
 
-const OF_HALF_THE_MASS: &str = "compliance: the record does not tell the motor's mass from the load's; \
-                                the stiffness is that of two equal masses, and between zero and twice \
-                                as much with others: record faster accelerations";
+const VAGUE_STIFFNESS: &str = "compliance: while the motor moves the effort goes so closely with the motion that the record does not tell the motor's mass and friction from the load's; the stiffness may be anything up to twice that of the table: record faster accelerations";
 
 const RAN_AWAY: &str = "the simulated axis ran away (an error beyond its travel): the loop of the \
                         identified model is not stable, and no free run was used as evidence";

@@ -203,6 +203,21 @@ impl<'a> Apart<'a> {
         })
     }
 
+    /// The same, judged where the motor moves: at rest its friction is whatever holds.
+    pub(super) fn where_moving(&self) -> Self {
+        Self {
+            target: self.target.clone(),
+            mask: self.moving(&self.mask),
+            ..*self
+        }
+    }
+
+    /// The rows of a mask in which the motor moves.
+    fn moving(&self, mask: &[bool]) -> Vec<bool> {
+        let pairs = mask.iter().zip(&self.motion.fitted);
+        pairs.map(|(inside, moving)| *inside && *moving).collect()
+    }
+
     /// The same, judged where the states of such ways are known.
     pub(super) fn where_known(&self, ways: &[Way]) -> Self {
         let mut mask = self.mask.clone();
@@ -211,11 +226,7 @@ impl<'a> Apart<'a> {
                 Way::Carried(carried) => {
                     mask = carried.known(self.motion, self.path.position, self.raw, &mask);
                 }
-                // At rest the motor's friction is whatever holds.
-                Way::HalfOf { .. } => {
-                    let pairs = mask.iter_mut().zip(&self.motion.fitted);
-                    pairs.for_each(|(inside, moving)| *inside &= *moving);
-                }
+                Way::HalfOf { .. } => mask = self.moving(&mask),
                 _ => {}
             }
         }
