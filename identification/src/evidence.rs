@@ -26,6 +26,7 @@ pub(crate) mod findings;
 pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;
+pub(crate) mod known_orders;
 pub(crate) mod plausibility;
 pub(crate) mod rank;
 pub(crate) mod residual;

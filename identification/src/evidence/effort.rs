@@ -15,9 +15,12 @@
 //! candidate by the rule by which an effect beats no effect ([`is_enough`]). Of the two models the
 //! second is taken, unless the first beats it by the same rule.
 
+use std::cmp::Ordering;
+
 use axis_model::EffectName;
 
 use crate::evidence::forms::{self, beats};
+use crate::evidence::known_orders::{beats_smooth, unearned};
 use crate::evidence::selection::{
     self, Candidate, Output, Scored, Selection, Vetoed, is_enough, is_large_outside,
 };
@@ -28,10 +31,11 @@ use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::side_by_side::side_by_side;
-use crate::fit::tuning::{self, Pair};
+use crate::fit::tuning::{self, Pair, SMOOTH_DEGREE};
 use crate::model::effects::load_inertia::LoadInertia;
 use crate::model::effects::{self, Effect, LIBRARY, Setting};
 use crate::model::inverse::{Model, Origin, Part};
+use crate::model::name::Called;
 use crate::progress::Step;
 use crate::record::rounding;
 
@@ -41,6 +45,8 @@ struct Effort<'a> {
     pair: Pair<'a>,
     /// When the nearest outsiders may come in.
     outsiders: Outsiders,
+    /// Effects that may not come in at known orders: they have not earned their names.
+    closed: Vec<Called>,
 }
 
 /// When the nearest outsiders may come in.
@@ -56,8 +62,18 @@ enum Outsiders {
 /// `progress` hears of every effect.
 pub(crate) fn select(pair: Pair<'_>, start: &Model, progress: &mut dyn FnMut(&Step)) -> Selection {
     let mut selected = |outsiders: Outsiders| {
-        let output = Effort { pair, outsiders };
-        select_on(&output, start.clone(), progress)
+        let mut output = Effort {
+            pair,
+            outsiders,
+            closed: Vec::new(),
+        };
+        loop {
+            let selection = select_on(&output, start.clone(), progress);
+            match unearned(pair.bench, &selection.model) {
+                Some(called) => output.closed.push(called),
+                None => return selection,
+            }
+        }
     };
     let listed_first = selected(Outsiders::Last);
     if !has_outsider(&listed_first.model) {
@@ -102,9 +118,15 @@ impl Output for Effort<'_> {
             residual: &residual,
         };
         let open = |effect: &&'static dyn Effect| model.is_open_to(*effect);
-        let candidate = |effect: &&'static dyn Effect| {
-            let extended = tuning::extended(self.pair, model, *effect, &setting)?;
+        let judged = |effect: &'static dyn Effect| {
+            let extended = tuning::extended(self.pair, model, effect, &setting)?;
             Some(self.judged(model, &base, extended, round))
+        };
+        let candidate = |effect: &&'static dyn Effect| {
+            let known = effect.at_known_orders();
+            let known = known.filter(|known| !self.closed.contains(&known.called()));
+            let both = [Some(*effect), known].into_iter().flatten();
+            both.filter_map(judged).max_by(better)
         };
         let all: Vec<&'static dyn Effect> = LIBRARY.into_iter().filter(open).collect();
         side_by_side(&all, candidate)
@@ -179,7 +201,8 @@ impl Effort<'_> {
             parameter,
             gain,
             physical: is_physical(effect, parameter, &fitted)
-                && self.beats_look_alikes(model, extended),
+                && self.beats_look_alikes(model, extended)
+                && self.beats_smooth(model, extended),
             accepted: false,
             round,
         };
@@ -199,6 +222,15 @@ impl Effort<'_> {
         })
     }
 
+    /// Whether the last part of a model beats a smooth function of the position, where it has to.
+    fn beats_smooth(&self, model: &Model, extended: &Model) -> bool {
+        let smooth = last(extended).0.smooth();
+        smooth.is_none_or(|smooth| {
+            let with_smooth = model.with(Part::found(smooth, SMOOTH_DEGREE));
+            beats_smooth(self.pair.bench, extended, &with_smooth)
+        })
+    }
+
     /// Whether the last part of a model beats the candidates that it has to.
     fn beats_rivals(&self, model: &Model, candidates: &[Candidate<Model>]) -> bool {
         let rivals = last(model).0.rivals();
@@ -215,6 +247,13 @@ impl Effort<'_> {
         let extended = tuning::settled(low, extended.clone(), effect);
         Gain::of(&low.cross_validate(model), &low.cross_validate(&extended))
     }
+}
+
+/// Of two candidates for one effect: first whether it can be this effect, then what it removes.
+fn better(a: &Candidate<Model>, b: &Candidate<Model>) -> Ordering {
+    let (a, b) = (&a.scored, &b.scored);
+    let physical = a.physical.cmp(&b.physical);
+    physical.then(a.gain.share.total_cmp(&b.gain.share))
 }
 
 fn is_outsider(candidate: &Candidate<Model>) -> bool {
@@ -378,18 +417,26 @@ fn moves_otherwise(gain: &Gain) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::made::{Axis, axis, found, model, usual};
+    use crate::fit::made::{Axis, axis, found, model, on, usual};
     use crate::motion::kinematics::Kinematics;
+    use crate::simulate::made;
     use EffectName::{
-        Coulomb, Delay, FrictionDrift, Inertia, Offset, QuadraticDrag, Stribeck, TorqueRipple,
-        Viscous, ViscousAsymmetry,
+        Coulomb, Delay, FrictionDrift, Inertia, Offset, QuadraticDrag, Stribeck,
+        TorqueConstantRipple, TorqueRipple, Viscous, ViscousAsymmetry,
     };
+    use proptest::prelude::*;
+    use std::f64::consts::{PI, TAU};
 
     const DECLARED: [EffectName; 4] = [Inertia, Viscous, Coulomb, Offset];
 
     const fn effort(pair: Pair<'_>) -> Effort<'_> {
         let outsiders = Outsiders::Last;
-        Effort { pair, outsiders }
+        let closed = Vec::new();
+        Effort {
+            pair,
+            outsiders,
+            closed,
+        }
     }
 
     /// An axis with 60 N s/m more in one direction than in the other.
@@ -493,6 +540,127 @@ mod tests {
         assert!(
             said[0].starts_with("viscous_asymmetry removes "),
             "{said:?}"
+        );
+    }
+
+    /// 20 s there and back, to other ends each time.
+    fn wandering() -> Axis {
+        let path = |t: f64| {
+            let sines = [(0.02, 3.0), (0.012, 4.7), (0.004, 11.0), (0.01, 0.83)];
+            sines.map(|(x, w)| x * (w * t).sin()).iter().sum()
+        };
+        let rows = 0..20_000;
+        on(made::record(
+            1.0e-3,
+            rows.map(|row| path(1.0e-3 * f64::from(row))).collect(),
+        ))
+    }
+
+    /// What is found on an axis that turns so often within its travel, with a force over position,
+    /// −1…1, and the order of each ripple.
+    fn found_over(turns: f64, force: impl Fn(f64) -> f64) -> (Vec<Called>, Vec<f64>) {
+        found_on(turns, |motion, row, u| usual(motion, row) + force(u))
+    }
+
+    fn found_on(
+        turns: f64,
+        law: impl Fn(&Kinematics, usize, f64) -> f64,
+    ) -> (Vec<Called>, Vec<f64>) {
+        let mut axis = wandering();
+        let (low, high) = axis.motion.span();
+        let u = |x: f64| (2.0 * x - low - high) / (high - low);
+        let noise = |row: usize| 0.2 * (0.37 * (row * row % 1013) as f64).sin();
+        axis.put(|motion, row| law(motion, row, u(motion.position_lp[row])) + noise(row));
+        let lead = (high - low) / turns;
+        axis.dataset.lead_m_per_rev = Some(lead);
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let model = select(pair, &model(&DECLARED), &mut |_| ()).model;
+        let waves = model
+            .parts
+            .iter()
+            .filter(|part| part.effect.smooth().is_some());
+        let orders = waves.map(|part| part.parameter * lead).collect();
+        (model.found(), orders)
+    }
+
+    /// A wave of an order on an axis that turns so often within −1…1.
+    fn order_of(turns: f64, order: f64, phase: f64) -> impl Fn(f64) -> f64 {
+        move |u| (PI * turns * order * u + phase).sin()
+    }
+
+    #[test]
+    fn a_wave_of_few_periods_is_found_at_its_order_whatever_its_phase() {
+        for (turns, order) in [(1.65, 1.0), (3.0, 1.0), (0.32, 18.0), (0.15, 36.0)] {
+            for phase in [0.3, 1.9] {
+                let wave = order_of(turns, order, phase);
+                let (found, orders) = found_over(turns, |u| 5.0 * wave(u));
+                assert_eq!(found, [TorqueRipple], "{turns} {order}");
+                assert!(
+                    orders.len() == 1 && (orders[0] - order).abs() < 1.0e-9,
+                    "{orders:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn two_orders_are_found_together_and_no_spring_stays_that_came_first() {
+        let (one, two) = (order_of(1.7, 1.0, 0.3), order_of(1.7, 2.0, 2.1));
+        let (found, mut orders) = found_over(1.7, |u| 8.0 * one(u) + 5.0 * two(u));
+        orders.sort_by(f64::total_cmp);
+        assert_eq!(found, [TorqueRipple]);
+        assert!((orders[0] - 1.0).abs() < 1.0e-9 && (orders[1] - 2.0).abs() < 1.0e-9);
+        assert_eq!(orders.len(), 2);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(8))]
+
+        #[test]
+        fn a_polynomial_over_position_is_no_ripple_however_often_the_axis_turns(
+            own in prop::array::uniform4(-9.0..9.0),
+            turns in 0.25..4.0,
+        ) {
+            let force = |u: f64| own.iter().rev().fold(0.0, |sum, own| u * (own + sum));
+            let (found, _) = found_over(turns, force);
+            prop_assert!(!found.contains(&TorqueRipple.into()));
+        }
+    }
+
+    #[test]
+    fn a_spring_that_stiffens_a_latch_and_a_pendulum_of_less_than_a_turn_are_no_ripple() {
+        let hard = |u: f64| 3.0 * u + 9.0 * u.powi(3);
+        let latch = |u: f64| 40.0 * u * (0.5 - 12.5 * u * u).exp();
+        let pendulum = |u: f64| 9.0 * (3.0 * u + 0.4).sin();
+        for turns in [0.95, 2.2] {
+            for force in [&hard as &dyn Fn(f64) -> f64, &latch] {
+                let (found, _) = found_over(turns, force);
+                assert!(!found.contains(&TorqueRipple.into()), "{turns}");
+            }
+        }
+        let (found, _) = found_over(6.0 / TAU, pendulum);
+        assert!(!found.contains(&TorqueRipple.into()));
+    }
+
+    #[test]
+    fn a_torque_constant_that_ripples_at_a_known_order_is_told_from_friction_that_does() {
+        let (turns, order) = (0.22, 7.0);
+        let wave = order_of(turns, order, 0.8);
+        let (found, orders) = found_on(turns, |motion, row, u| {
+            usual(motion, row) / (1.0 + 0.11 * wave(u))
+        });
+        assert_eq!(found, [TorqueConstantRipple]);
+        assert!((orders[0] - order).abs() < 1.0e-9, "{orders:?}");
+        let (found, _) = found_on(turns, |motion, row, u| {
+            usual(motion, row) + 4.0 * wave(u) * motion.direction[row]
+        });
+        assert!(
+            !found.contains(&TorqueConstantRipple.into()) && !found.contains(&TorqueRipple.into()),
+            "{found:?}"
         );
     }
 

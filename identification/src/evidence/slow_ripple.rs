@@ -6,8 +6,6 @@
 //! integer order per revolution after the other, on held-out blocks, with the thresholds of the
 //! selection.
 
-use std::f64::consts::TAU;
-
 use crate::evidence::inverse_dynamics::Compared;
 use crate::evidence::selection::{self, Candidate, Output, Scored, Selection, is_enough};
 use crate::evidence::thresholds::{
@@ -19,12 +17,12 @@ use crate::fit::blocks::Gain;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::torque_ripple::TorqueRipple;
+use crate::model::effects::wave::HIGHEST_ORDER;
 use crate::model::inverse::{Model, Part};
 use crate::motion::excitation::reversals;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
-use crate::record::units::AxisKind;
 
 /// Torque ripple of an axis that is never slow for long.
 #[derive(Clone, Debug)]
@@ -57,8 +55,6 @@ pub(crate) struct OrderAtReversals {
 
 /// Low-pass of this judgement, Hz.
 const CUTOFF_HZ: f64 = 30.0;
-/// Highest order per revolution that is tried.
-const HIGHEST_ORDER: u32 = 180;
 
 /// Ripple about reversals; `None` where the axis dwells, the revolution is not known, or nothing
 /// was found.
@@ -68,10 +64,7 @@ pub(crate) fn slow_ripple(
     moving: &Kinematics,
     declared: &Model,
 ) -> Option<RippleAtReversals> {
-    let revolution = match dataset.kind {
-        AxisKind::Rotary => TAU,
-        AxisKind::Linear => dataset.lead_m_per_rev?,
-    };
+    let revolution = dataset.revolution()?;
     let limit = dataset.kind.moving_velocity();
     if dwells(&moving.velocity_lp, limit, reversals(moving)) {
         return None;
@@ -265,6 +258,7 @@ mod tests {
     use crate::fit::made::{Axis, axis, model, on, usual};
     use crate::simulate::made::record;
     use axis_model::EffectName::{Coulomb, Inertia, Offset, Viscous};
+    use std::f64::consts::TAU;
 
     #[test]
     fn halves_agree_within_six_tenths_of_their_mean() {

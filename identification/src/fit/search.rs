@@ -4,7 +4,10 @@ use crate::fit::side_by_side::side_by_side;
 
 /// The value of least error.
 #[must_use]
-pub(crate) fn smallest(values: &[f64], sse: &(dyn Fn(f64) -> f64 + Sync)) -> Option<f64> {
+pub(crate) fn smallest<T: Copy + Send + Sync>(
+    values: &[T],
+    sse: &(dyn Fn(T) -> f64 + Sync),
+) -> Option<T> {
     side_by_side(values, |value| (sse(*value), *value))
         .into_iter()
         .min_by(|a, b| a.0.total_cmp(&b.0))

@@ -17,6 +17,9 @@ const DELAY_CUTOFF_HZ: f64 = 30.0;
 const RENEWALS: usize = 3;
 /// First step of the search among forms: halved until it is one.
 const LARGEST_STEP_OF_FORMS: f64 = 32.0;
+/// Degree of the smooth function of the position that no wave of a known order may stand for: that
+/// of a spring with what it stiffens by, of either sign.
+pub(crate) const SMOOTH_DEGREE: f64 = 4.0;
 /// Rounds of the joint refinement.
 const ROUNDS: usize = 2;
 
@@ -139,7 +142,8 @@ pub(crate) fn prepare(pair: Pair<'_>, model: &mut Model) {
     refine(pair, model);
 }
 
-/// Puts a nonlinear parameter where its grid leaves the least beside the other parts.
+/// Puts a nonlinear parameter where its grid, or that of its known orders, leaves the least beside
+/// the other parts.
 fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
     let effect = model.parts[place].effect;
     let bench = pair.of(effect);
@@ -148,12 +152,30 @@ fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
         dataset: bench.dataset,
         residual: &residual,
     };
-    let grid = effect.grid(bench.motion, &setting);
-    if grid.len() < 2 {
+    let choices = |effect: &'static dyn Effect| {
+        let grid = effect.grid(bench.motion, &setting).into_iter();
+        grid.map(move |parameter| (effect, parameter))
+    };
+    let known: Vec<_> = effect
+        .at_known_orders()
+        .into_iter()
+        .flat_map(choices)
+        .collect();
+    let all: Vec<_> = choices(effect).chain(known.iter().copied()).collect();
+    if all.len() < 2 {
         return;
     }
-    let at = |parameter: f64| settled(bench, model.with_parameter(place, parameter), effect);
-    if let Some(best) = smallest(&grid, &|parameter| bench.sse(&at(parameter))) {
+    let at = |(effect, parameter): (&'static dyn Effect, f64)| {
+        let started = model.with_form(place, effect);
+        settled(bench, started.with_parameter(place, parameter), effect)
+    };
+    // A spring that is not in the model must not decide which order is the declared one.
+    let beside = known.first().and_then(|(known, _)| known.smooth());
+    let sse = |choice| match beside {
+        Some(smooth) => bench.sse(&at(choice).with(Part::found(smooth, SMOOTH_DEGREE))),
+        None => bench.sse(&at(choice)),
+    };
+    if let Some(best) = smallest(&all, &sse) {
         *model = at(best);
     }
 }

@@ -18,6 +18,7 @@ pub(crate) mod delay;
 pub(crate) mod friction_drift;
 pub(crate) mod hum;
 pub(crate) mod inertia;
+pub(crate) mod known_order;
 pub(crate) mod load_dependent_friction;
 pub(crate) mod load_inertia;
 pub(crate) mod logged_late;
@@ -250,6 +251,18 @@ pub(crate) trait Effect: Sync {
     /// What tells its forms apart: an exponent.
     fn form(&self) -> f64 {
         0.0
+    }
+
+    /// The same effect at the integer orders per revolution that have too few periods within the
+    /// travel for their period to be found ([`known_order`]).
+    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
+        None
+    }
+
+    /// What it must not be taken for where its nonlinear parameter is known and not found: the same
+    /// with a polynomial over position, whose nonlinear parameter is the degree.
+    fn smooth(&self) -> Option<&'static dyn Effect> {
+        None
     }
 
     /// Start values of the nonlinear parameter; one dummy value where there is none.

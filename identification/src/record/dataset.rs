@@ -1,5 +1,6 @@
 //! A dataset: what is known of an axis (`dataset.toml`), and its records beside that file.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use axis_model::EffectName;
@@ -116,6 +117,16 @@ impl Dataset {
             held_back: records.held_back,
             full_band: false,
             notes,
+        }
+    }
+
+    /// Way of a revolution, where it is known: of the motor on a linear axis, of the axis itself on
+    /// a rotary one.
+    #[must_use]
+    pub(crate) const fn revolution(&self) -> Option<f64> {
+        match self.kind {
+            AxisKind::Linear => self.lead_m_per_rev,
+            AxisKind::Rotary => Some(TAU),
         }
     }
 

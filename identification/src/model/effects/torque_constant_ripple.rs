@@ -12,17 +12,39 @@
 use axis_model::EffectName;
 
 use super::by_motion::{ByMotion, Usual};
+use super::known_order::KnownOrder;
+use super::position_dependent_inertia::PositionDependentInertia;
+use super::torque_ripple::TorqueRipple;
 use super::wave::{self, Names, Weight};
-use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
+use super::{
+    Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, polynomial,
+};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// −u (a cos(2π k x) + b sin(2π k x)).
 pub(crate) struct TorqueConstantRipple;
 
-/// At least so many periods within the travel: fewer are no period yet, and the wave would be taken
-/// for a part of the effort itself.
+/// A torque constant that changes smoothly over the travel: −u (a₁ T₁ + a₂ T₂ + …). The nonlinear
+/// parameter is the degree.
+pub(crate) struct SmoothTorqueConstant;
+
+/// Friction with a wave over position: sign(v) (a cos(2π k x) + b sin(2π k x)). Where friction is
+/// most of the effort, it looks like a torque constant that ripples.
+pub(crate) struct FrictionWave;
+
+/// At least so many periods within the travel for a period that is searched: fewer are no period
+/// yet, and the wave would be taken for a part of the effort itself.
 const FEWEST_PERIODS: f64 = 3.0;
+
+/// The orders with fewer periods. A wave of the same period that is a force, an inertia or friction
+/// is no torque constant's.
+static AT_KNOWN_ORDERS: KnownOrder = KnownOrder {
+    of: &TorqueConstantRipple,
+    below_periods: FEWEST_PERIODS,
+    smooth: &SmoothTorqueConstant,
+    look_alikes: &[&TorqueRipple, &PositionDependentInertia, &FrictionWave],
+};
 /// Half the torque: no motor is made so.
 const LARGEST: f64 = 0.5;
 /// Rounds in which the effort and its wave are made to agree: each leaves a tenth of the error, as
@@ -87,6 +109,10 @@ impl Effect for TorqueConstantRipple {
         true
     }
 
+    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
+        Some(&AT_KNOWN_ORDERS)
+    }
+
     fn acts_on_motor(&self) -> bool {
         true
     }
@@ -142,6 +168,56 @@ impl Effect for TorqueConstantRipple {
             rest: name,
         };
         wave::named(naming, &names, String::new())
+    }
+}
+
+impl Effect for SmoothTorqueConstant {
+    fn called(&self) -> Called {
+        Called::Structure("smooth torque constant over position")
+    }
+
+    fn equation(&self) -> &'static str {
+        "-u (a1 x + a2 x^2 + ...), u = effort by motion, x = position over the travel, -1 to 1"
+    }
+
+    fn columns(&self, motion: &Kinematics, dataset: &Dataset, degree: f64) -> Vec<Vec<f64>> {
+        let efforts = ByMotion::of(motion).efforts();
+        let positions = polynomial::over_travel(motion, dataset);
+        let pairs = positions.zip(efforts.iter().map(|effort| -effort));
+        polynomial::of_degree(pairs, self.width(degree))
+    }
+
+    fn width(&self, degree: f64) -> usize {
+        degree as usize
+    }
+
+    fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
+        Vec::new()
+    }
+}
+
+impl Effect for FrictionWave {
+    fn called(&self) -> Called {
+        Called::Structure("friction with a wave over position")
+    }
+
+    fn equation(&self) -> &'static str {
+        "sign(v) (a cos(2 pi k x) + b sin(2 pi k x))"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
+        wave::columns(motion, k, |row| Weight {
+            wave: motion.direction[row],
+            half_slope: 0.0,
+        })
+    }
+
+    fn width(&self, _: f64) -> usize {
+        2
+    }
+
+    fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
+        Vec::new()
     }
 }
 

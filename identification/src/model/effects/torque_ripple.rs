@@ -1,10 +1,13 @@
 //! Torque ripple: a force periodic in motor position, `a cos(2π k x) + b sin(2π k x)`.
 //!
 //! The period is searched, so the lead need not be known; where it is, the order per revolution is
-//! reported.
+//! reported. An integer order per revolution with fewer periods within the travel than a search
+//! needs is a candidate too ([`KnownOrder`]): cogging on half a turn, a weight off the centre.
 
 use axis_model::EffectName;
 
+use super::known_order::KnownOrder;
+use super::spring::SmoothForce;
 use super::wave::{self, Names, Weight};
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
@@ -13,8 +16,17 @@ use crate::record::dataset::Dataset;
 /// Cosine and sine of position.
 pub(crate) struct TorqueRipple;
 
-/// At least so many periods within the travel: fewer are position dependence.
+/// At least so many periods within the travel for a period that is searched: fewer are position
+/// dependence, unless the order is known.
 const FEWEST_PERIODS: f64 = 8.0;
+
+/// The orders with fewer periods.
+static AT_KNOWN_ORDERS: KnownOrder = KnownOrder {
+    of: &TorqueRipple,
+    below_periods: FEWEST_PERIODS,
+    smooth: &SmoothForce,
+    look_alikes: &[],
+};
 
 impl Effect for TorqueRipple {
     fn called(&self) -> Called {
@@ -35,6 +47,10 @@ impl Effect for TorqueRipple {
 
     fn is_tuned(&self) -> bool {
         true
+    }
+
+    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
+        Some(&AT_KNOWN_ORDERS)
     }
 
     fn acts_on_motor(&self) -> bool {

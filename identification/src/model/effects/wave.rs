@@ -8,11 +8,11 @@
 //! The wave number k is scanned by the projection of the residual on both columns, which takes one
 //! pass over the samples for each k. The least squares of the whole model decide between the best.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::turning::{RENEWED, Turning, wave};
 use super::{Kinematics, Named, Naming, Setting};
-use crate::record::units::AxisKind;
+use crate::record::dataset::Dataset;
 
 /// The low-pass leaves nothing of faster waves, Hz.
 const FASTEST_HZ: f64 = 70.0;
@@ -26,6 +26,11 @@ const MOST_SCANNED: f64 = 20_000.0;
 const STRIDE: usize = 4;
 /// The scan takes so many steps of k for a period more or less within the travel.
 const STEPS_PER_PERIOD: f64 = 4.0;
+/// Highest order per revolution that is tried: a tooth or a slot every two degrees.
+pub(crate) const HIGHEST_ORDER: u32 = 180;
+/// An integer order shows from so many periods within the travel on. Below one the wave is a line
+/// and a parabola, and up to here there is no second time that a period could come back for.
+pub(crate) const FEWEST_PERIODS_OF_AN_ORDER: f64 = 1.3;
 /// So many of the strongest wave numbers are fitted.
 const FITTED: usize = 3;
 
@@ -108,6 +113,26 @@ fn travel(motion: &Kinematics) -> f64 {
 #[must_use]
 pub(crate) fn of_periods(motion: &Kinematics, periods: f64) -> f64 {
     periods / travel(motion)
+}
+
+/// How often a wave number has its period within the travel.
+#[must_use]
+pub(crate) fn periods(motion: &Kinematics, k: f64) -> f64 {
+    k * travel(motion)
+}
+
+/// Wave numbers of the integer orders per revolution with fewer than so many periods within the
+/// travel; none where the revolution is not known.
+#[must_use]
+pub(crate) fn of_orders(motion: &Kinematics, dataset: &Dataset, below_periods: f64) -> Vec<f64> {
+    let Some(revolution) = dataset.revolution() else {
+        return Vec::new();
+    };
+    let wave_numbers = (1..=HIGHEST_ORDER).map(|order| f64::from(order) / revolution);
+    let shown = FEWEST_PERIODS_OF_AN_ORDER..below_periods;
+    wave_numbers
+        .filter(|k| shown.contains(&periods(motion, *k)))
+        .collect()
 }
 
 /// Wave numbers about those with the strongest projection of the residual, from so many periods
@@ -240,8 +265,8 @@ pub(crate) fn named(naming: &Naming<'_>, names: &Names<'_>, unit: String) -> Vec
         unit,
     };
     let k = naming.parameter;
-    let order = per_revolution(naming)
-        .map(|order| naming.nonlinear(&name("order"), order, "per rev".into()));
+    let revolution = naming.dataset.revolution();
+    let order = revolution.map(|way| naming.nonlinear(&name("order"), k * way, "per rev".into()));
     let period = naming.nonlinear(&name("period"), 1.0 / k, naming.length().into());
     // a cos θ + b sin θ = A sin(θ + φ).
     let phase = Named {
@@ -254,18 +279,12 @@ pub(crate) fn named(naming: &Naming<'_>, names: &Names<'_>, unit: String) -> Vec
     all.into_iter().flatten().collect()
 }
 
-/// Periods in a revolution of the motor.
-fn per_revolution(naming: &Naming<'_>) -> Option<f64> {
-    let k = naming.parameter;
-    match naming.dataset.kind {
-        AxisKind::Linear => naming.dataset.lead_m_per_rev.map(|lead| k * lead),
-        AxisKind::Rotary => Some(k * TAU),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::made::{Axis, axis, usual};
+    use crate::record::units::AxisKind;
+    use std::f64::consts::TAU;
 
     #[test]
     fn a_value_and_half_its_slope_are_those_of_the_wave() {
@@ -283,5 +302,39 @@ mod tests {
         let list = [5.0, 5.5, 9.0, 4.0, 2.0, 20.0];
         assert_eq!(apart(list.into_iter(), 1.0), [5.0, 9.0, 2.0]);
         assert_eq!(apart([1.0, 1.2].into_iter(), 1.0), [1.0]);
+    }
+
+    #[test]
+    fn integer_orders_are_candidates_from_1_3_periods_to_where_the_search_begins() {
+        let mut axis = axis(usual);
+        let orders = |axis: &Axis| -> Vec<f64> {
+            let list = of_orders(&axis.motion, &axis.dataset, 8.0).into_iter();
+            list.map(|k| k * axis.dataset.revolution().unwrap())
+                .collect()
+        };
+        assert!(of_orders(&axis.motion, &axis.dataset, 8.0).is_empty());
+        for (turns, wanted) in [
+            (0.65, (2, 12)),
+            (1.29, (2, 6)),
+            (1.31, (1, 6)),
+            (3.99, (1, 2)),
+            (9.0, (1, 0)),
+        ] {
+            axis.dataset.lead_m_per_rev = Some(travel(&axis.motion) / turns);
+            let wanted: Vec<f64> = (wanted.0..=wanted.1).map(f64::from).collect();
+            let orders = orders(&axis);
+            assert_eq!(orders.len(), wanted.len(), "{turns}: {orders:?}");
+            let pairs = orders.iter().zip(&wanted);
+            assert!(
+                pairs
+                    .into_iter()
+                    .all(|(order, wanted)| (order - wanted).abs() < 1.0e-9)
+            );
+        }
+        // An axis that turns has a revolution of its own; its 0.05 rad show orders from 180 on.
+        axis.dataset.kind = AxisKind::Rotary;
+        let least = FEWEST_PERIODS_OF_AN_ORDER * TAU / travel(&axis.motion);
+        let first = orders(&axis).first().copied();
+        assert_eq!(first, (least <= 180.0).then(|| least.ceil()));
     }
 }
