@@ -35,7 +35,7 @@ use self::columns::{Apart, FittedWays, Way};
 use self::flanks::Judged;
 pub(crate) use self::known::Known;
 use self::left::Left;
-use self::search::{best_gap, best_pitch};
+use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
     DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,
@@ -44,6 +44,7 @@ use crate::evidence::thresholds::{
 use crate::evidence::verdict::Reason;
 use crate::fit::blocks::{Fit, Gain};
 use crate::fit::plain::Plain;
+use crate::model::effects::wave;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
@@ -97,6 +98,7 @@ pub(crate) fn difference(
         before: 0.0,
         springy: OnceCell::new(),
         is_rotary: dataset.kind == AxisKind::Rotary,
+        orders: wave::of_orders(motion, dataset, FEWEST_PERIODS),
     };
     let declared = output.declared(dataset);
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
@@ -167,6 +169,8 @@ struct MotorLoad<'a> {
     inertia: f64,
     /// Whether positions are angles of a turn.
     is_rotary: bool,
+    /// Wave numbers of the orders per revolution that have too few periods for a search.
+    orders: Vec<f64>,
 }
 
 impl Output for MotorLoad<'_> {
@@ -272,8 +276,9 @@ impl MotorLoad<'_> {
         )
     }
 
-    /// A pitch error beside other ways: of the strongest period within the travel, or of an angle
-    /// encoder that sits off its centre (one period a turn) or between two heads (two).
+    /// A pitch error beside other ways: of the strongest period within the travel, of an integer
+    /// order per revolution with fewer periods, or of an angle encoder that sits off its centre (one
+    /// period a turn) or between two heads (two).
     fn best_pitch(&self, ways: &[Way]) -> Option<Way> {
         let apart = &self.apart;
         let scanned = best_pitch(apart, &apart.fit(ways));
@@ -287,7 +292,8 @@ impl MotorLoad<'_> {
             per_length: periods / TAU,
         });
         let left = |way: &Way| apart.blocks(&[ways, &[*way]].concat()).fit().sse;
-        let all = scanned.into_iter().chain(of_turns);
+        let of_orders = best_order(apart, ways, &self.orders);
+        let all = scanned.into_iter().chain(of_turns).chain(of_orders);
         all.min_by(|a, b| left(a).total_cmp(&left(b)))
     }
 
@@ -585,6 +591,35 @@ mod tests {
     }
 
     #[test]
+    fn an_order_of_few_periods_is_a_pitch_error_and_a_smooth_error_over_the_travel_is_none() {
+        let position = two_sines(6000);
+        let ends = position.iter().fold((0.0_f64, 0.0_f64), |(low, high), x| {
+            (low.min(*x), high.max(*x))
+        });
+        let travel = ends.1 - ends.0;
+        let lead = travel / 2.3;
+        let found = |error: &dyn Fn(f64) -> f64| {
+            let mut axis = axis(|x, row| 1.0e-6 * error(x[row]));
+            axis.dataset.lead_m_per_rev = Some(lead);
+            let difference = judged(&axis);
+            (difference.found.clone(), difference.pitch())
+        };
+        let (names, pitch) = found(&|x| 3.0 * (TAU * x / lead + 0.4).cos());
+        assert_eq!(names, [EffectName::PitchError]);
+        let (amplitude, per_length) = pitch.unwrap();
+        assert!((amplitude / 3.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
+        assert!((per_length * lead - 1.0).abs() < 1.0e-9, "{per_length}");
+        let u = |x: f64| 2.0 * x / travel;
+        for smooth in [
+            &(|x| 4.0 * u(x)) as &dyn Fn(f64) -> f64,
+            &|x| 9.0 * u(x).powi(2) - 4.0 * u(x),
+            &|x| 20.0 * u(x).powi(4) - 5.0 * u(x).powi(3),
+        ] {
+            assert!(!found(smooth).0.contains(&EffectName::PitchError));
+        }
+    }
+
+    #[test]
     fn of_two_scales_with_other_zeros_nothing_is_found() {
         let difference = judged(&axis(|_, _| 0.0));
         assert!(difference.found.is_empty() && !difference.moves_apart());
@@ -700,6 +735,7 @@ mod tests {
             before: 100.0,
             springy: OnceCell::new(),
             is_rotary: false,
+            orders: Vec::new(),
             inertia: 90.0,
         }
     }

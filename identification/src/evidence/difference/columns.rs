@@ -249,9 +249,13 @@ impl<'a> Apart<'a> {
 
     /// Gram matrices over the samples that are judged.
     pub(crate) fn blocks(&self, ways: &[Way]) -> Blocks {
-        let design = self.design(ways);
-        let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-        Blocks::new(&columns, &self.target, &self.mask, self.motion.period_s)
+        self.blocks_of(&self.design(ways), &self.target)
+    }
+
+    /// The same of any columns and target.
+    pub(super) fn blocks_of(&self, columns: &[Vec<f64>], target: &[f64]) -> Blocks {
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        Blocks::new(&columns, target, &self.mask, self.motion.period_s)
     }
 
     /// Errors on blocks that were held out of the fit.

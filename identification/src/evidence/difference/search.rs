@@ -4,10 +4,13 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::columns::{Apart, FittedWays, Way};
-use crate::evidence::thresholds::FEWEST_COUNTS;
+use crate::evidence::known_orders::degree_beside;
+use crate::evidence::selection::is_certain;
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
+use crate::fit::blocks::Gain;
 use crate::fit::plain::Plain;
 use crate::fit::search::{descend, smallest};
-use crate::model::effects::geometric;
+use crate::model::effects::{geometric, polynomial, wave};
 use crate::simulate::load::Behind;
 
 /// Widths that are tried, between the smallest that counts and a hundred times that, or a
@@ -127,8 +130,11 @@ fn left_by(apart: &Apart<'_>, ways: &[Way], behind: Behind) -> f64 {
 
 /// Every so many samples are scanned for a pitch error.
 const STRIDE: usize = 8;
-/// Fewest half periods within the travel: fewer are no pitch.
-const FEWEST_HALF_PERIODS: usize = 8;
+/// Fewest periods within the travel of a pitch that is searched: fewer are no pitch, unless the
+/// order per revolution is known.
+pub(crate) const FEWEST_PERIODS: f64 = 4.0;
+/// The same in half periods.
+const FEWEST_HALF_PERIODS: usize = 2 * FEWEST_PERIODS as usize;
 /// Most half periods that are scanned, and those of a pitch of half a millimetre.
 const MOST_HALF_PERIODS: usize = 4000;
 const HALF_PERIODS_PER_LENGTH: f64 = 4000.0;
@@ -148,6 +154,34 @@ pub(crate) fn best_pitch(apart: &Apart<'_>, fitted: &FittedWays) -> Option<Way> 
     let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
     let per_length = strongest(&samples, fine)?;
     Some(Way::Pitch { per_length })
+}
+
+/// Of the wave numbers of known orders the one that leaves least beside other ways, where it beats
+/// what a smooth error over the travel would leave: a scale that stretches, a bed that sags.
+pub(crate) fn best_order(apart: &Apart<'_>, ways: &[Way], orders: &[f64]) -> Option<Way> {
+    let residual = apart.residual(&apart.fit(ways));
+    let left = |per_length: f64| {
+        let pair = [Way::Constant, Way::Pitch { per_length }];
+        apart.blocks_of(&apart.design(&pair), &residual).fit().sse
+    };
+    let per_length = smallest(orders, &left)?;
+    let pitch = Way::Pitch { per_length };
+    let degree = degree_beside(wave::periods(apart.motion, per_length), 1);
+    let design = [apart.design(ways), smooth(apart, degree)].concat();
+    let smooth = apart.blocks_of(&design, &apart.target).cross_validate();
+    let fit = apart.cross_validate(&[ways, &[pitch]].concat());
+    let gain = Gain::of(&smooth, &fit);
+    let in_sample = 1.0 - fit.sse / smooth.sse;
+    let is_better = gain.share.min(in_sample) >= DIFFERENCE_SHARE && is_certain(&gain);
+    is_better.then_some(pitch)
+}
+
+/// Columns of a polynomial over the travel, low-passed.
+fn smooth(apart: &Apart<'_>, degree: usize) -> Vec<Vec<f64>> {
+    let (low, high) = apart.motion.span();
+    let scaled = |x: &f64| ((2.0 * x - low - high) / (high - low), 1.0);
+    let columns = polynomial::of_degree(apart.path.position.iter().map(scaled), degree);
+    apart.motion.all_low_passed(&columns)
 }
 
 /// Half periods within a travel that are scanned.
