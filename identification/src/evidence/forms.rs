@@ -41,10 +41,10 @@ pub(crate) fn chosen(pair: Pair<'_>, mut model: Model) -> Model {
 
 /// The model with the choice of a part that the held-out error asks for. That is the best of those
 /// with one or two coefficients, unless one with more of them beats it, and removes as much as a
-/// nearest outsider has to: such a curve can be anything.
+/// nearest outsider has to: such a curve can be anything. What repeats chooses where, not how much.
 fn with_best_choice(bench: &Bench<'_>, model: Model, place: usize) -> Model {
     let effect = model.parts[place].effect;
-    if effect.is_tuned() {
+    if effect.is_tuned() || effect.repeats() {
         return model;
     }
     let setting = Setting {
