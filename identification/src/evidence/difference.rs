@@ -277,8 +277,8 @@ impl MotorLoad<'_> {
     }
 
     /// A pitch error beside other ways: of the strongest period within the travel, of an integer
-    /// order per revolution with fewer periods, or of an angle encoder that sits off its centre (one
-    /// period a turn) or between two heads (two).
+    /// order per revolution with fewer periods, or of an angle encoder that sits off its centre
+    /// (one period a turn) or between two heads (two).
     fn best_pitch(&self, ways: &[Way]) -> Option<Way> {
         let apart = &self.apart;
         let scanned = best_pitch(apart, &apart.fit(ways));

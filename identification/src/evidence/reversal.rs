@@ -48,8 +48,8 @@ pub(crate) struct Presliding {
     pub t: f64,
     /// Whether presliding is accepted.
     pub accepted: bool,
-    /// What the same bristle leaves of another record, over what rigid friction leaves there; `None`
-    /// where that has no reversals.
+    /// What the same bristle leaves of another record, over what rigid friction leaves there;
+    /// `None` where that has no reversals.
     pub elsewhere: Option<f64>,
 }
 

@@ -41,8 +41,8 @@ pub(crate) const NAMELESS_SHARE: f64 = UNEXPLAINED_SHARE;
 pub(crate) const OUTSIDER: (f64, f64) = (2.0 * EFFORT_SHARE, 2.0 * EFFORT_PERCENT);
 
 /// Largest error on another record with an effect over that without it. Chosen: what holds on one
-/// record only is no effect of the axis, but a little more error is no proof of that. A bristle that
-/// is one leaves at most a quarter there.
+/// record only is no effect of the axis, but a little more error is no proof of that. A bristle
+/// that is one leaves at most a quarter there.
 pub(crate) const VETO_RATIO: f64 = 1.05;
 
 /// Smallest part of what an effect should remove from another record, by its size on the first one,

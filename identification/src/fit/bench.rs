@@ -210,8 +210,8 @@ impl<'a> Bench<'a> {
         span.outside(&own).iter().map(|value| value * value).sum()
     }
 
-    /// Errors on held-out blocks of a fit that may move, linearised, the nonlinear parameter and the
-    /// form of a part.
+    /// Errors on held-out blocks of a fit that may move, linearised, the nonlinear parameter and
+    /// the form of a part.
     #[must_use]
     pub(crate) fn cross_validate_about(&self, fitted: &Fitted, place: usize) -> Fit {
         let searched = [Searched::Parameter, Searched::Form].map(|what| (place, what));

@@ -145,8 +145,8 @@ fn over_position(table: &mut Table, coulomb: Option<f64>, travel: Travel) {
     }
 }
 
-/// Replaces the knots of a curve by the parabola that is nearest to them, without its constant: that
-/// is a part of the friction's level.
+/// Replaces the knots of a curve by the parabola that is nearest to them, without its constant:
+/// that is a part of the friction's level.
 fn parabola_of_a_curve(table: &mut Table) {
     let key = |place: usize| knot_name(place + 1);
     let known: Vec<Estimate> = (0..).map_while(|place| table.remove(&key(place))).collect();
