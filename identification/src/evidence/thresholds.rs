@@ -82,9 +82,9 @@ pub(crate) const UNEXPLAINED_T: f64 = 1.0;
 pub(crate) const UNEXPLAINED_PERCENT: f64 = 0.3;
 
 /// Structure of the kind of an effect that the model has does not count below this part of that
-/// effect's own size: the axis has another shape of it. Axes of unlike make leave up to
-/// a seventh of their effects so (exponential for Gaussian Stribeck falls, worn ways); a cubic drag
-/// leaves a fifth of a quadratic one, and has to count.
+/// effect's own size: the axis has another shape of it. Axes of unlike make left up to a seventh
+/// of their effects so (exponential Stribeck falls, worn ways) before those had forms of their own;
+/// a cubic drag leaves a fifth of a quadratic one, and has to count.
 pub(crate) const SHAPE_PART: f64 = 1.0 / 6.0;
 
 /// From this size on, percent of the effort of motion, a structure counts even where it is gone at
