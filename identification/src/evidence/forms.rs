@@ -51,7 +51,11 @@ fn with_best_choice(bench: &Bench<'_>, model: Model, place: usize) -> Model {
         dataset: bench.dataset,
         residual: &[],
     };
-    let choices = effect.grid(bench.motion, &setting).into_iter();
+    let choices = effect.grid(bench.motion, &setting);
+    if choices.len() < 2 {
+        return model;
+    }
+    let choices = choices.into_iter();
     let (plain, curves): (Vec<f64>, Vec<f64>) =
         choices.partition(|choice| effect.width(*choice) <= MOST_COEFFICIENTS);
     let error = |choice: f64| {
@@ -101,12 +105,13 @@ fn of_part(pair: Pair<'_>, model: Model, place: usize, usual: &'static dyn Effec
 /// The model with another curve of a part, where that beats the one it has.
 fn curved(pair: Pair<'_>, model: Model, place: usize) -> Model {
     let bench = pair.bench;
+    let before = bench.cross_validate(&model);
     let about = bench.cross_validate_about(&bench.fit(&model), place);
-    if !is_enough(&Gain::of(&bench.cross_validate(&model), &about)) {
+    if !is_enough(&Gain::of(&before, &about)) {
         return model;
     }
     let other = tuning::reshaped(pair, &model, place);
-    if beats(bench, &other, &model) {
+    if is_enough(&Gain::of(&before, &bench.cross_validate(&other))) {
         other
     } else {
         model

@@ -12,8 +12,8 @@ use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::fitted::{Estimate, Fitted, Searched, Term};
 use crate::fit::rows::Rows;
 use crate::fit::span::Span;
-use crate::model::effects::Effect;
 use crate::model::effects::torque_saturation::Saturation;
+use crate::model::effects::{Effect, place_among_forms};
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
@@ -424,8 +424,7 @@ impl Design {
 /// The forms of an effect on both sides of its own; at an end its own.
 fn neighbours(effect: &'static dyn Effect) -> (&'static dyn Effect, &'static dyn Effect) {
     let forms = effect.forms();
-    let own = |form: &&'static dyn Effect| form.form() == effect.form();
-    let place = forms.iter().position(own).unwrap_or(0);
+    let place = place_among_forms(effect).unwrap_or(0);
     let at = |place: usize| forms.get(place).copied().unwrap_or(effect);
     (at(place.saturating_sub(1)), at(place + 1))
 }

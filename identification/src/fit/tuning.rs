@@ -7,7 +7,7 @@
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Fitted;
 use crate::fit::search::{descend, smallest};
-use crate::model::effects::{Effect, Setting, Stage};
+use crate::model::effects::{Effect, Setting, Stage, place_among_forms};
 use crate::model::inverse::{Model, Part};
 
 /// Cut-off for the search of a delay: quantisation comes back through the controller as effort that
@@ -218,8 +218,7 @@ pub(crate) fn refined_at(pair: Pair<'_>, mut model: Model, place: usize) -> Mode
 pub(crate) fn reshaped(pair: Pair<'_>, model: &Model, place: usize) -> Model {
     let part = &model.parts[place];
     let (bench, forms) = (pair.of(part.effect), part.effect.forms());
-    let own = |form: &&'static dyn Effect| form.form() == part.effect.form();
-    let Some(start) = forms.iter().position(own) else {
+    let Some(start) = place_among_forms(part.effect) else {
         return model.clone();
     };
     let at = |form: f64| refined_at(pair, model.with_form(place, forms[form as usize]), place);

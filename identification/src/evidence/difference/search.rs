@@ -159,6 +159,9 @@ pub(crate) fn best_pitch(apart: &Apart<'_>, fitted: &FittedWays) -> Option<Way> 
 /// Of the wave numbers of known orders the one that leaves least beside other ways, where it beats
 /// what a smooth error over the travel would leave: a scale that stretches, a bed that sags.
 pub(crate) fn best_order(apart: &Apart<'_>, ways: &[Way], orders: &[f64]) -> Option<Way> {
+    if orders.is_empty() {
+        return None;
+    }
     let residual = apart.residual(&apart.fit(ways));
     let left = |per_length: f64| {
         let pair = [Way::Constant, Way::Pitch { per_length }];
