@@ -446,7 +446,7 @@ mod tests {
         velocity: 0.3,
         acceleration: 2.0,
     };
-    const ROOM: Room = Room {
+    pub(super) const ROOM: Room = Room {
         low: -0.2,
         high: 0.3,
         pace: PACE,
@@ -490,9 +490,9 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_programme_keeps_to_its_room_and_its_pace_and_lasts() {
-        for (n, path) in programmes().iter().enumerate() {
+    /// Whatever is made for [`ROOM`] stays within it, within its pace, and lasts.
+    pub(super) fn assert_keeps_to_its_room(programmes: &[Path]) {
+        for (n, path) in programmes.iter().enumerate() {
             assert!(path.end_s() >= 20.0, "{n}");
             for k in 0..20_000 {
                 let at = path.at(f64::from(k) * 1.0e-3);
@@ -501,6 +501,11 @@ mod tests {
                 assert!(at.acceleration.abs() <= 2.0001, "{n} {at:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_programme_keeps_to_its_room_and_its_pace_and_lasts() {
+        assert_keeps_to_its_room(&programmes());
     }
 
     #[test]

@@ -141,17 +141,8 @@ impl Room {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::{ROOM, assert_keeps_to_its_room};
     use super::*;
-
-    const ROOM: Room = Room {
-        low: -0.2,
-        high: 0.3,
-        pace: Pace {
-            velocity: 0.3,
-            acceleration: 2.0,
-        },
-        duration_s: 20.0,
-    };
 
     fn programmes() -> [Path; 5] {
         let mut draw = Draw::of("trades", 1);
@@ -166,15 +157,7 @@ mod tests {
 
     #[test]
     fn a_motion_keeps_to_its_room_and_its_pace_and_lasts() {
-        for (n, path) in programmes().iter().enumerate() {
-            assert!(path.end_s() >= 20.0, "{n}");
-            for k in 0..20_000 {
-                let at = path.at(f64::from(k) * 1.0e-3);
-                assert!((-0.201..=0.301).contains(&at.position), "{n} {at:?}");
-                assert!(at.velocity.abs() <= 0.3001, "{n} {at:?}");
-                assert!(at.acceleration.abs() <= 2.0001, "{n} {at:?}");
-            }
-        }
+        assert_keeps_to_its_room(&programmes());
     }
 
     #[test]
