@@ -9,6 +9,7 @@
 //! | PI | the forms of [`pi`] |
 //! | lead | the compensator of [`lead`] + M·a_ref |
 //! | sliding mode | that of [`sliding`] + M·a_ref |
+//! | rejecting | PD with the observer of [`rejecting`] + M·a_ref |
 //! | feedforward | M·a_ref + viscous·v_ref, with nothing measured |
 //! | open | the effort of the programme |
 //!
@@ -18,10 +19,12 @@
 
 pub mod lead;
 pub mod pi;
+pub mod rejecting;
 pub mod sliding;
 
 use crate::control::lead::{Lead, LeadState};
 use crate::control::pi::{Lag, Pi, PiState};
+use crate::control::rejecting::Rejecting;
 use crate::control::sliding::Sliding;
 use crate::motion::Setpoint;
 
@@ -73,6 +76,8 @@ pub enum Law {
     Lead(Lead),
     /// Sliding mode.
     Sliding(Sliding),
+    /// PD with an observer of the disturbance.
+    Rejecting(Rejecting),
     /// Feedforward alone: viscous friction of the model, effort per velocity.
     Feedforward(f64),
     /// No loop.
@@ -123,6 +128,7 @@ pub struct ControllerState {
     observed: [f64; 3],
     pi: PiState,
     lead: LeadState,
+    rejected: f64,
     command: f64,
 }
 
@@ -223,6 +229,13 @@ impl Controller {
         Self::of(law, inertia, period_s)
     }
 
+    /// PD by its bandwidth, Hz, with an observer of the disturbance.
+    #[must_use]
+    pub fn rejecting(inertia: f64, bandwidth_hz: f64, period_s: f64) -> Self {
+        let law = Law::Rejecting(Rejecting::of(inertia, bandwidth_hz));
+        Self::of(law, inertia, period_s)
+    }
+
     /// Feedforward of inertia and viscous friction, and no feedback.
     #[must_use]
     pub fn feedforward(inertia: f64, viscous: f64, period_s: f64) -> Self {
@@ -272,6 +285,10 @@ impl Controller {
             }
             Law::Lead(lead) => lead.effort(&mut state.lead, error, self.period_s),
             Law::Sliding(sliding) => sliding.effort(&state.lag(seen)),
+            Law::Rejecting(rejecting) => {
+                let (lag, last) = (state.lag(seen), (state.command, state.velocity));
+                rejecting.effort(&mut state.rejected, &lag, last, self.period_s)
+            }
             Law::Cascade {
                 position_per_s,
                 velocity,
@@ -374,6 +391,7 @@ mod tests {
             Controller::pid(3.0, 15.0, 1.0e-3),
             Controller::state_feedback(3.0, 12.0, 1.0e-3),
             Controller::lead(3.0, 16.0, 1.0e-3),
+            Controller::rejecting(3.0, 12.0, 1.0e-3),
             Controller::pi(Pi::of(3.0, 6.0, 40.0, Shape::VelocityForm(90.0)), 1.0e-3),
             Controller::pi(Pi::of(3.0, 6.0, 40.0, Shape::BackCalculation(90.0)), 1.0e-3),
         ];

@@ -49,6 +49,22 @@ pub enum Flaw {
     /// The delivered effort lags the current within a play of so much to either side: a spool that
     /// sticks (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, ch. 2).
     Play(f64),
+    /// The delivered effort falls with velocity: by (v/this)², down to nothing. A supply whose
+    /// voltage the motor's own eats up.
+    Starved(f64),
+    /// The delivered effort is larger by a share about a place: centre, half width at 1/e, share.
+    Patch(f64, f64, f64),
+}
+
+/// Where and when a drive works.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Position of the motor.
+    pub position: f64,
+    /// Its velocity.
+    pub velocity: f64,
+    /// Time, s.
+    pub time_s: f64,
 }
 
 /// A drive.
@@ -105,21 +121,17 @@ impl Drive {
         &self,
         state: &mut DriveState,
         command: f64,
-        (position, time_s): (f64, f64),
+        place: Place,
         step_s: f64,
     ) -> Delivered {
         let due = self.waited(state, rounded(command, self.quantum), step_s);
         let current = self.follow(state, due, step_s);
         let drooped = current / (1.0 + self.droop * current.abs());
         let ripple = self.ripple.map_or(0.0, |wave| {
-            wave.share * libm::cos(wave.waves * position + wave.phase)
+            wave.share * libm::cos(wave.waves * place.position + wave.phase)
         });
-        let effort = flawed(
-            self.flaw,
-            drooped * (1.0 + ripple),
-            time_s,
-            &mut state.played,
-        );
+        let given = drooped * (1.0 + ripple);
+        let effort = flawed(self.flaw, given, place, &mut state.played);
         Delivered { current, effort }
     }
 
@@ -161,7 +173,8 @@ pub fn rounded(value: f64, quantum: f64) -> f64 {
     }
 }
 
-fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64, played: &mut f64) -> f64 {
+fn flawed(flaw: Option<Flaw>, effort: f64, place: Place, played: &mut f64) -> f64 {
+    let time_s = place.time_s;
     match flaw {
         None => effort,
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
@@ -180,6 +193,14 @@ fn flawed(flaw: Option<Flaw>, effort: f64, time_s: f64, played: &mut f64) -> f64
             *played = played.clamp(effort - half, effort + half);
             *played
         }
+        Some(Flaw::Starved(velocity)) => {
+            let ratio = place.velocity / velocity;
+            effort * (1.0 - ratio * ratio).max(0.0)
+        }
+        Some(Flaw::Patch(centre, width, share)) => {
+            let s = (place.position - centre) / width;
+            effort * (1.0 + share * libm::exp(-s * s))
+        }
     }
 }
 
@@ -193,7 +214,7 @@ mod tests {
         let mut state = DriveState::default();
         let mut delivered = None;
         for _ in 0..steps {
-            delivered = Some(drive.step(&mut state, command, (0.0, 0.0), STEP_S));
+            delivered = Some(drive.step(&mut state, command, Place::default(), STEP_S));
         }
         delivered.unwrap()
     }
@@ -249,9 +270,24 @@ mod tests {
         assert!((delivered.effort - 55.0).abs() < 1.0e-12);
     }
 
+    /// At a time and elsewhere at zero.
+    fn at_time(time_s: f64) -> Place {
+        Place {
+            time_s,
+            ..Place::default()
+        }
+    }
+
     #[test]
     fn a_motor_that_fades_has_lost_63_percent_of_its_share_after_the_time_constant() {
-        let at = |time_s| flawed(Some(Flaw::Fading(0.3, 9.0)), 100.0, time_s, &mut 0.0);
+        let at = |time_s| {
+            flawed(
+                Some(Flaw::Fading(0.3, 9.0)),
+                100.0,
+                at_time(time_s),
+                &mut 0.0,
+            )
+        };
         assert_eq!((at(-1.0), at(0.0)), (100.0, 100.0));
         assert!((at(9.0) - 81.036).abs() < 1.0e-3);
         assert!((at(1.0e3) - 70.0).abs() < 1.0e-9);
@@ -259,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_supply_flickers_by_its_share_and_a_limit_clips() {
-        let at = |flaw, time_s| flawed(Some(flaw), 100.0, time_s, &mut 0.0);
+        let at = |flaw, time_s| flawed(Some(flaw), 100.0, at_time(time_s), &mut 0.0);
         assert!((at(Flaw::Flicker(0.2, 2.0), 0.125) - 120.0).abs() < 1.0e-9);
         assert_eq!(at(Flaw::Limit(60.0), 0.0), 60.0);
     }
@@ -267,11 +303,26 @@ mod tests {
     #[test]
     fn a_spool_with_play_stays_behind_by_half_of_it_on_either_way() {
         let mut played = 0.0;
-        let mut at = |effort| flawed(Some(Flaw::Play(10.0)), effort, 0.0, &mut played);
+        let mut at = |effort| flawed(Some(Flaw::Play(10.0)), effort, at_time(0.0), &mut played);
         assert_eq!(
             [5.0, 30.0, 15.0, -30.0].map(&mut at),
             [0.0, 20.0, 20.0, -20.0]
         );
+    }
+
+    #[test]
+    fn a_starved_motor_has_three_quarters_at_half_of_its_velocity_and_a_patch_its_share() {
+        let place = Place {
+            position: 0.3,
+            velocity: -1.0,
+            time_s: 0.0,
+        };
+        let at = |flaw| flawed(Some(flaw), 100.0, place, &mut 0.0);
+        assert!((at(Flaw::Starved(2.0)) - 75.0).abs() < 1.0e-9);
+        assert_eq!(at(Flaw::Starved(0.5)), 0.0);
+        assert!((at(Flaw::Patch(0.3, 0.1, -0.4)) - 60.0).abs() < 1.0e-9);
+        let away = 100.0 - 40.0 / std::f64::consts::E;
+        assert!((at(Flaw::Patch(0.2, 0.1, -0.4)) - away).abs() < 1.0e-9);
     }
 
     #[test]

@@ -2,13 +2,16 @@
 //!
 //! A leg goes from one place to another and stands at both ends. Its shape is a trapezoid of
 //! velocity, the polynomial of least jerk (Flash and Hogan, J. Neuroscience 5, 1985), half a turn
-//! of a circle, whole cycles of a sine, a cycloid, or a way with a sine on top.
+//! of a circle, whole cycles of a sine, a cycloid, a way with a sine on top, the polynomial of least
+//! snap, or a packet of waves.
 
+mod habits;
 mod trades;
 
 use std::f64::consts::{PI, TAU};
 
 use crate::draw::Draw;
+use crate::motion::habits::{least_snap, packet};
 use crate::motion::trades::{cycloid, schroeder};
 
 /// What is wanted at a time.
@@ -35,6 +38,9 @@ enum Shape {
     Cycloid,
     /// Amplitude and whole cycles of the sine on top of least jerk.
     Weave(f64, f64),
+    LeastSnap,
+    /// Amplitude and whole cycles.
+    Packet(f64, f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,6 +208,14 @@ impl Leg {
                 }
             }
             Shape::Cycloid => share(cycloid(t / duration)),
+            Shape::LeastSnap => share(least_snap(t / duration)),
+            Shape::Packet(amplitude, cycles) => {
+                let wave = packet(amplitude, cycles, t, duration);
+                Setpoint {
+                    position: self.from + wave.position,
+                    ..wave
+                }
+            }
             Shape::Weave(amplitude, cycles) => {
                 let way = share(least_jerk(t / duration));
                 let wave = swung(amplitude, TAU * cycles / duration, t);

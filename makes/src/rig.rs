@@ -2,7 +2,7 @@
 
 use crate::control::{Controller, ControllerState, Seen, Sensor};
 use crate::draw::Draw;
-use crate::drive::{Drive, DriveState};
+use crate::drive::{Drive, DriveState, Place};
 use crate::mechanics::train::{Train, TrainState};
 use crate::motion::{Motion, Setpoint};
 use crate::sensing::{Columns, Sensing, Trace};
@@ -198,7 +198,11 @@ impl Rig {
         let mut trace = trace;
         for _ in 0..self.steps_per_tick {
             let axis = &mut running.axis;
-            let place = (axis.positions[0], axis.time_s);
+            let place = Place {
+                position: axis.positions[0],
+                velocity: axis.velocities[0],
+                time_s: axis.time_s,
+            };
             let before = (axis.positions[0], axis.velocities[0]);
             let load = axis.positions[self.train.load()];
             let delivered = self.drive.step(&mut running.drive, command, place, step_s);

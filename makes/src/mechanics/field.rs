@@ -4,7 +4,7 @@
 //! what is no polynomial is in [`resistance`](super::resistance). A field is a force along positive
 //! motion, a function of position and time.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::mechanics::resistance::Resistance;
 
@@ -139,6 +139,17 @@ pub enum Field {
         /// From when, s.
         at_s: f64,
     },
+    /// A force that grows evenly from the start of the record.
+    Ramp(f64),
+    /// Blows that come from elsewhere at one rate: half a sine of force each.
+    Blows {
+        /// Largest force.
+        force: f64,
+        /// Length of a blow, s.
+        lasts_s: f64,
+        /// From one to the next, s.
+        period_s: f64,
+    },
 }
 
 impl Field {
@@ -180,6 +191,15 @@ impl Field {
                 } else {
                     0.0
                 }
+            }
+            Self::Ramp(per_s) => per_s * time_s.max(0.0),
+            Self::Blows {
+                force,
+                lasts_s,
+                period_s,
+            } => {
+                let into = time_s.rem_euclid(period_s) / lasts_s;
+                force * libm::sin(PI * into.min(1.0))
             }
         }
     }
@@ -247,6 +267,19 @@ mod tests {
             assert!((kept / (500.0 * libm::pow(0.3, 1.4)) - 1.0).abs() < 1.0e-12);
         }
         assert!(air.at(-0.1, 0.0) > 700.0);
+    }
+
+    #[test]
+    fn a_blow_is_over_before_the_next_one_and_a_ramp_begins_with_the_record() {
+        let blows = Field::Blows {
+            force: 80.0,
+            lasts_s: 0.1,
+            period_s: 0.5,
+        };
+        assert!((blows.at(0.0, 1.05) - 80.0).abs() < 1.0e-9);
+        assert!(blows.at(0.0, 1.2).abs() < 1.0e-9);
+        let [early, late] = [-1.0, 4.0].map(|t| Field::Ramp(2.5).at(0.0, t));
+        assert_eq!([early, late], [0.0, 10.0]);
     }
 
     #[test]

@@ -257,6 +257,15 @@ pub enum Scale {
     Chain(f64),
     /// 1 + share from a time to another, s: a brake that drags.
     During(f64, f64, f64),
+    /// 1 + share in the first part of every period: ultrasound that is switched on and off.
+    Pulsed {
+        /// Share.
+        share: f64,
+        /// How long it is there, s.
+        lasts_s: f64,
+        /// From one time to the next, s.
+        period_s: f64,
+    },
 }
 
 /// Where and how a surface slides.
@@ -306,6 +315,14 @@ impl Scale {
                 } else {
                     0.0
                 }
+            }
+            Self::Pulsed {
+                share,
+                lasts_s,
+                period_s,
+            } => {
+                let is_there = at.time_s.rem_euclid(period_s) < lasts_s;
+                if is_there { share } else { 0.0 }
             }
         };
         (1.0 + change).max(0.0)
@@ -521,7 +538,14 @@ mod tests {
             width: 0.1,
             share: 0.4,
         };
+        let pulsed = |lasts_s| Scale::Pulsed {
+            share: -0.3,
+            lasts_s,
+            period_s: 4.0,
+        };
         let table = [
+            (pulsed(2.5), 0.7),
+            (pulsed(1.5), 1.0),
             (Scale::Slope(0.5), 1.1),
             (Scale::Bowl(2.5), 1.1),
             (bump, 1.0 + 0.4 / std::f64::consts::E),
