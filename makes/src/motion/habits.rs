@@ -64,15 +64,17 @@ impl Path {
 }
 
 impl Room {
-    /// Packets of a swell about drawn places, high and low, quick and slow.
+    /// Packets of a swell about drawn places, quick and slow; as high as leaves both velocity and
+    /// acceleration something to do.
     #[must_use]
     pub fn packets(&self, draw: &mut Draw) -> Path {
         let width = self.high - self.low;
         self.filled(|path, turn| {
-            let amplitude = width * draw.between(0.05, 0.35);
+            let pace = self.pace.times(draw.between(0.25, 1.0));
+            let run_up = pace.velocity * pace.velocity / pace.acceleration;
+            let amplitude = (run_up * draw.between(0.5, 3.0)).min(0.35 * width);
             let side = draw.between(amplitude, width - amplitude);
             let cycles = [2, 4, 3][turn % 3];
-            let pace = self.pace.times(draw.between(0.1, 1.0));
             let path = path.least_snap(self.low + side, self.pace.times(0.7));
             path.packet(amplitude, cycles, pace)
         })
@@ -120,17 +122,21 @@ impl Room {
     }
 
     /// Up and down by turns, at all speeds from a thirtieth of the pace on, evenly in their
-    /// logarithm; slow ways are short, and hardly ever does it wait.
+    /// logarithm; ways are as short as leaves time to get up to their speed. Every fifth one is a
+    /// hurry to another place, and hardly ever does it wait.
     #[must_use]
     pub fn errands(&self, draw: &mut Draw) -> Path {
         self.filled(|path, turn| {
+            if turn % 5 == 4 {
+                return path.least_snap(self.place(draw), self.pace).rest(0.1);
+            }
             let pace = self.pace.times(libm::pow(30.0, -draw.between(0.0, 1.0)));
-            let reach = 0.6 * pace.velocity;
+            let run_up = pace.velocity * pace.velocity / pace.acceleration;
+            let reach = 0.6 * pace.velocity + 1.6 * run_up;
             let side = if turn % 2 == 0 { self.high } else { self.low };
             let wish = (side - path.end()) * draw.between(0.2, 1.0);
             let to = path.end() + wish.clamp(-reach, reach);
-            let path = path.least_snap(to, pace);
-            if turn % 8 == 7 { path.rest(0.2) } else { path }
+            path.least_snap(to, pace)
         })
     }
 }
