@@ -14,6 +14,7 @@
 //! | [`make`] | the makes: hidden, empty, declared, another day |
 //! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
 //! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
+//! | [`mod@make::untried`] | those written after these, to be run once |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -40,7 +41,8 @@ pub mod truth;
 
 /// How one record is made, without making it.
 pub struct Recipe {
-    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `clean`, `outside` or `spoilt`.
+    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `clean`, `outside`
+    /// or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -79,6 +81,7 @@ pub fn recipes(seed: u64) -> Vec<Recipe> {
     ));
     all.extend(of_makes("unseen", &make::unseen(), seed));
     all.extend(with_their_empty("unseen", outside::unseen::UNSEEN, seed));
+    all.extend(of_makes("untried", &make::untried(), seed));
     let clean = clean::CLEAN.iter();
     all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
     let outside = outside::OUTSIDE.iter();

@@ -14,6 +14,7 @@ pub mod logs;
 pub mod loops;
 pub mod screws;
 pub mod unseen;
+pub mod untried;
 pub mod vertical;
 
 use crate::control::Controller;
@@ -167,6 +168,13 @@ pub fn held_back() -> Vec<Make> {
 #[must_use]
 pub fn unseen() -> Vec<Make> {
     unseen::FAMILIES.concat()
+}
+
+/// Makes that are written after those of [`unseen()`] had been run and had become known. They are a
+/// table of their own.
+#[must_use]
+pub fn untried() -> Vec<Make> {
+    untried::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.
