@@ -14,7 +14,7 @@
 //! | [`make`] | the makes: hidden, empty, declared, another day |
 //! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
 //! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
-//! | [`mod@make::untried`] | those written after these, to be run once |
+//! | [`mod@make::untried`], [`outside::untried`] | those written after these, to be run once |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -82,6 +82,7 @@ pub fn recipes(seed: u64) -> Vec<Recipe> {
     all.extend(of_makes("unseen", &make::unseen(), seed));
     all.extend(with_their_empty("unseen", outside::unseen::UNSEEN, seed));
     all.extend(of_makes("untried", &make::untried(), seed));
+    all.extend(with_their_empty("untried", outside::untried::UNTRIED, seed));
     let clean = clean::CLEAN.iter();
     all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
     let outside = outside::OUTSIDE.iter();

@@ -6,6 +6,7 @@
 
 pub mod held_back;
 pub mod unseen;
+pub mod untried;
 
 use std::f64::consts::TAU;
 
