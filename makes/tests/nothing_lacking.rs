@@ -4,10 +4,11 @@
 //! ∫F dt = M·Δv + Fv·Δx + Fc·∫sign v dt + F0·Δt, from the true motion of the run, not from its
 //! record. With its effect present the same sum leaves more, where the effect is one of effort.
 
-use makes::make::{Make, Presence, all, held_back, unseen};
+use makes::make::{Make, Presence, all, held_back, unseen, untried};
 use makes::outside::Outside;
 use makes::outside::held_back::HELD_BACK;
 use makes::outside::unseen::UNSEEN;
+use makes::outside::untried::UNTRIED;
 use makes::rig::Rig;
 use makes::sensing::Trace;
 use makes::truth::Effect;
@@ -70,11 +71,12 @@ fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
         makes.retain(|make| kind(make));
         makes
     };
-    let (makes, others, last) = (of(all()), of(held_back()), of(unseen()));
-    let some = scope.rows("makes", &makes, 4, 12);
-    let held_back = scope.rows("makes held back", &others, 2, 6);
-    let unseen = scope.rows("makes unseen", &last, 2, 6);
-    [some, held_back, unseen].concat()
+    let tables = [of(all()), of(held_back()), of(unseen()), of(untried())];
+    let some = scope.rows("makes", &tables[0], 4, 12);
+    let held_back = scope.rows("makes held back", &tables[1], 2, 6);
+    let unseen = scope.rows("makes unseen", &tables[2], 2, 6);
+    let untried = scope.rows("makes untried", &tables[3], 2, 6);
+    [some, held_back, unseen, untried].concat()
 }
 
 #[test]
@@ -135,7 +137,8 @@ fn a_machine_held_back_lacks_nothing_without_its_disturbance() {
     let scope = Scope::now();
     let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
     let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
-    let rows: Vec<Outside> = [held_back, unseen].concat();
+    let untried = scope.rows("disturbances untried", UNTRIED, 2, 6);
+    let rows: Vec<Outside> = [held_back, unseen, untried].concat();
     let fits = on_all_cores(&rows, |row| (fit(&row.good_rig(1)).0, fit(&row.rig(1)).0));
     for (row, (good, disturbed)) in rows.iter().zip(fits) {
         println!(

@@ -1,10 +1,11 @@
 //! What holds of every record, whatever is judged on it.
 
 use makes::draw::Draw;
-use makes::make::{Form, Make, Presence, all, held_back, unseen};
+use makes::make::{Form, Make, Presence, all, held_back, unseen, untried};
 use makes::motion::Motion;
 use makes::outside::held_back::HELD_BACK;
 use makes::outside::unseen::UNSEEN;
+use makes::outside::untried::UNTRIED;
 use makes::outside::{OUTSIDE, Outside};
 use makes::rig::{Kind, Rig};
 use makes::sensing::Stamps;
@@ -14,17 +15,18 @@ use scope::{Scope, on_all_cores};
 
 /// Those that are held back with them.
 fn every_make() -> Vec<Make> {
-    [all(), held_back(), unseen()].concat()
+    [all(), held_back(), unseen(), untried()].concat()
 }
 
 /// As many of either as the scope runs.
 fn some_makes() -> Vec<Make> {
     let scope = Scope::now();
-    let (makes, others, last) = (all(), held_back(), unseen());
-    let some = scope.rows("makes", &makes, 4, 12);
-    let held_back = scope.rows("makes held back", &others, 2, 6);
-    let unseen = scope.rows("makes unseen", &last, 2, 6);
-    [some, held_back, unseen].concat()
+    let tables = [all(), held_back(), unseen(), untried()];
+    let some = scope.rows("makes", &tables[0], 4, 12);
+    let held_back = scope.rows("makes held back", &tables[1], 2, 6);
+    let unseen = scope.rows("makes unseen", &tables[2], 2, 6);
+    let untried = scope.rows("makes untried", &tables[3], 2, 6);
+    [some, held_back, unseen, untried].concat()
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -102,7 +104,8 @@ fn every_disturbance_outside_the_list_changes_the_record() {
     let some = scope.rows("disturbances", OUTSIDE, 4, 12);
     let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
     let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
-    let rows: Vec<Outside> = [some, held_back, unseen].concat();
+    let untried = scope.rows("disturbances untried", UNTRIED, 2, 6);
+    let rows: Vec<Outside> = [some, held_back, unseen, untried].concat();
     let changed = on_all_cores(&rows, |outside| {
         change(&training(&outside.rig(1)), &training(&outside.good_rig(1)))
     });
@@ -199,10 +202,22 @@ fn the_unseen_makes_hide_every_name_twice_and_no_make_has_a_name_of_another_tabl
     assert!(makes.len() >= 20 && UNSEEN.len() >= 8);
     assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
     let of_makes = every_make().into_iter().map(|make| make.name);
-    let of_outside = [OUTSIDE, HELD_BACK, UNSEEN].concat();
+    let of_outside = [OUTSIDE, HELD_BACK, UNSEEN, UNTRIED].concat();
     let names: Vec<&str> = of_makes.chain(of_outside.iter().map(|o| o.name)).collect();
     let different: std::collections::BTreeSet<_> = names.iter().collect();
     assert_eq!(different.len(), names.len());
+}
+
+#[test]
+fn the_untried_makes_hide_every_name_of_an_effect_twice() {
+    let makes = untried();
+    let hidden = |effect: &Effect| makes.iter().filter(|m| m.hides.contains(effect)).count();
+    // A constant force is a term of the model rather than an effect: it has been hidden enough.
+    for effect in NAMES.iter().filter(|effect| **effect != Effect::Offset) {
+        assert_eq!(hidden(effect), 2, "{effect:?}");
+    }
+    assert!(makes.len() == 20 && UNTRIED.len() == 6);
+    assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
 }
 
 #[test]
