@@ -2,8 +2,8 @@
 //!
 //! A leg goes from one place to another and stands at both ends. Its shape is a trapezoid of
 //! velocity, the polynomial of least jerk (Flash and Hogan, J. Neuroscience 5, 1985), half a turn
-//! of a circle, whole cycles of a sine, a cycloid, a way with a sine on top, the polynomial of least
-//! snap, or a packet of waves.
+//! of a circle, whole cycles of a sine, a cycloid, a way with a sine on top, the polynomial of
+//! least snap, or a packet of waves.
 
 mod habits;
 mod trades;

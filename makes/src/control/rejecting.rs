@@ -1,8 +1,8 @@
 //! PD with an observer of the disturbance: no integral.
 //!
 //! d̂ = Q·(u − M·s·v) with Q = g/(s + g), which needs no derivative: with z = Q·(u + M·g·v) it is
-//! d̂ = z − M·g·v (Ohnishi, Shibata and Murakami, IEEE/ASME Trans. Mechatronics 1, 1996). The effort
-//! is M·(w²·e + 2w·e') + d̂, both poles at w.
+//! d̂ = z − M·g·v (Ohnishi, Shibata and Murakami, IEEE/ASME Trans. Mechatronics 1, 1996). The
+//! effort is M·(w²·e + 2w·e') + d̂, both poles at w.
 
 use std::f64::consts::TAU;
 

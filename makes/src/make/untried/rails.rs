@@ -69,8 +69,8 @@ fn point_machine(draw: &mut Draw, presence: Presence) -> Rig {
 /// Force of the traverser's motors per ampere, N/A.
 const TRAVERSER_N_PER_A: f64 = 150.0;
 
-/// The traverser of a railway workshop at 250 Hz: nine tonnes, and two thirds as much more when a wagon
-/// has been drawn onto it. Rails and wheels roll alike with either. The current is recorded.
+/// The traverser of a railway workshop at 250 Hz: nine tonnes, and two thirds as much more when a
+/// wagon has been drawn onto it. Rails and wheels roll alike with either. The current is recorded.
 fn rail_traverser(draw: &mut Draw, presence: Presence) -> Rig {
     let empty = draw.near(9.0e3);
     let wagon = presence.size_of(Effect::Payload, draw.near(6.0e3));

@@ -94,9 +94,9 @@ fn log_carriage(draw: &mut Draw, presence: Presence) -> Rig {
     rig
 }
 
-/// The shaft of a paper reel between its drive and the far end of the spool, where the web's length
-/// is counted: it winds up by most of a milliradian. The current loop is of second order, and what it
-/// measures is recorded.
+/// The shaft of a paper reel between its drive and the far end of the spool, where the web's
+/// length is counted: it winds up by most of a milliradian. The current loop is of second order,
+/// and what it measures is recorded.
 fn reel_spool(draw: &mut Draw, presence: Presence) -> Rig {
     let (drive, spool) = (draw.near(26.0), draw.near(60.0));
     let stiffness = draw.near(9.0e5);
