@@ -22,7 +22,8 @@ pub(crate) fn beats(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
 }
 
 /// Gain of a model over another.
-fn gain(bench: &Bench<'_>, model: &Model, other: &Model) -> Gain {
+#[must_use]
+pub(crate) fn gain(bench: &Bench<'_>, model: &Model, other: &Model) -> Gain {
     Gain::of(&bench.cross_validate(other), &bench.cross_validate(model))
 }
 
@@ -31,7 +32,9 @@ fn gain(bench: &Bench<'_>, model: &Model, other: &Model) -> Gain {
 pub(crate) fn chosen(pair: Pair<'_>, mut model: Model) -> Model {
     for place in 0..model.parts.len() {
         let called = model.parts[place].called();
-        if let Some(usual) = effects::find(called).filter(|usual| !usual.forms().is_empty()) {
+        let has_forms =
+            |usual: &&dyn Effect| !usual.forms().is_empty() || usual.by_direction().is_some();
+        if let Some(usual) = effects::find(called).filter(has_forms) {
             model = of_part(pair, model, place, usual);
         }
         model = with_best_choice(pair.bench, model, place);
@@ -105,6 +108,9 @@ fn of_part(pair: Pair<'_>, model: Model, place: usize, usual: &'static dyn Effec
 /// The model with another curve of a part, where that beats the one it has.
 fn curved(pair: Pair<'_>, model: Model, place: usize) -> Model {
     let bench = pair.bench;
+    if model.parts[place].effect.forms().is_empty() {
+        return model;
+    }
     let before = bench.cross_validate(&model);
     let about = bench.cross_validate_about(&bench.fit(&model), place);
     if !is_enough(&Gain::of(&before, &about)) {
@@ -123,7 +129,7 @@ mod tests {
     use super::*;
     use crate::fit::made::{Axis, axis, found, model, usual};
     use axis_model::EffectName::{
-        Coulomb, Inertia, Offset, PositionDependentFriction, Stribeck, Viscous,
+        Coulomb, FrictionDrift, Inertia, Offset, PositionDependentFriction, Stribeck, Viscous,
     };
 
     /// An axis with a fall of 15 N over 10 mm/s by an exponent, and `by_direction` of it the other
@@ -185,6 +191,30 @@ mod tests {
             }
             assert_eq!(found.own.len(), 2);
         }
+    }
+
+    #[test]
+    fn friction_that_drifts_differs_by_direction_where_its_level_does() {
+        let sizes = |by_direction: f64| {
+            let axis = axis(|motion, row| {
+                let fall = (-motion.time_s[row] / 2.0).exp();
+                let direction = motion.direction[row];
+                usual(motion, row) + 15.0 * fall * direction * (1.0 + by_direction * direction)
+            });
+            let bench = axis.bench();
+            let pair = Pair {
+                bench: &bench,
+                low: &bench,
+            };
+            let usual = model(&[Inertia, Viscous, Coulomb, Offset]);
+            let start = usual.with(found(FrictionDrift, 2.0));
+            let chosen = bench.fit(&chosen(pair, start));
+            chosen.of(FrictionDrift).unwrap().to_vec()
+        };
+        assert_eq!(sizes(0.0).len(), 2);
+        let by_direction = sizes(0.3);
+        assert_eq!(by_direction.len(), 3);
+        assert!((by_direction[2] - 4.5).abs() < 0.2, "{by_direction:?}");
     }
 
     #[test]

@@ -382,7 +382,7 @@ pub(crate) static LIBRARY: [&dyn Effect; 20] = [
     stribeck::GAUSSIAN,
     &torque_ripple::TorqueRipple,
     &position_dependent_friction::PositionDependentFriction,
-    &friction_drift::FrictionDrift,
+    friction_drift::BOTH_WAYS,
     &quadratic_drag::QuadraticDrag,
     &load_dependent_friction::LoadDependentFriction,
     &payload::Payload,

@@ -102,9 +102,17 @@ fn in_shares(parameters: &Table, travel: Travel) -> Table {
     table
 }
 
-/// A fall that differs by direction says of an offset that it is an asymmetry of the friction.
+/// What differs by direction and is friction alone.
+const BY_DIRECTION: [&str; 2] = [
+    "stribeck_excess_by_direction",
+    "friction_drift_by_direction",
+];
+
+/// A fall or a drift that differs by direction says of an offset that it is an asymmetry of the
+/// friction.
 fn by_direction(table: &mut Table, coulomb: Option<f64>) {
-    if table.remove("stribeck_excess_by_direction").is_some() {
+    let differs = BY_DIRECTION.map(|key| table.remove(key).is_some());
+    if differs.contains(&true) {
         share(table, "offset", "coulomb_asymmetry", coulomb);
     }
 }
@@ -268,11 +276,11 @@ mod tests {
         ];
         let found = effects(&report(&coulomb_and_fall), travel(0.0, 0.1));
         assert_near(&only(&found, EffectName::Offset), &[("offset", -20.0)]);
-        let by_direction = [
-            &coulomb_and_fall[..],
-            &[("stribeck_excess_by_direction", -10.0)],
-        ];
-        let found = effects(&report(&by_direction.concat()), travel(0.0, 0.1));
+        let by_direction = BY_DIRECTION
+            .map(|key| [&coulomb_and_fall[..], &[(key, -10.0)]].concat())
+            .map(|parameters| effects(&report(&parameters), travel(0.0, 0.1)));
+        let [found, by_drift] = by_direction;
+        assert_eq!(found, by_drift);
         let asymmetry = only(&found, EffectName::CoulombAsymmetry);
         assert_near(&asymmetry, &[("coulomb_asymmetry", -0.2)]);
         assert!(

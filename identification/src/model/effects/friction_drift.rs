@@ -1,5 +1,8 @@
 //! Friction that changes with time from the start of the record (warm-up): `(a sign(v) + b
 //! v)·exp(−t / τ)`; every record starts cold.
+//!
+//! Friction that is larger one way than the other changes both ways alike, by its share: then the
+//! difference drifts too, `(a sign(v) + b v + c)·exp(−t / τ)`.
 
 use axis_model::EffectName;
 
@@ -7,8 +10,16 @@ use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
-/// (a sign(v) + b v)·exp(−t/τ).
-pub(crate) struct FrictionDrift;
+/// (a sign(v) + b v)·exp(−t/τ); by direction with a constant force beside both.
+pub(crate) struct FrictionDrift {
+    by_direction: bool,
+}
+
+/// The usual form.
+pub(crate) const BOTH_WAYS: &FrictionDrift = &FrictionDrift {
+    by_direction: false,
+};
+const BY_DIRECTION: &FrictionDrift = &FrictionDrift { by_direction: true };
 
 impl Effect for FrictionDrift {
     fn called(&self) -> Called {
@@ -27,11 +38,19 @@ impl Effect for FrictionDrift {
                 .map(|(fall, what)| fall * what)
                 .collect()
         };
-        vec![on(&motion.direction), on(&motion.velocity_lp)]
+        let mut columns = vec![on(&motion.direction), on(&motion.velocity_lp)];
+        if self.by_direction {
+            columns.push(fall);
+        }
+        columns
     }
 
     fn width(&self, _: f64) -> usize {
-        2
+        if self.by_direction { 3 } else { 2 }
+    }
+
+    fn by_direction(&self) -> Option<&'static dyn Effect> {
+        Some(BY_DIRECTION)
     }
 
     fn is_tuned(&self) -> bool {
@@ -44,9 +63,10 @@ impl Effect for FrictionDrift {
 
     fn action(&self, at: &Instant, tau: f64, own: &[f64]) -> Action {
         let fall = (-at.time_s / tau).exp();
+        let by_direction = own.get(2).copied().unwrap_or(0.0);
         Action {
             level: own[0] * fall,
-            force: own[1] * fall * at.velocity,
+            force: fall * (own[1] * at.velocity + by_direction),
             ..Action::default()
         }
     }
@@ -75,14 +95,15 @@ impl Effect for FrictionDrift {
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
-        vec![
-            naming.coefficient("friction_drift_coulomb", 0, naming.effort_unit("")),
-            naming.coefficient(
-                "friction_drift_viscous",
-                1,
-                naming.effort_unit(&format!(" s/{}", naming.length())),
-            ),
-            naming.nonlinear("friction_drift_time_constant", naming.parameter, "s".into()),
-        ]
+        let unit = naming.effort_unit("");
+        let by_speed = naming.effort_unit(&format!(" s/{}", naming.length()));
+        let coulomb = naming.coefficient("friction_drift_coulomb", 0, unit.clone());
+        let viscous = naming.coefficient("friction_drift_viscous", 1, by_speed);
+        let by_direction = self
+            .by_direction
+            .then(|| naming.coefficient("friction_drift_by_direction", 2, unit));
+        let time = naming.nonlinear("friction_drift_time_constant", naming.parameter, "s".into());
+        let all = [Some(coulomb), Some(viscous), by_direction, Some(time)];
+        all.into_iter().flatten().collect()
     }
 }

@@ -1,6 +1,6 @@
 //! An offset: a constant force, or friction that differs by direction.
 
-use axis_model::EffectName::{self, Coulomb, CoulombAsymmetry, Offset, Stribeck};
+use axis_model::EffectName::{self, Coulomb, CoulombAsymmetry, FrictionDrift, Offset, Stribeck};
 
 use crate::fit::fitted::Fitted;
 use crate::record::dataset::Dataset;
@@ -11,7 +11,8 @@ const ALIKE: f64 = 1.5;
 const SAME_FORCE: &str = "offset and coulomb_asymmetry are the same force (a constant one, at rest \
                           as in motion): no record tells them apart, and offset stands for both";
 
-/// What an offset may be: only friction that falls by direction tells an asymmetry from a force.
+/// What an offset may be: only friction that falls or drifts by direction tells an asymmetry from a
+/// force.
 pub(super) fn of_an_offset(
     dataset: &Dataset,
     found: &[EffectName],
@@ -21,22 +22,32 @@ pub(super) fn of_an_offset(
     if !has(Offset) && !has(CoulombAsymmetry) {
         return None;
     }
-    let Some(&[excess, by_direction]) = fitted.of(Stribeck) else {
+    let Some((what_differs, share)) = share_by_direction(fitted) else {
         return Some(SAME_FORCE.to_owned());
     };
     let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
     let level = first(Offset)? / first(Coulomb)?;
-    let fall = by_direction / excess;
-    let is_alike = (1.0 / ALIKE..ALIKE).contains(&(level / fall));
+    let is_alike = (1.0 / ALIKE..ALIKE).contains(&(level / share));
     let what = if is_alike {
         "offset is coulomb_asymmetry"
     } else {
         "offset is coulomb_asymmetry and a constant force"
     };
-    let [level, fall] = [level, fall].map(|share| 100.0 * share);
+    let [level, share] = [level, share].map(|share| 100.0 * share);
     Some(format!(
-        "{what}: the Stribeck fall differs by direction by {fall:+.0} % of its size, the friction in motion by {level:+.0} %"
+        "{what}: the {what_differs} differs by direction by {share:+.0} % of its size, the friction in motion by {level:+.0} %"
     ))
+}
+
+/// What differs by direction and is friction alone, and by which share of its size.
+fn share_by_direction(fitted: &Fitted) -> Option<(&'static str, f64)> {
+    if let Some(&[excess, by_direction]) = fitted.of(Stribeck) {
+        return Some(("Stribeck fall", by_direction / excess));
+    }
+    let &[drift, _, by_direction] = fitted.of(FrictionDrift)? else {
+        return None;
+    };
+    Some(("friction drift", by_direction / drift))
 }
 
 #[cfg(test)]
@@ -57,6 +68,21 @@ mod tests {
             }
         };
         of_an_offset(&dataset, &[Offset], &fitted)
+    }
+
+    #[test]
+    fn a_drift_by_direction_tells_an_asymmetry_as_a_fall_does() {
+        let dataset = axis(usual).dataset;
+        let drift = find(FrictionDrift).unwrap().by_direction().unwrap();
+        let model = model(&[Coulomb, Offset])
+            .with(found(FrictionDrift, 3.0))
+            .with_form(2, drift);
+        let fitted = Fitted::new(model, &[100.0, 25.0, -40.0, 1.0, -10.0]);
+        let said = of_an_offset(&dataset, &[Offset], &fitted).unwrap();
+        assert!(
+            said.starts_with("offset is coulomb_asymmetry: the friction drift"),
+            "{said}"
+        );
     }
 
     #[test]
