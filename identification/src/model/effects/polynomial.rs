@@ -1,27 +1,28 @@
-//! What grows with a scaled quantity u and its square: `a u + b u²`.
+//! What grows with a scaled quantity u and its powers: `a u + b u²`, or more of them.
 //!
-//! The nonlinear parameter of such an effect is a choice: 1 for the linear term alone, 2 for both.
+//! The nonlinear parameter of such an effect is a choice: 1 for the linear term alone, 2 for two.
 
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
-/// The choices of an effect.
+/// The usual choices.
 pub(crate) const TERMS: [f64; 2] = [1.0, 2.0];
 
 /// Number of columns at a choice.
 #[must_use]
 pub(crate) fn width(terms: f64) -> usize {
-    if terms > 1.5 { 2 } else { 1 }
+    (terms.round() as usize).max(1)
 }
 
-/// `weight·u`, and `weight·u²` where both terms are chosen; pairs of u and weight.
+/// `weight·u`, `weight·u²` and so on, as many as are chosen; pairs of u and weight.
 pub(crate) fn columns(pairs: impl Iterator<Item = (f64, f64)>, terms: f64) -> Vec<Vec<f64>> {
     let pairs: Vec<(f64, f64)> = pairs.collect();
     let power = |n: i32| pairs.iter().map(|(u, weight)| weight * u.powi(n)).collect();
-    [1, 2].into_iter().take(width(terms)).map(power).collect()
+    let powers = (1..).take(width(terms));
+    powers.map(power).collect()
 }
 
-/// `a u + b u²`, as far as there are coefficients.
+/// `a u + b u²` and so on, as far as there are coefficients.
 #[must_use]
 pub(crate) fn value(own: &[f64], u: f64) -> f64 {
     own.iter()
