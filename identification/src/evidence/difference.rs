@@ -98,7 +98,11 @@ pub(crate) fn difference(
         before: 0.0,
         springy: OnceCell::new(),
         is_rotary: dataset.kind == AxisKind::Rotary,
-        orders: wave::of_orders(motion, dataset, FEWEST_PERIODS),
+        orders: wave::of_orders(
+            motion,
+            dataset,
+            wave::FEWEST_PERIODS_OF_AN_ORDER..FEWEST_PERIODS,
+        ),
     };
     let declared = output.declared(dataset);
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();

@@ -29,7 +29,14 @@ const DEGREES_PER_WAVE: usize = 2;
 
 /// An effect whose waves of known orders do not beat a smooth function of the position.
 pub(crate) fn unearned(bench: &Bench<'_>, model: &Model) -> Option<Called> {
-    let mut found = model.parts.iter().filter(|part| is_known(part));
+    let is_declared = |part: &Part| {
+        let name = part.called().name();
+        name.is_some_and(|name| bench.dataset.declares(name))
+    };
+    let mut found = model
+        .parts
+        .iter()
+        .filter(|part| is_known(part) && !is_declared(part));
     let is_unearned = |part: &&Part| {
         let called = part.called();
         let waves = |part: &&Part| is_known(part) && part.called() == called;

@@ -20,6 +20,9 @@ const LARGEST_STEP_OF_FORMS: f64 = 32.0;
 /// Degree of the smooth function of the position that no wave of a known order may stand for: that
 /// of a spring with what it stiffens by, of either sign.
 pub(crate) const SMOOTH_DEGREE: f64 = 4.0;
+/// A smooth function beside a wave that is declared is a spring where it removes this share of what
+/// the wave leaves alone: waves of less than a period within the travel need none.
+const WORTH_A_SPRING: f64 = 0.05;
 /// Rounds of the joint refinement.
 const ROUNDS: usize = 2;
 
@@ -169,15 +172,19 @@ fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
         let started = model.with_form(place, effect);
         settled(bench, started.with_parameter(place, parameter), effect)
     };
-    // A spring that is not in the model must not decide which order is the declared one.
-    let beside = known.first().and_then(|(known, _)| known.smooth());
-    let sse = |choice| match beside {
-        Some(smooth) => bench.sse(&at(choice).with(Part::found(smooth, SMOOTH_DEGREE))),
-        None => bench.sse(&at(choice)),
+    let alone = |choice| bench.sse(&at(choice));
+    let Some(mut best) = smallest(&all, &alone) else {
+        return;
     };
-    if let Some(best) = smallest(&all, &sse) {
-        *model = at(best);
+    // A spring that is not in the model must not decide which order is the declared one.
+    if let Some(smooth) = known.first().and_then(|(known, _)| known.smooth()) {
+        let beside = |choice| bench.sse(&at(choice).with(Part::found(smooth, SMOOTH_DEGREE)));
+        let other = smallest(&all, &beside).unwrap_or(best);
+        if beside(other) < (1.0 - WORTH_A_SPRING) * alone(best) {
+            best = other;
+        }
     }
+    *model = at(best);
 }
 
 /// Joint refinement of all nonlinear parameters: without it the grid's coarseness leaves residuals
@@ -385,5 +392,30 @@ mod tests {
         };
         let is_low = |name| std::ptr::eq(pair.of(find(name).unwrap()), &raw const low);
         assert!(is_low(Delay) && !is_low(TorqueSaturation) && !is_low(Stribeck));
+    }
+
+    #[test]
+    fn a_declared_ripple_is_started_at_its_order_from_less_than_a_period_on() {
+        for turns in [0.5, 0.8, 1.7] {
+            let mut axis = axis(usual);
+            let (low, high) = axis.motion.span();
+            let revolution = (high - low) / turns;
+            axis.dataset.lead_m_per_rev = Some(revolution);
+            axis.dataset.declared.push(TorqueRipple);
+            axis.put(|motion, row| {
+                let angle = TAU * motion.position_lp[row] / revolution;
+                usual(motion, row) + 20.0 * (angle + 0.7).sin()
+            });
+            let bench = axis.bench();
+            let pair = Pair {
+                bench: &bench,
+                low: &bench,
+            };
+            let mut model = Model::declared(&axis.dataset);
+            prepare(pair, &mut model);
+            let ripple = model.of(TorqueRipple).unwrap();
+            let order = ripple.parameter * revolution;
+            assert!((order - 1.0).abs() < 1.0e-9, "{turns} turns: {order}");
+        }
     }
 }

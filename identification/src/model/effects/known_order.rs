@@ -43,7 +43,14 @@ impl Effect for KnownOrder {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        wave::of_orders(motion, setting.dataset, self.below_periods)
+        let name = self.called().name();
+        let is_declared = name.is_some_and(|name| setting.dataset.declares(name));
+        let fewest = if is_declared {
+            wave::FEWEST_PERIODS_DECLARED
+        } else {
+            wave::FEWEST_PERIODS_OF_AN_ORDER
+        };
+        wave::of_orders(motion, setting.dataset, fewest..self.below_periods)
     }
 
     /// Two orders that are a period apart within the travel are two columns that are not alike.

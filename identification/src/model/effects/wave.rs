@@ -31,6 +31,8 @@ pub(crate) const HIGHEST_ORDER: u32 = 180;
 /// An integer order shows from so many periods within the travel on. Below one the wave is a line
 /// and a parabola, and up to here there is no second time that a period could come back for.
 pub(crate) const FEWEST_PERIODS_OF_AN_ORDER: f64 = 1.3;
+/// A wave that is declared needs no second period to be known: from here on it is no parabola.
+pub(crate) const FEWEST_PERIODS_DECLARED: f64 = 0.4;
 /// So many of the strongest wave numbers are fitted.
 const FITTED: usize = 3;
 
@@ -121,15 +123,18 @@ pub(crate) fn periods(motion: &Kinematics, k: f64) -> f64 {
     k * travel(motion)
 }
 
-/// Wave numbers of the integer orders per revolution with fewer than so many periods within the
-/// travel; none where the revolution is not known.
+/// Wave numbers of the integer orders per revolution with so many periods within the travel; none
+/// where the revolution is not known.
 #[must_use]
-pub(crate) fn of_orders(motion: &Kinematics, dataset: &Dataset, below_periods: f64) -> Vec<f64> {
+pub(crate) fn of_orders(
+    motion: &Kinematics,
+    dataset: &Dataset,
+    shown: std::ops::Range<f64>,
+) -> Vec<f64> {
     let Some(revolution) = dataset.revolution() else {
         return Vec::new();
     };
     let wave_numbers = (1..=HIGHEST_ORDER).map(|order| f64::from(order) / revolution);
-    let shown = FEWEST_PERIODS_OF_AN_ORDER..below_periods;
     wave_numbers
         .filter(|k| shown.contains(&periods(motion, *k)))
         .collect()
@@ -307,12 +312,13 @@ mod tests {
     #[test]
     fn integer_orders_are_candidates_from_1_3_periods_to_where_the_search_begins() {
         let mut axis = axis(usual);
+        let shown = FEWEST_PERIODS_OF_AN_ORDER..8.0;
         let orders = |axis: &Axis| -> Vec<f64> {
-            let list = of_orders(&axis.motion, &axis.dataset, 8.0).into_iter();
+            let list = of_orders(&axis.motion, &axis.dataset, shown.clone()).into_iter();
             list.map(|k| k * axis.dataset.revolution().unwrap())
                 .collect()
         };
-        assert!(of_orders(&axis.motion, &axis.dataset, 8.0).is_empty());
+        assert!(of_orders(&axis.motion, &axis.dataset, shown.clone()).is_empty());
         for (turns, wanted) in [
             (0.65, (2, 12)),
             (1.29, (2, 6)),
