@@ -17,6 +17,7 @@ use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
 use crate::evidence::velocity;
+use crate::evidence::veto::veto;
 use crate::fit::bench::Bench;
 use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::Model;
@@ -53,20 +54,29 @@ fn identify_excerpt(
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
     let motions = Motions::of(fitted_on, low_cutoff_hz)?;
     plausibility::check(dataset, &motions.train)?;
-    let known = rank::known(fitted_on, &motions);
-    let fitted_on = &*known;
-    let bench = Bench::new(fitted_on, &motions.train);
-    let low = Bench::new(fitted_on, &motions.train_low);
-    let pair = Pair {
-        bench: &bench,
-        low: &low,
-    };
-    let findings = findings(pair, &motions, progress);
-    let all = excerpt.as_ref().map(|_| {
-        progress(&Step::AllRows);
-        AllRows::of(&findings, dataset)
-    });
-    Ok(report::identification(&findings, all.as_ref()))
+    let mut brought_back = Vec::new();
+    loop {
+        let known = rank::known(fitted_on, &motions, &brought_back);
+        let bench = Bench::new(&known, &motions.train);
+        let low = Bench::new(&known, &motions.train_low);
+        let pair = Pair {
+            bench: &bench,
+            low: &low,
+        };
+        let findings = findings(pair, &motions, progress);
+        let is_declared = |name: &&EffectName| fitted_on.declares(**name);
+        let declared = findings.found.names().iter().filter(is_declared);
+        let before = brought_back.len();
+        brought_back.extend(declared);
+        if brought_back.len() > before {
+            continue;
+        }
+        let all = excerpt.as_ref().map(|_| {
+            progress(&Step::AllRows);
+            AllRows::of(&findings, dataset)
+        });
+        return Ok(report::identification(&findings, all.as_ref()));
+    }
 }
 
 /// Every judge in its turn; later ones stand on what earlier ones accepted.
@@ -82,7 +92,7 @@ fn findings<'a>(
     let other = Bench::new(dataset, &motions.validate);
     let mut effort = on_effort(pair, &declared, &other, progress);
     progress(&Step::MotorAndLoad);
-    let difference = beside_the_load(bench, &mut effort);
+    let difference = beside_the_load(pair, &other, &declared, &mut effort, progress);
     let fitted = bench.fit(&effort.model);
     let reversals = ReversalStage::of([bench, &other], &fitted, difference.as_ref(), progress);
     let mut stages = Stages {
@@ -98,11 +108,13 @@ fn findings<'a>(
     Findings::of(dataset, motions, stages, models)
 }
 
-/// The declared model, its nonlinear parameters fitted.
+/// The declared model, its nonlinear parameters fitted: beside the inertia of a load that is
+/// declared to move otherwise, since what that leaves of fast motion is no wave.
 fn declared(pair: Pair<'_>) -> Model {
     let mut model = Model::declared(pair.bench.dataset);
+    model = effort::with_declared_load(pair.bench, &model);
     tuning::prepare(pair, &mut model);
-    forms::chosen(pair, model)
+    effort::without_load(&forms::chosen(pair, model))
 }
 
 /// Forward selection on the effort, with the validation record's veto.
@@ -113,19 +125,41 @@ fn on_effort(
     progress: &mut dyn FnMut(&Step),
 ) -> Selection {
     let start = effort::with_declared_load(pair.bench, declared);
-    let mut selected = effort::select(pair, &start, progress);
-    effort::veto(pair.bench, other, &mut selected);
+    selected(pair, &start, other, progress)
+}
+
+fn selected(
+    pair: Pair<'_>,
+    start: &Model,
+    other: &Bench<'_>,
+    progress: &mut dyn FnMut(&Step),
+) -> Selection {
+    let mut selected = effort::select(pair, start, progress);
+    veto(pair.bench, other, &mut selected);
     selected
 }
 
 /// Motor − load, where there is a load scale. Where it shows that the load moves otherwise, the
 /// effort is asked again what it lacks beside the load's own inertia.
-fn beside_the_load(bench: &Bench<'_>, effort: &mut Selection) -> Option<Difference> {
+fn beside_the_load(
+    pair: Pair<'_>,
+    other: &Bench<'_>,
+    declared: &Model,
+    effort: &mut Selection,
+    progress: &mut dyn FnMut(&Step),
+) -> Option<Difference> {
+    let bench = pair.bench;
     let (dataset, motion) = (bench.dataset, bench.motion);
     let transmitted = |effort: &Selection| bench.transmitted(&bench.fit(&effort.model));
     let mut force = transmitted(effort);
     let mut difference = difference::difference(dataset, motion, path(dataset, &force))?;
-    if difference.moves_apart() && effort::remove_beside_load(bench, &mut effort.model) {
+    if difference.moves_apart() {
+        if effort::lacks_load_inertia(bench, &effort.model) {
+            let start = effort::with_load(bench, declared);
+            *effort = selected(pair, &start, other, progress);
+            effort.model = effort::without_load(&effort.model);
+        }
+        effort::remove_beside_load(bench, &mut effort.model);
         force = transmitted(effort);
         difference = difference::difference(dataset, motion, path(dataset, &force))?;
     }

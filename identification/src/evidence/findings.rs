@@ -13,6 +13,7 @@ use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
+use crate::evidence::mains;
 use crate::evidence::rank;
 use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
@@ -80,9 +81,13 @@ impl Stages {
 
     /// What they saw that no effect explains.
     fn reasons(&self, length: &str) -> Vec<Reason> {
-        let nameless = self.effort.nameless().into_iter();
-        let mut reasons: Vec<Reason> = nameless
-            .map(|called| Reason::unexplained(format!("a {called}")))
+        let mut reasons: Vec<Reason> = self
+            .effort
+            .nameless()
+            .map(|part| {
+                mains::reason(part, &self.effort.scored)
+                    .unwrap_or_else(|| Reason::unexplained(format!("a {}", part.called())))
+            })
             .collect();
         let strange = self.reversals.decided.unexplained;
         reasons.extend(strange.then(|| {

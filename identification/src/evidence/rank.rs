@@ -30,8 +30,13 @@ use crate::motion::kinematics::Kinematics;
 use crate::motion::motions::Motions;
 use crate::record::dataset::Dataset;
 
-/// The dataset without the declared effects that its training record cannot know.
-pub(crate) fn known<'a>(dataset: &'a Dataset, motions: &Motions) -> Cow<'a, Dataset> {
+/// The dataset without the declared effects that its training record cannot know. Effects that the
+/// selection `brought_back` are known: an effect that was not declared was in their way.
+pub(crate) fn known<'a>(
+    dataset: &'a Dataset,
+    motions: &Motions,
+    brought_back: &[EffectName],
+) -> Cow<'a, Dataset> {
     let [bench, low, other] = [&motions.train, &motions.train_low, &motions.validate]
         .map(|motion| Bench::new(dataset, motion));
     let pair = Pair {
@@ -41,7 +46,7 @@ pub(crate) fn known<'a>(dataset: &'a Dataset, motions: &Motions) -> Cow<'a, Data
     let mut known = Cow::Borrowed(dataset);
     let mut model = Model::declared(dataset);
     tuning::prepare(pair, &mut model);
-    while let Some(unknown) = unknown([&bench, &other], &model) {
+    while let Some(unknown) = unknown([&bench, &other], &model, brought_back) {
         let note = unknown.words();
         model = unknown.rest;
         tuning::refine(pair, &mut model);
@@ -100,7 +105,11 @@ fn advice(effect: EffectName) -> &'static str {
 
 /// The effect that is dropped next, of those that the training record does not miss: one without
 /// which the prediction is known.
-fn unknown(benches: [&Bench<'_>; 2], model: &Model) -> Option<Unknown> {
+fn unknown(
+    benches: [&Bench<'_>; 2],
+    model: &Model,
+    brought_back: &[EffectName],
+) -> Option<Unknown> {
     let before = uncertainty(benches, model);
     if before <= KNOWN_PERCENT {
         return None;
@@ -110,6 +119,9 @@ fn unknown(benches: [&Bench<'_>; 2], model: &Model) -> Option<Unknown> {
         let percent = [before, uncertainty(benches, &rest)];
         let is_free = percent[1] < KNOWN_GAIN * before && !is_missed(benches[0], model, &rest);
         let effect = part.called().name().filter(|_| is_free)?;
+        if brought_back.contains(&effect) {
+            return None;
+        }
         Some(Unknown {
             effect,
             percent,
@@ -209,7 +221,7 @@ mod tests {
     fn told(speeds: [&[f64]; 2]) -> (Vec<EffectName>, Vec<String>) {
         let dataset = dataset(speeds);
         let motions = Motions::of(&dataset, delay_cutoff_hz(PERIOD_S)).unwrap();
-        let known = known(&dataset, &motions);
+        let known = known(&dataset, &motions, &[]);
         let news = known.notes[dataset.notes.len()..].to_vec();
         (known.declared.clone(), news)
     }
@@ -243,7 +255,7 @@ mod tests {
         let four = Model::declared(&dataset)
             .without(Model::declared(&dataset).of(EffectName::Stribeck).unwrap());
         assert!(of(&four) < 0.5, "{}", of(&four));
-        assert!(unknown([&bench, &bench], &four).is_none());
+        assert!(unknown([&bench, &bench], &four, &[]).is_none());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use axis_model::EffectName;
 
 use crate::evidence::thresholds::{EFFORT_PERCENT, EFFORT_SHARE, EFFORT_T, MOST_EFFECTS, OUTSIDER};
 use crate::fit::blocks::Gain;
-use crate::model::inverse::Model;
+use crate::model::inverse::{Model, Origin, Part};
 use crate::model::name::Called;
 
 /// What an effect is worth.
@@ -94,10 +94,10 @@ impl Selection {
     }
 
     /// Structures without a name that were found.
-    #[must_use]
-    pub(crate) fn nameless(&self) -> Vec<Called> {
-        let found = self.model.found().into_iter();
-        found.filter(|called| called.name().is_none()).collect()
+    pub(crate) fn nameless(&self) -> impl Iterator<Item = &Part> {
+        let found = |part: &&Part| part.origin == Origin::Found;
+        let found = self.model.parts.iter().filter(found);
+        found.filter(|part| part.called().name().is_none())
     }
 }
 

@@ -40,6 +40,17 @@ pub(crate) const NAMELESS_SHARE: f64 = UNEXPLAINED_SHARE;
 /// effect. It has what the list leaves, and a listed effect of a slightly other shape leaves some.
 pub(crate) const OUTSIDER: (f64, f64) = (2.0 * EFFORT_SHARE, 2.0 * EFFORT_PERCENT);
 
+/// Smallest share that something removes which comes and goes and shows at both times together
+/// alone: two times are chosen among a thousand pairs. Chosen: the largest share of [`EFFORT_T`].
+pub(crate) const BOTH_SHARE: f64 = 0.30;
+
+/// What comes and what goes differ by at most this share of the larger one. Chosen: a part of the
+/// load may stay.
+pub(crate) const BOTH_ALIKE: f64 = 0.3;
+
+/// It stays for at least this share of the record. Chosen: a shorter stay has too few blocks.
+pub(crate) const BOTH_APART: f64 = 0.1;
+
 /// Largest error on another record with an effect over that without it. Chosen: what holds on one
 /// record only is no effect of the axis, but a little more error is no proof of that. A bristle
 /// that is one leaves at most a quarter there.
@@ -91,6 +102,17 @@ pub(crate) const SHAPE_PART: f64 = 1.0 / 6.0;
 /// the lower cut-off: a controller gives back less of an encoder's rounding and a drive's noise.
 /// Chosen; records of `commission` have 0.4 %, an eccentric encoder 6 %.
 pub(crate) const FED_BACK_PERCENT: f64 = 2.0;
+
+/// The frequencies of mains, Hz.
+pub(crate) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+
+/// Mains are so near to their frequency, Hz: a synchronous grid keeps it within 0.2 (EN 50160,
+/// clause 4.2.1, allows 0.5 for 99.5 % of a year).
+pub(crate) const MAINS_OFF_HZ: f64 = 0.2;
+
+/// More mains than this are no pick-up, percent of the effort: as much as counts where a controller
+/// gives it back.
+pub(crate) const MAINS_PERCENT: f64 = FED_BACK_PERCENT;
 
 /// A shift in time below this is told and does not count, s: a sixth of the period at which drives
 /// usually record, the part of it by which a measured effort and a position may stand apart in it.

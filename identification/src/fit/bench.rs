@@ -52,6 +52,8 @@ pub(crate) struct Bench<'a> {
     kept: Mutex<Kept>,
 }
 
+/// So many coefficients of one part are a curve.
+const FEWEST_OF_A_CURVE: usize = 4;
 /// Values that are kept before all are forgotten: 32 MB.
 const KEPT_VALUES: usize = 4_000_000;
 
@@ -189,11 +191,14 @@ impl<'a> Bench<'a> {
         own.uncertainty_on(&others)
     }
 
-    /// Sum of squares that the structure of a model leaves on each half of the blocks, with the
-    /// coefficients that the other half gives it.
+    /// Sum of squares that the structure of a fit leaves on each half of the blocks, with the
+    /// coefficients that the other half gives it. A curve keeps its shape: it has more coefficients
+    /// than half a record knows.
     #[must_use]
-    pub(crate) fn left_on_halves(&self, model: &Model) -> f64 {
-        let halves = self.blocks(&self.design(model)).in_folds(2);
+    pub(crate) fn left_on_halves(&self, fitted: &Fitted) -> f64 {
+        let mut design = self.design(fitted.model());
+        design.columns = in_shapes(design.columns, fitted);
+        let halves = self.blocks(&design).in_folds(2);
         halves.cross_validate().held_out.iter().sum()
     }
 
@@ -382,6 +387,21 @@ impl<'a> Bench<'a> {
         };
         100.0 * norm(&residual) / norm(&self.motion.effort_lp).max(f64::MIN_POSITIVE)
     }
+}
+
+/// The columns of a fit, those of each curve as the one that it has become.
+fn in_shapes(columns: Vec<Vec<f64>>, fitted: &Fitted) -> Vec<Vec<f64>> {
+    let mut columns = columns.into_iter();
+    let shaped = fitted.terms().flat_map(|term| {
+        let own: Vec<Vec<f64>> = columns.by_ref().take(term.own.len()).collect();
+        if own.len() < FEWEST_OF_A_CURVE {
+            return own;
+        }
+        let mut curve = vec![0.0; own[0].len()];
+        add(&mut curve, &own, term.own);
+        vec![curve]
+    });
+    shaped.collect()
 }
 
 impl Gathered {

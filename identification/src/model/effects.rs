@@ -363,6 +363,11 @@ pub(crate) trait Effect: Sync {
         false
     }
 
+    /// Whether it may go again: two of it may show together where one alone does not.
+    fn comes_and_goes(&self) -> bool {
+        false
+    }
+
     /// What it is best seen against.
     fn against(&self) -> Against {
         Against::Velocity

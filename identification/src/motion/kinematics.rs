@@ -186,6 +186,17 @@ impl Kinematics {
         })
     }
 
+    /// The same where only what lies between two positions is fitted.
+    #[must_use]
+    pub(crate) fn within(&self, (low, high): (f64, f64)) -> Self {
+        let rows = self.fitted.iter().zip(&self.position_lp);
+        let inside = rows.map(|(fitted, x)| *fitted && (low..=high).contains(x));
+        Self {
+            fitted: inside.collect(),
+            ..self.clone()
+        }
+    }
+
     /// Duration, s: what was left out between pieces is part of it.
     #[must_use]
     pub(crate) const fn duration_s(&self) -> f64 {

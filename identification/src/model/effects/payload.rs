@@ -5,7 +5,8 @@
 //! on a slide presses on the guide. But friction or a force that change at a time without inertia
 //! are something else (a brake that drags, an axis that tilts), so the three columns must beat the
 //! two without inertia ([`StepOfForce`]). A drive that delivers more or less from a time on is no
-//! payload either: it changes the whole effort by a share, friction too ([`StrongerDrive`]).
+//! payload either: it changes the whole effort by a share, friction too ([`StrongerDrive`]). And a
+//! payload comes at once: what changes little by little is a warm-up ([`GradualChange`]).
 //!
 //! Time counts from the start of a record, as with `friction_drift`.
 
@@ -24,6 +25,9 @@ pub(crate) struct StepOfForce;
 
 /// A share of the effort that the motion predicts, from a time on.
 pub(crate) struct StrongerDrive;
+
+/// Inertia, friction and a force that change little by little, as parabolas of the time.
+pub(crate) struct GradualChange;
 
 /// Times that are tried, over the duration: every fiftieth part, as long as a twentieth of the
 /// record is left on both sides.
@@ -80,7 +84,7 @@ impl Effect for Payload {
     }
 
     fn look_alikes(&self) -> &'static [&'static dyn Effect] {
-        &[&StepOfForce, &StrongerDrive]
+        &[&StepOfForce, &StrongerDrive, &GradualChange]
     }
 
     fn repeats(&self) -> bool {
@@ -89,6 +93,10 @@ impl Effect for Payload {
 
     fn least_distance(&self, _: &Kinematics) -> f64 {
         LEAST_DISTANCE_S
+    }
+
+    fn comes_and_goes(&self) -> bool {
+        true
     }
 
     fn against(&self) -> Against {
@@ -182,6 +190,45 @@ impl Effect for StrongerDrive {
     fn columns(&self, motion: &Kinematics, _: &Dataset, from_s: f64) -> Vec<Vec<f64>> {
         let efforts = ByMotion::of(motion).efforts();
         vec![from_then_on(motion, from_s, |row| efforts[row])]
+    }
+
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
+    fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
+        Vec::new()
+    }
+}
+
+impl Effect for GradualChange {
+    fn called(&self) -> Called {
+        Called::Structure("change over the record")
+    }
+
+    fn equation(&self) -> &'static str {
+        "(dm a + df sign(v) + w) s, and s^2; s = time over the record"
+    }
+
+    fn columns(&self, motion: &Kinematics, _: &Dataset, _: f64) -> Vec<Vec<f64>> {
+        let duration_s = motion.duration_s();
+        let over_time = |power: i32, what: &dyn Fn(usize) -> f64| {
+            let times = motion.time_s.iter().enumerate();
+            let column = times.map(|(row, t)| (t / duration_s).powi(power) * what(row));
+            column.collect()
+        };
+        let parabolas = [1, 2].into_iter().flat_map(|power| {
+            [
+                over_time(power, &|row| motion.acceleration[row]),
+                over_time(power, &|row| motion.direction[row]),
+                over_time(power, &|_| 1.0),
+            ]
+        });
+        parabolas.collect()
+    }
+
+    fn width(&self, _: f64) -> usize {
+        6
     }
 
     fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {

@@ -144,6 +144,10 @@ impl Effect for EncoderError {
         2
     }
 
+    fn is_tuned(&self) -> bool {
+        true
+    }
+
     fn parameters(&self, _: &Naming<'_>) -> Vec<Named> {
         Vec::new()
     }
