@@ -9,9 +9,6 @@
 //!
 //! The loop of one machine bounces between its flanks with wide gaps outside it, at thirty times
 //! the usual force. There a gap is named too, and what is `explained` has its right width.
-//!
-//! From the motor alone a gap is as wide as the lost motion: the flanks wind up by 2 Fc/K, 6.7 µm
-//! on the reference machine.
 
 use std::path::Path;
 
@@ -222,38 +219,4 @@ fn a_gap_is_told_from_the_compliance_beside_it_on_every_machine() {
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
     golden::check_some("gap-and-compliance", &rows, &scenarios);
-}
-
-/// Records of the reference machine from the motor alone: what was found on them.
-fn from_the_motor(gap_um: u32, folder: &Path) -> Report {
-    let records = folder.join(format!("records-{}", name(gap_um, Loop::Outside)));
-    let declared = ["inertia", "viscous", "coulomb", "offset"].map(String::from);
-    let mut dataset = Dataset::read(&records, None, Some(declared.to_vec())).unwrap();
-    (dataset.train.load, dataset.validate.load) = (None, None);
-    identify(&dataset, &mut |_| ()).unwrap().report
-}
-
-#[test]
-fn from_the_motor_alone_a_wide_gap_is_named_beside_presliding_and_none_where_there_is_none() {
-    let folder = tempfile::tempdir().unwrap();
-    let machine = machine(0, &[0, 50]);
-    identified_axes::record(&Stand::in_process(&machine), folder.path()).unwrap();
-    let reports = on_all_cores(&[0, 50], |gap_um| from_the_motor(*gap_um, folder.path()));
-    let has = |report: &Report, name: EffectName| report.found.contains(&name.to_string());
-    for (report, gapped) in reports.iter().zip([false, true]) {
-        assert!(has(report, EffectName::Presliding), "{:?}", report.found);
-        assert_eq!(
-            has(report, EffectName::Backlash),
-            gapped,
-            "{:?}",
-            report.found
-        );
-        assert_eq!(
-            report.verdict, "explained",
-            "{}",
-            report.residual.looks_like
-        );
-    }
-    let gap_um = 1.0e6 * reports[1].parameters["backlash_gap"].value;
-    assert!((48.0..58.0).contains(&gap_um), "{gap_um} µm, of 50");
 }
