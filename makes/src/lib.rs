@@ -69,20 +69,46 @@ impl Recipe {
     }
 }
 
+/// Makes and disturbances that were written apart, to be run once.
+pub struct Apart {
+    /// Which table its records are rows of.
+    pub table: &'static str,
+    /// Its makes.
+    pub makes: Vec<make::Make>,
+    /// Its disturbances, on machines of their own.
+    pub outside: &'static [outside::Outside],
+}
+
+/// What was written apart, in the order in which it was.
+#[must_use]
+pub fn written_apart() -> [Apart; 3] {
+    [
+        Apart {
+            table: "held-back",
+            makes: make::held_back(),
+            outside: outside::held_back::HELD_BACK,
+        },
+        Apart {
+            table: "unseen",
+            makes: make::unseen(),
+            outside: outside::unseen::UNSEEN,
+        },
+        Apart {
+            table: "untried",
+            makes: make::untried(),
+            outside: outside::untried::UNTRIED,
+        },
+    ]
+}
+
 /// Every record, for a seed.
 #[must_use]
 pub fn recipes(seed: u64) -> Vec<Recipe> {
     let mut all = of_makes("makes", &make::all(), seed);
-    all.extend(of_makes("held-back", &make::held_back(), seed));
-    all.extend(with_their_empty(
-        "held-back",
-        outside::held_back::HELD_BACK,
-        seed,
-    ));
-    all.extend(of_makes("unseen", &make::unseen(), seed));
-    all.extend(with_their_empty("unseen", outside::unseen::UNSEEN, seed));
-    all.extend(of_makes("untried", &make::untried(), seed));
-    all.extend(with_their_empty("untried", outside::untried::UNTRIED, seed));
+    for apart in written_apart() {
+        all.extend(of_makes(apart.table, &apart.makes, seed));
+        all.extend(with_their_empty(apart.table, apart.outside, seed));
+    }
     let clean = clean::CLEAN.iter();
     all.extend(clean.map(|row| Recipe::of("clean", row.name, move || row.entry(seed))));
     let outside = outside::OUTSIDE.iter();

@@ -4,16 +4,15 @@
 //! ∫F dt = M·Δv + Fv·Δx + Fc·∫sign v dt + F0·Δt, from the true motion of the run, not from its
 //! record. With its effect present the same sum leaves more, where the effect is one of effort.
 
-use makes::make::{Make, Presence, all, held_back, unseen, untried};
-use makes::outside::Outside;
-use makes::outside::held_back::HELD_BACK;
-use makes::outside::unseen::UNSEEN;
-use makes::outside::untried::UNTRIED;
+mod common;
+
+use common::{some_of, some_outside};
+use makes::make::{Make, Presence};
 use makes::rig::Rig;
 use makes::sensing::Trace;
 use makes::truth::Effect;
 use nalgebra::{DMatrix, DVector};
-use scope::{Scope, on_all_cores};
+use scope::on_all_cores;
 
 /// Windows of 20 ms: longer than the swing of any joint, shorter than any move.
 const WINDOW_S: f64 = 0.02;
@@ -62,21 +61,6 @@ fn windows(trace: &Trace) -> Vec<[f64; 5]> {
     (0..trace.motor.len() / count - 1)
         .filter_map(window)
         .collect()
-}
-
-/// As many makes of a kind as the scope runs, and of those that are held back.
-fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
-    let scope = Scope::now();
-    let of = |mut makes: Vec<Make>| {
-        makes.retain(|make| kind(make));
-        makes
-    };
-    let tables = [of(all()), of(held_back()), of(unseen()), of(untried())];
-    let some = scope.rows("makes", &tables[0], 4, 12);
-    let held_back = scope.rows("makes held back", &tables[1], 2, 6);
-    let unseen = scope.rows("makes unseen", &tables[2], 2, 6);
-    let untried = scope.rows("makes untried", &tables[3], 2, 6);
-    [some, held_back, unseen, untried].concat()
 }
 
 #[test]
@@ -134,11 +118,7 @@ fn an_effect_of_effort_leaves_what_the_declared_model_cannot_say() {
 
 #[test]
 fn a_machine_held_back_lacks_nothing_without_its_disturbance() {
-    let scope = Scope::now();
-    let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
-    let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
-    let untried = scope.rows("disturbances untried", UNTRIED, 2, 6);
-    let rows: Vec<Outside> = [held_back, unseen, untried].concat();
+    let rows = some_outside();
     let fits = on_all_cores(&rows, |row| (fit(&row.good_rig(1)).0, fit(&row.rig(1)).0));
     for (row, (good, disturbed)) in rows.iter().zip(fits) {
         println!(

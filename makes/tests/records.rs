@@ -1,32 +1,26 @@
 //! What holds of every record, whatever is judged on it.
 
+mod common;
+
+use common::{some_of, some_outside};
 use makes::draw::Draw;
 use makes::make::{Form, Make, Presence, all, held_back, unseen, untried};
 use makes::motion::Motion;
+use makes::outside::OUTSIDE;
 use makes::outside::held_back::HELD_BACK;
 use makes::outside::unseen::UNSEEN;
 use makes::outside::untried::UNTRIED;
-use makes::outside::{OUTSIDE, Outside};
 use makes::rig::{Kind, Rig};
 use makes::sensing::Stamps;
 use makes::table::Table;
 use makes::truth::Effect;
+use makes::written_apart;
 use scope::{Scope, on_all_cores};
 
 /// Those that are held back with them.
 fn every_make() -> Vec<Make> {
-    [all(), held_back(), unseen(), untried()].concat()
-}
-
-/// As many of either as the scope runs.
-fn some_makes() -> Vec<Make> {
-    let scope = Scope::now();
-    let tables = [all(), held_back(), unseen(), untried()];
-    let some = scope.rows("makes", &tables[0], 4, 12);
-    let held_back = scope.rows("makes held back", &tables[1], 2, 6);
-    let unseen = scope.rows("makes unseen", &tables[2], 2, 6);
-    let untried = scope.rows("makes untried", &tables[3], 2, 6);
-    [some, held_back, unseen, untried].concat()
+    let apart = written_apart().into_iter().flat_map(|apart| apart.makes);
+    all().into_iter().chain(apart).collect()
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -88,7 +82,7 @@ fn training(rig: &Rig) -> Table {
 
 #[test]
 fn every_hidden_effect_changes_the_record() {
-    let rows = some_makes();
+    let rows = some_of(|_| true);
     let changed = on_all_cores(&rows, |make| {
         let table = |presence| training(&make.rig(presence, 1));
         change(&table(Presence::Present), &table(Presence::Absent))
@@ -102,10 +96,7 @@ fn every_hidden_effect_changes_the_record() {
 fn every_disturbance_outside_the_list_changes_the_record() {
     let scope = Scope::now();
     let some = scope.rows("disturbances", OUTSIDE, 4, 12);
-    let held_back = scope.rows("disturbances held back", HELD_BACK, 2, 6);
-    let unseen = scope.rows("disturbances unseen", UNSEEN, 2, 6);
-    let untried = scope.rows("disturbances untried", UNTRIED, 2, 6);
-    let rows: Vec<Outside> = [some, held_back, unseen, untried].concat();
+    let rows = [some.to_vec(), some_outside()].concat();
     let changed = on_all_cores(&rows, |outside| {
         change(&training(&outside.rig(1)), &training(&outside.good_rig(1)))
     });
@@ -202,8 +193,12 @@ fn the_unseen_makes_hide_every_name_twice_and_no_make_has_a_name_of_another_tabl
     assert!(makes.len() >= 20 && UNSEEN.len() >= 8);
     assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
     let of_makes = every_make().into_iter().map(|make| make.name);
-    let of_outside = [OUTSIDE, HELD_BACK, UNSEEN, UNTRIED].concat();
-    let names: Vec<&str> = of_makes.chain(of_outside.iter().map(|o| o.name)).collect();
+    let of_outside = written_apart().map(|apart| apart.outside).concat();
+    let of_outside = OUTSIDE
+        .iter()
+        .chain(&of_outside)
+        .map(|outside| outside.name);
+    let names: Vec<&str> = of_makes.chain(of_outside).collect();
     let different: std::collections::BTreeSet<_> = names.iter().collect();
     assert_eq!(different.len(), names.len());
 }

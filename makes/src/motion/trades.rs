@@ -141,7 +141,7 @@ impl Room {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{ROOM, assert_keeps_to_its_room};
+    use super::super::tests::{ROOM, assert_keeps_to_its_room, turns, worst};
     use super::*;
 
     fn programmes() -> [Path; 5] {
@@ -162,29 +162,18 @@ mod tests {
 
     #[test]
     fn velocity_is_the_derivative_of_position_and_acceleration_that_of_velocity() {
-        let step = 1.0e-5;
         for (n, path) in programmes().iter().enumerate() {
-            let kinks = (0..20_000).filter(|k| {
-                let t = f64::from(*k) * 1.0e-3;
-                let (a, b, c) = (path.at(t - step), path.at(t), path.at(t + step));
-                let velocity = (c.position - a.position) / (2.0 * step) - b.velocity;
-                let acceleration = (c.velocity - a.velocity) / (2.0 * step) - b.acceleration;
-                assert!(velocity.abs() < 3.0e-5, "{n} {velocity}");
-                acceleration.abs() > 1.0e-3
-            });
-            let kinks = kinks.count();
-            assert!(kinks < 200, "{n}: {kinks}");
+            let (velocity, _, kinks) = worst(path);
+            assert!(velocity < 3.0e-5 && kinks < 0.01, "{n}: {velocity} {kinks}");
         }
     }
 
     #[test]
     fn every_motion_turns_round_often() {
         for (n, path) in programmes().iter().enumerate() {
-            let at = |k: i32| path.at(f64::from(k) * 1.0e-3).velocity;
-            let moving: Vec<f64> = (0..20_000).map(at).filter(|v| v.abs() > 1.0e-6).collect();
-            let turns = moving.windows(2).filter(|v| v[0] * v[1] < 0.0).count();
             // An indexer goes one way until its end.
             let least = if n == 1 { 2 } else { 8 };
+            let (turns, _) = turns(path);
             assert!(turns >= least, "{n}: {turns}");
         }
     }
