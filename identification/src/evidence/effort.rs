@@ -192,7 +192,12 @@ impl Output for Effort<'_> {
             && is_large
             && is_enough(&scored.gain)
             && self.is_beyond_rounding(&scored.gain)
-            && (scored.gain.t >= CERTAIN_T || is_certain(self.pair.bench, &candidate.model))
+            && is_certain(
+                self.pair.bench,
+                &candidate.model,
+                last(&candidate.model),
+                &scored.gain,
+            )
     }
 
     fn best(&self, candidates: &[Candidate<Model>]) -> Option<usize> {
@@ -240,7 +245,9 @@ impl Effort<'_> {
         let fit = self.pair.bench.cross_validate(&extended);
         let fitted = Fitted::new(extended, &fit.coefficients);
         let extended = fitted.model();
-        let (effect, parameter) = last(extended);
+        let Part {
+            effect, parameter, ..
+        } = *last(extended);
         let mut gain = Gain::of(base, &fit);
         if effect.is_judged_slow_too() {
             gain = gain.smaller(&self.gain_at_low_cutoff(model, extended, effect));
@@ -280,7 +287,7 @@ impl Effort<'_> {
     /// Whether the last part of a model leaves less than everything that nearly looks like it.
     fn leaves_less_than_look_alikes(&self, model: &Model) -> bool {
         let bench = self.pair.bench;
-        let mut others = as_look_alikes(model, last(model).0);
+        let mut others = as_look_alikes(model, last(model).effect);
         others.all(|other| forms::gain(bench, model, &other).share > 0.0)
     }
 
@@ -288,9 +295,8 @@ impl Effort<'_> {
     /// one with as many coefficients where the effect is declared, so that its name is not the
     /// question.
     fn beats_smooth(&self, model: &Model, extended: &Model) -> bool {
-        let effect = last(extended).0;
-        let name = effect.called().name();
-        let is_declared = name.is_some_and(|name| self.pair.bench.dataset.declares(name));
+        let effect = last(extended).effect;
+        let is_declared = effect.called().is_declared_in(self.pair.bench.dataset);
         let degree = if is_declared { 2.0 } else { SMOOTH_DEGREE };
         effect.smooth().is_none_or(|smooth| {
             let with_smooth = model.with(Part::found(smooth, degree));
@@ -300,7 +306,7 @@ impl Effort<'_> {
 
     /// Whether the last part of a model beats the candidates that it has to.
     fn beats_rivals(&self, model: &Model, candidates: &[Candidate<Model>]) -> bool {
-        let rivals = last(model).0.rivals();
+        let rivals = last(model).effect.rivals();
         let is_rival = |other: &&Candidate<Model>| {
             let called = other.scored.effect.name();
             other.scored.physical && called.is_some_and(|name| rivals.contains(&name))
@@ -324,13 +330,12 @@ fn better(a: &Candidate<Model>, b: &Candidate<Model>) -> Ordering {
 }
 
 fn is_outsider(candidate: &Candidate<Model>) -> bool {
-    last(&candidate.model).0.is_nearest_outsider()
+    last(&candidate.model).effect.is_nearest_outsider()
 }
 
-/// Effect and nonlinear parameter of the part that came in last.
-fn last(model: &Model) -> (&'static dyn Effect, f64) {
-    let part = model.parts.last().expect("an extended model has a part");
-    (part.effect, part.parameter)
+/// The part that came in last.
+fn last(model: &Model) -> &Part {
+    model.parts.last().expect("an extended model has a part")
 }
 
 /// Whether the last part of a fitted model can be its effect.
@@ -350,33 +355,25 @@ fn is_physical(effect: &dyn Effect, parameter: f64, fitted: &Fitted) -> bool {
     })
 }
 
-/// Whether what was fitted last differs from zero: asked where the gain sits in few blocks.
-fn is_certain(bench: &Bench<'_>, model: &Model) -> bool {
-    let estimates = bench.estimates(&bench.fit(model));
-    estimates.last().is_some_and(Estimate::is_certain)
-}
-
 /// Drops what the later ones have made superfluous.
 ///
 /// A part that came in early may hold the others where they would not be without it. So the model
 /// without it is refined before it is asked whether it is as good.
 fn remove(pair: Pair<'_>, model: &mut Model) {
     let bench = pair.bench;
-    let found: Vec<Part> = parts_found(model);
-    for part in found {
-        let mut without = model.without(&part);
+    let without = |model: &Model, part: &Part| {
+        let mut without = model.without(part);
         tuning::refine(pair, &mut without);
-        let gain = forms::gain(bench, model, &without);
-        let keeps =
-            is_worth_keeping(&gain) && (gain.t >= CERTAIN_T || is_certain_in(bench, model, &part));
-        if !keeps {
-            *model = without;
-        }
-    }
+        without
+    };
+    prune(model, &without, &|full, without, part| {
+        let gain = forms::gain(bench, full, without);
+        is_worth_keeping(&gain) && is_certain(bench, full, part, &gain)
+    });
 }
 
 /// The parts of a model that were found, from the outside inwards.
-pub(crate) fn parts_found(model: &Model) -> Vec<Part> {
+fn parts_found(model: &Model) -> Vec<Part> {
     let outwards = model.outwards().into_iter();
     outwards
         .map(|place| model.parts[place].clone())
@@ -384,11 +381,15 @@ pub(crate) fn parts_found(model: &Model) -> Vec<Part> {
         .collect()
 }
 
-/// Whether a part of a model differs from zero.
-fn is_certain_in(bench: &Bench<'_>, model: &Model, part: &Part) -> bool {
-    let estimates = bench.estimates(&bench.fit(model)).into_iter();
-    let mut own = estimates.filter(|one| one.part.is_same(part));
-    own.all(|estimate| estimate.is_certain())
+/// Whether a part of a model differs from zero: its interval is asked where its gain sits in few
+/// blocks.
+fn is_certain(bench: &Bench<'_>, model: &Model, part: &Part, gain: &Gain) -> bool {
+    let of_part = |one: &Estimate| one.part.is_same(part);
+    let differs = || {
+        let estimates = bench.estimates(&bench.fit(model)).into_iter();
+        estimates.filter(of_part).all(|one| one.is_certain())
+    };
+    gain.t >= CERTAIN_T || differs()
 }
 
 /// Whether a part that was accepted still removes enough.
@@ -396,12 +397,19 @@ fn is_worth_keeping(gain: &Gain) -> bool {
     gain.share >= EFFORT_SHARE && gain.percent >= EFFORT_PERCENT
 }
 
-/// Drops the parts that were found and, one after the other, are not worth keeping: `keeps` is
-/// asked with the full model and with the model without the part.
-fn prune(model: &mut Model, keeps: &dyn Fn(&Model, &Model) -> bool) {
-    for part in parts_found(model) {
-        let without = model.without(&part);
-        if !keeps(model, &without) {
+/// Drops the parts that were found and, one after the other, are not worth keeping. `without` takes
+/// a part out of a model; `keeps` is asked with the full model, the one without, and the part.
+pub(crate) fn prune(
+    model: &mut Model,
+    without: &dyn Fn(&Model, &Part) -> Model,
+    keeps: &dyn Fn(&Model, &Model, &Part) -> bool,
+) {
+    let mut place = 0;
+    while let Some(part) = parts_found(model).get(place) {
+        let without = without(model, part);
+        if keeps(model, &without, part) {
+            place += 1;
+        } else {
             *model = without;
         }
     }
@@ -464,7 +472,7 @@ fn with_inertia_of_the_load(bench: &Bench<'_>, model: &Model, part: Part) -> Mod
 pub(crate) fn remove_beside_load(bench: &Bench<'_>, model: &mut Model) -> bool {
     let before = model.parts.len();
     let error = |model: &Model| bench.cross_validate(&with_load_inertia(bench, model));
-    prune(model, &|full, without| {
+    prune(model, &Model::without, &|full, without, _| {
         is_worth_keeping(&Gain::of(&error(without), &error(full)))
     });
     model.parts.len() < before
@@ -506,7 +514,9 @@ mod tests {
 
     fn kept(start: &Model, keeps: &dyn Fn(&Model, &Model) -> bool) -> Vec<&'static str> {
         let mut model = start.clone();
-        prune(&mut model, keeps);
+        prune(&mut model, &Model::without, &|full, without, _| {
+            keeps(full, without)
+        });
         let parts = model.parts.iter();
         parts.map(|part| part.called().as_str()).collect()
     }

@@ -29,10 +29,7 @@ const DEGREES_PER_WAVE: usize = 2;
 
 /// An effect whose waves of known orders do not beat a smooth function of the position.
 pub(crate) fn unearned(bench: &Bench<'_>, model: &Model) -> Option<Called> {
-    let is_declared = |part: &Part| {
-        let name = part.called().name();
-        name.is_some_and(|name| bench.dataset.declares(name))
-    };
+    let is_declared = |part: &Part| part.called().is_declared_in(bench.dataset);
     let mut found = model
         .parts
         .iter()

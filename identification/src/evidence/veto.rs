@@ -1,6 +1,6 @@
 //! What another record contradicts.
 
-use crate::evidence::effort::parts_found;
+use crate::evidence::effort::prune;
 use crate::evidence::selection::{Selection, Vetoed};
 use crate::evidence::thresholds::{EFFORT_SHARE, VETO_PART, VETO_RATIO};
 use crate::fit::bench::Bench;
@@ -20,20 +20,17 @@ pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, selection: &mut Selecti
     let before = selection.model.clone();
     let inside = other.motion.within(bench.motion.span());
     let inside = Bench::new(other.dataset, &inside);
-    let keeps = |full: &Model, without: &Model| {
-        let is_placed = more_of(full, without).effect.against() == Against::Position;
-        let other = if is_placed { &inside } else { other };
-        let fits = [full, without].map(|model| bench.fit(model));
-        let left = fits.each_ref().map(|fitted| other.left_on_halves(fitted));
-        holds(left) && shows(left, other.adds(&fits[0], without))
-    };
-    for part in parts_found(&before) {
-        let model = &mut selection.model;
-        let without = without_all(model, &part);
-        if without.parts.len() < model.parts.len() && !keeps(model, &without) {
-            *model = without;
-        }
-    }
+    prune(
+        &mut selection.model,
+        &without_all,
+        &|full, without, part| {
+            let is_placed = part.effect.against() == Against::Position;
+            let other = if is_placed { &inside } else { other };
+            let fits = [full, without].map(|model| bench.fit(model));
+            let left = fits.each_ref().map(|fitted| other.left_on_halves(fitted));
+            holds(left) && shows(left, other.adds(&fits[0], without))
+        },
+    );
     let stays = |part: &&Part| {
         selection
             .model
@@ -73,13 +70,6 @@ fn holds([with, without]: [f64; 2]) -> bool {
 /// would remove `expected` there.
 fn shows([with, without]: [f64; 2], expected: f64) -> bool {
     expected < EFFORT_SHARE * without || without - with >= VETO_PART * expected
-}
-
-/// The part that one model has more than another.
-fn more_of<'a>(full: &'a Model, without: &Model) -> &'a Part {
-    let is_more = |part: &&Part| !without.parts.iter().any(|other| other.is_same(part));
-    let mut more = full.parts.iter().filter(is_more);
-    more.next().expect("one model has a part more")
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ use std::fmt;
 
 use axis_model::EffectName;
 
+use crate::record::dataset::Dataset;
+
 /// What a part is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Called {
@@ -33,6 +35,12 @@ impl Called {
             Self::Effect(name) => Some(name),
             Self::Structure(_) => None,
         }
+    }
+
+    /// Whether a dataset declares it.
+    #[must_use]
+    pub(crate) fn is_declared_in(self, dataset: &Dataset) -> bool {
+        self.name().is_some_and(|name| dataset.declares(name))
     }
 }
 

@@ -43,9 +43,7 @@ impl Effect for KnownOrder {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        let name = self.called().name();
-        let is_declared = name.is_some_and(|name| setting.dataset.declares(name));
-        let fewest = if is_declared {
+        let fewest = if self.called().is_declared_in(setting.dataset) {
             wave::FEWEST_PERIODS_DECLARED
         } else {
             wave::FEWEST_PERIODS_OF_AN_ORDER
