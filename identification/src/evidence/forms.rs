@@ -129,7 +129,8 @@ mod tests {
     use super::*;
     use crate::fit::made::{Axis, axis, found, model, usual};
     use axis_model::EffectName::{
-        Coulomb, FrictionDrift, Inertia, Offset, PositionDependentFriction, Stribeck, Viscous,
+        Coulomb, FrictionDrift, Inertia, LoadDependentFriction, Offset, PositionDependentFriction,
+        Stribeck, Viscous,
     };
 
     /// An axis with a fall of 15 N over 10 mm/s by an exponent, and `by_direction` of it the other
@@ -254,5 +255,32 @@ mod tests {
         assert_eq!(coefficients(|u| 6.0 * u - 4.0 * u * u), 2);
         let worn = |u: f64| 8.0 * (-((u - 0.3) / 0.4).powi(2)).exp();
         assert!(coefficients(worn) >= 8);
+    }
+
+    #[test]
+    fn the_load_presses_the_surface_that_wears_in_or_another_one() {
+        let form = |is_shared: bool| {
+            let axis = axis(|motion, row| {
+                let change = 0.8 * (-motion.time_s[row] / 2.0).exp();
+                let force = usual(motion, row) + 25.0 * change * motion.direction[row];
+                let surface = if is_shared { 1.0 + change } else { 1.0 };
+                force + 0.2 * surface * force.abs() * motion.direction[row]
+            });
+            let bench = axis.bench();
+            let pair = Pair {
+                bench: &bench,
+                low: &bench,
+            };
+            let mut start = model(&[Inertia, Viscous, Coulomb, Offset])
+                .with(found(FrictionDrift, 2.0))
+                .with(found(LoadDependentFriction, 0.0));
+            tuning::refine(pair, &mut start);
+            let model = chosen(pair, start);
+            let fitted = bench.fit(&model);
+            let ratio = fitted.of(LoadDependentFriction).unwrap()[0];
+            assert!((ratio - 0.2).abs() < 0.01, "{is_shared} {ratio}");
+            model.parts[5].effect.form()
+        };
+        assert_eq!((form(false), form(true)), (0.0, 1.0));
     }
 }

@@ -222,7 +222,7 @@ pub(crate) fn reversals(
     if let Some(both) = &both {
         let size = both.smaller_size();
         let scene = shapes.scene(dataset.resolution);
-        accepted = scene.with_both(accepted, both.tried(size));
+        accepted = scene.with_both(accepted, both.tried(rigid, size));
     }
     let something_left = rigid.all > VISIBLE_ROUNDINGS * rounding(dataset.resolution);
     Some(Reversals {
@@ -277,8 +277,11 @@ impl Shapes {
     fn scene(&self, resolution: f64) -> Scene {
         Scene {
             rigid: self.rigid.left(),
-            bristle: self.bristle.tried(self.bristle.deflection()),
-            gap: self.gap.as_ref().map(|gap| gap.tried(gap.width())),
+            bristle: self.bristle.tried(&self.rigid, self.bristle.deflection()),
+            gap: self
+                .gap
+                .as_ref()
+                .map(|gap| gap.tried(&self.rigid, gap.width())),
             smallest: FEWEST_COUNTS * resolution,
         }
     }
@@ -400,12 +403,20 @@ impl Judged {
         self.width().min(self.deflection())
     }
 
-    /// What the decision needs of a shape of some size.
-    fn tried(&self, size: f64) -> Tried {
+    /// What the decision needs of a shape of some size, beside rigid friction.
+    fn tried(&self, rigid: &Self, size: f64) -> Tried {
         Tried {
             left: self.left(),
             size,
+            t: self.t(rigid),
         }
+    }
+
+    /// Mean over standard error of the gain per block over rigid friction.
+    pub(crate) fn t(&self, rigid: &Self) -> f64 {
+        let pairs = rigid.blocks.iter().zip(&self.blocks);
+        let gains: Vec<f64> = pairs.map(|(before, after)| before - after).collect();
+        crate::fit::blocks::t_of(&gains)
     }
 
     /// What it leaves on blocks that were not fitted; no number where it ran away.
@@ -466,19 +477,6 @@ impl Reversals {
             backlash,
             undecided,
         };
-    }
-
-    /// Mean over standard error of the gain per block that a shape brings over rigid friction.
-    #[must_use]
-    pub(crate) fn t(&self, judged: &Judged) -> f64 {
-        let gains: Vec<f64> = self
-            .rigid
-            .blocks
-            .iter()
-            .zip(&judged.blocks)
-            .map(|(before, after)| before - after)
-            .collect();
-        crate::fit::blocks::t_of(&gains)
     }
 
     /// Bristle and gap of the simulation that was accepted, with intervals.
@@ -729,7 +727,7 @@ mod tests {
         let scene = shapes.scene(1.5e-6);
         assert_eq!(scene.smallest, 3.0e-6);
         assert_eq!((scene.rigid.held_out, scene.rigid.all), (9.0, 18.0));
-        let Tried { left, size } = scene.bristle;
+        let Tried { left, size, .. } = scene.bristle;
         assert_eq!((left.held_out, left.all, size), (5.0, 10.0, 3.0e-6));
         assert!(scene.gap.is_none());
         assert!((rounding(4.0) - 4.0 / 12.0_f64.sqrt()).abs() < 1.0e-5);
@@ -908,7 +906,7 @@ mod tests {
         found.rigid.blocks = vec![5.0, 6.0, 7.0];
         found.bristle.blocks = vec![4.0, 4.0, 4.0];
         // Gains 1, 2, 3: mean 2, standard error 1/√3.
-        let t = found.t(&found.bristle);
+        let t = found.bristle.t(&found.rigid);
         assert!((t - 12.0_f64.sqrt()).abs() < 1.0e-12, "{t}");
     }
 }

@@ -178,7 +178,7 @@ impl<'a> Observed<'a> {
         let mut level = vec![0.0; motion.len()];
         let mut others = vec![0.0; motion.len()];
         for Term { part, own } in fitted.terms() {
-            let columns = part.effect.columns(motion, bench.dataset, part.parameter);
+            let columns = bench.raw(part);
             for (column, coefficient) in columns.iter().zip(own) {
                 if part.effect.is_level() {
                     let signed = column.iter().zip(&motion.direction);

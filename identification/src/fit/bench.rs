@@ -12,9 +12,10 @@ use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::fitted::{Estimate, Fitted, Searched, Term};
 use crate::fit::rows::Rows;
 use crate::fit::span::Span;
+use crate::model::effects::by_motion::{Others, place_among_usual};
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Effect, place_among_forms};
-use crate::model::inverse::{Model, Part};
+use crate::model::effects::{Effect, Instant, place_among_forms};
+use crate::model::inverse::{Beside, Model, Part};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
 use crate::motion::kinematics::Kinematics;
@@ -39,7 +40,9 @@ pub(crate) struct Gathered {
 
 type Columns = Arc<Vec<Vec<f64>>>;
 /// Effect, nonlinear parameter, form, number of columns.
-type Key = (Called, u64, u64, usize);
+type Structure = (Called, u64, u64, usize);
+/// A structure, and those beside which it is with their coefficients.
+type Key = (Structure, Vec<(Structure, Vec<u64>)>);
 type Kept = HashMap<Key, Columns>;
 
 /// A record on which models are fitted; it keeps the low-passed columns of the terms that it has
@@ -54,6 +57,8 @@ pub(crate) struct Bench<'a> {
 
 /// So many coefficients of one part are a curve.
 const FEWEST_OF_A_CURVE: usize = 4;
+/// Coefficients of another day are known to within this share of themselves.
+const ANOTHER_DAY: f64 = 1.0;
 /// Values that are kept before all are forgotten: 32 MB.
 const KEPT_VALUES: usize = 4_000_000;
 
@@ -69,9 +74,61 @@ impl<'a> Bench<'a> {
     }
 
     /// Raw columns of a part.
-    fn raw(&self, part: &Part) -> Vec<Vec<f64>> {
-        let effect = part.effect;
-        effect.columns(self.motion, self.dataset, part.parameter)
+    #[must_use]
+    pub(crate) fn raw(&self, part: &Part) -> Vec<Vec<f64>> {
+        let (motion, dataset) = (self.motion, self.dataset);
+        let others = self.others(&part.beside);
+        part.effect
+            .columns_beside(motion, dataset, part.parameter, &others)
+    }
+
+    /// What the parts of an earlier fit did.
+    fn others(&self, parts: &[Beside]) -> Others {
+        let mut others = Others::default();
+        if parts
+            .iter()
+            .any(|beside| place_among_usual(beside.part.called()).is_none())
+        {
+            let none = || vec![0.0; self.motion.len()];
+            (others.load, others.motor, others.level) = (none(), none(), none());
+        }
+        for Beside { part, own } in parts {
+            if let Some(place) = place_among_usual(part.called()) {
+                others.usual.get_or_insert_default()[place] = own[0];
+                continue;
+            }
+            let on_motor = part.effect.acts_on_motor();
+            let sum = if on_motor {
+                &mut others.motor
+            } else {
+                &mut others.load
+            };
+            add(sum, &self.raw(part), own);
+            if !part.effect.comes_and_goes() {
+                add(&mut others.level, &[self.level(part, own)], &[1.0]);
+            }
+        }
+        others
+    }
+
+    /// Friction level of a part by rows, as a simulation has it.
+    fn level(&self, part: &Part, own: &[f64]) -> Vec<f64> {
+        let (middle, half) = self.dataset.travel();
+        let duration_s = self.dataset.train.duration_s();
+        let motion = self.motion;
+        let level = |row: usize| {
+            let (position, time_s) = (motion.position_lp[row], motion.time_s[row]);
+            let at = Instant {
+                position,
+                scaled: (position - middle) / half,
+                velocity: motion.velocity_lp[row],
+                time_s,
+                time_share: time_s / duration_s,
+                ..Instant::default()
+            };
+            part.effect.action(&at, part.parameter, own).level
+        };
+        (0..motion.len()).map(level).collect()
     }
 
     fn low_passed(&self, part: &Part) -> Vec<Vec<f64>> {
@@ -80,8 +137,7 @@ impl<'a> Bench<'a> {
 
     /// Low-passed columns of a part.
     fn columns(&self, part: &Part) -> Columns {
-        let [parameter, form] = [part.parameter, part.effect.form()].map(f64::to_bits);
-        let key = (part.called(), parameter, form, part.width());
+        let key = key(part);
         if let Some(known) = self.kept().get(&key) {
             return Arc::clone(known);
         }
@@ -197,22 +253,29 @@ impl<'a> Bench<'a> {
     #[must_use]
     pub(crate) fn left_on_halves(&self, fitted: &Fitted) -> f64 {
         let mut design = self.design(fitted.model());
-        design.columns = in_shapes(design.columns, fitted);
+        let known;
+        (design.columns, known) = in_shapes(design.columns, fitted);
         let halves = self.blocks(&design).in_folds(2);
-        halves.cross_validate().held_out.iter().sum()
+        halves.left_out_near(&known, ANOTHER_DAY, self.independent_samples())
     }
 
     /// Sum of squares of what the parts of a fit that a smaller model lacks would add here, as far
     /// as the smaller model cannot take their place.
     #[must_use]
     pub(crate) fn adds(&self, fitted: &Fitted, without: &Model) -> f64 {
+        let own = self.besides(fitted, without);
+        let span = Span::of(self.design(without).into_columns(), &self.motion.fitted);
+        span.outside(&own).iter().map(|value| value * value).sum()
+    }
+
+    /// What the parts of a fit that a smaller model lacks do here.
+    fn besides(&self, fitted: &Fitted, without: &Model) -> Vec<f64> {
         let mut own = vec![0.0; self.motion.len()];
         let known = |part: &Part| without.parts.iter().any(|other| other.is_same(part));
         for term in fitted.terms().filter(|term| !known(term.part)) {
             add(&mut own, &self.columns(term.part), term.own);
         }
-        let span = Span::of(self.design(without).into_columns(), &self.motion.fitted);
-        span.outside(&own).iter().map(|value| value * value).sum()
+        own
     }
 
     /// Errors on held-out blocks of a fit that may move, linearised, the nonlinear parameter and
@@ -389,19 +452,31 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The columns of a fit, those of each curve as the one that it has become.
-fn in_shapes(columns: Vec<Vec<f64>>, fitted: &Fitted) -> Vec<Vec<f64>> {
+fn key(part: &Part) -> Key {
+    let structure = |part: &Part| {
+        let [parameter, form] = [part.parameter, part.effect.form()].map(f64::to_bits);
+        (part.called(), parameter, form, part.width())
+    };
+    let bits = |own: &[f64]| own.iter().map(|value| value.to_bits()).collect();
+    let beside = part.beside.iter();
+    let beside = beside.map(|beside| (structure(&beside.part), bits(&beside.own)));
+    (structure(part), beside.collect())
+}
+
+/// The columns of a fit with their coefficients, those of each curve as the one that it has become.
+fn in_shapes(columns: Vec<Vec<f64>>, fitted: &Fitted) -> (Vec<Vec<f64>>, Vec<f64>) {
     let mut columns = columns.into_iter();
     let shaped = fitted.terms().flat_map(|term| {
         let own: Vec<Vec<f64>> = columns.by_ref().take(term.own.len()).collect();
+        let known = term.own.iter().copied();
         if own.len() < FEWEST_OF_A_CURVE {
-            return own;
+            return own.into_iter().zip(known).collect::<Vec<_>>();
         }
         let mut curve = vec![0.0; own[0].len()];
         add(&mut curve, &own, term.own);
-        vec![curve]
+        vec![(curve, 1.0)]
     });
-    shaped.collect()
+    shaped.unzip()
 }
 
 impl Gathered {

@@ -122,6 +122,31 @@ impl Blocks {
         }
     }
 
+    /// Sum of squares left on folds that were left out, with coefficients that are known beforehand
+    /// to within a share of themselves: what a fold's rest does not tell stays where it was. The
+    /// blocks hold so many independent samples.
+    #[must_use]
+    pub(crate) fn left_out_near(
+        &self,
+        known: &[f64],
+        within: f64,
+        independent_samples: f64,
+    ) -> f64 {
+        let size = self.scale.len();
+        let total = sum(&self.grams, size);
+        let of_fold = |fold: usize| {
+            let own = self.grams.iter().skip(fold).step_by(self.folds);
+            let own = own.fold(DMatrix::zeros(size, size), |sum, gram| sum + gram);
+            let rest = &total - &own;
+            let share =
+                rest[(size - 1, size - 1)] / total[(size - 1, size - 1)].max(f64::MIN_POSITIVE);
+            let samples = (share * independent_samples).max(1.0);
+            let variance = left(&rest, &self.solve(&rest)) / samples;
+            left(&own, &near(&rest, known, within, variance))
+        };
+        (0..self.folds).map(of_fold).sum()
+    }
+
     /// Half widths of 95 % intervals by the jackknife over folds. The folds are few, so the
     /// quantile is that of Student's t with one degree of freedom less than there are folds (Efron
     /// and Tibshirani, An Introduction to the Bootstrap, 1993, ch. 12).
@@ -233,6 +258,25 @@ impl Blocks {
             .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
         DVector::from_fn(size, |i, _| solution[i] * self.scale[size] / self.scale[i])
     }
+}
+
+/// Least squares by a Gram matrix with coefficients that are known to within a share of themselves,
+/// where an independent sample of the target has this variance (Tikhonov's regularisation).
+fn near(gram: &DMatrix<f64>, known: &[f64], within: f64, variance: f64) -> DVector<f64> {
+    let size = known.len();
+    let known = DVector::from_row_slice(known);
+    let columns = gram.view((0, 0), (size, size)).into_owned();
+    let right = gram.view((0, size), (size, 1)).column(0) - &columns * &known;
+    // In shares of what is known, so that all are of one size; what is known as zero stays so.
+    let scaled = DMatrix::from_fn(size, size, |i, j| columns[(i, j)] * known[i] * known[j]);
+    let right = DVector::from_fn(size, |i, _| right[i] * known[i]);
+    let prior = variance / within.powi(2);
+    let ridge = prior.max(RIDGE * scaled.trace()).max(f64::MIN_POSITIVE);
+    let normal = scaled + DMatrix::identity(size, size) * ridge;
+    let shares = normal
+        .cholesky()
+        .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
+    DVector::from_fn(size, |i, _| known[i] * (1.0 + shares[i]))
 }
 
 fn sum(grams: &[DMatrix<f64>], size: usize) -> DMatrix<f64> {
@@ -358,6 +402,43 @@ mod tests {
             scale: vec![1.0, 1.0],
             grams,
         }
+    }
+
+    #[test]
+    fn what_a_record_does_not_tell_stays_as_it_was_known() {
+        let known = [2.0, 1.0];
+        let at = |gram: &[f64], within, variance| {
+            let coefficients = near(
+                &DMatrix::from_row_slice(3, 3, gram),
+                &known,
+                within,
+                variance,
+            );
+            [coefficients[0], coefficients[1]]
+        };
+        let is_near = |one: [f64; 2], other: [f64; 2]| {
+            one.iter()
+                .zip(other)
+                .all(|(one, other)| (one - other).abs() < 1.0e-4)
+        };
+        // Nothing is told.
+        assert!(is_near(at(&[0.0; 9], 1.0, 1.0), known));
+        // Two columns that are one: their sum is 4 instead of 3, by shares of what was known.
+        let together = [1.0, 1.0, 4.0, 1.0, 1.0, 4.0, 4.0, 4.0, 16.0];
+        assert!(is_near(at(&together, 1.0, 1.0e-9), [2.8, 1.2]));
+        // Two columns for themselves, of a certain record and of one that says next to nothing.
+        let apart = [1.0, 0.0, 3.0, 0.0, 1.0, -1.0, 3.0, -1.0, 10.0];
+        assert!(is_near(at(&apart, 1.0, 1.0e-9), [3.0, -1.0]));
+        assert!(is_near(at(&apart, 1.0e-3, 1.0e3), known));
+    }
+
+    #[test]
+    fn folds_that_are_left_out_are_judged_between_what_was_known_and_what_the_others_say() {
+        let blocks = blocks(&[(1.0, 2.0), (1.0, 2.0), (1.0, 5.0)]);
+        let left = |within| blocks.left_out_near(&[2.0], within, 30.0);
+        let others: f64 = blocks.cross_validate().held_out.iter().sum();
+        assert!((left(1.0e-6) - 9.0).abs() < 1.0e-6);
+        assert!((left(1.0e6) - others).abs() < 1.0e-6, "{others}");
     }
 
     #[test]

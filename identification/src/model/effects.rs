@@ -10,6 +10,7 @@ use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
+use by_motion::Others;
 
 pub(crate) mod by_motion;
 pub(crate) mod coulomb;
@@ -146,9 +147,11 @@ pub(crate) struct Instant {
     pub time_s: f64,
     /// Time over the duration of the training record.
     pub time_share: f64,
-    /// Effort on the motor, without what acts against it there. Like the resistance, only effects
-    /// that follow the load are told it.
+    /// Effort on the motor, without what acts against it there. Like what follows, only effects that
+    /// follow the load are told it.
     pub effort: f64,
+    /// Friction level of the axis over its Coulomb friction.
+    pub surface: f64,
     /// Force against the motor by all effects that do not follow the load, the inertia apart.
     pub resistance: f64,
 }
@@ -221,6 +224,18 @@ pub(crate) trait Effect: Sync {
 
     /// Columns at a nonlinear parameter.
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, parameter: f64) -> Vec<Vec<f64>>;
+
+    /// Columns beside the other effects of a model, by what these did in an earlier fit: for an
+    /// effect that is a factor of their forces.
+    fn columns_beside(
+        &self,
+        motion: &Kinematics,
+        dataset: &Dataset,
+        parameter: f64,
+        _others: &Others,
+    ) -> Vec<Vec<f64>> {
+        self.columns(motion, dataset, parameter)
+    }
 
     /// What it does to a simulated axis; `own` are the coefficients of its columns.
     fn action(&self, _at: &Instant, _parameter: f64, _own: &[f64]) -> Action {
@@ -348,7 +363,8 @@ pub(crate) trait Effect: Sync {
         false
     }
 
-    /// Whether it needs to know the forces of the other effects ([`Instant::effort`]).
+    /// Whether it needs to know the forces of the other effects ([`Instant::effort`],
+    /// [`Effect::columns_beside`]).
     fn follows_load(&self) -> bool {
         false
     }
@@ -389,7 +405,7 @@ pub(crate) static LIBRARY: [&dyn Effect; 20] = [
     &position_dependent_friction::PositionDependentFriction,
     friction_drift::BOTH_WAYS,
     &quadratic_drag::QuadraticDrag,
-    &load_dependent_friction::LoadDependentFriction,
+    load_dependent_friction::OWN_SURFACE,
     &payload::Payload,
     &position_dependent_inertia::PositionDependentInertia,
     &torque_constant_ripple::TorqueConstantRipple,

@@ -36,6 +36,17 @@ pub(crate) struct Part {
     pub origin: Origin,
     /// Coefficients of its columns about which a saturating actuator is linearised; empty: zero.
     pub about: Vec<f64>,
+    /// What the other parts did in an earlier fit: for an effect that follows the load.
+    pub beside: Vec<Beside>,
+}
+
+/// A part of an earlier fit, with the coefficients of its columns.
+#[derive(Clone)]
+pub(crate) struct Beside {
+    /// The part.
+    pub part: Part,
+    /// Its coefficients, one a column.
+    pub own: Vec<f64>,
 }
 
 impl Part {
@@ -47,6 +58,7 @@ impl Part {
             parameter,
             origin: Origin::Found,
             about: Vec::new(),
+            beside: Vec::new(),
         }
     }
 

@@ -23,6 +23,9 @@ pub(crate) struct Kinematics {
     pub time_s: Vec<f64>,
     /// Acceleration, raw.
     pub acceleration: Vec<f64>,
+    /// Acceleration, low-passed with the cut-off of the fit whatever that of the others is: it goes
+    /// into columns that are not linear in it, and those are low-passed in their turn.
+    pub acceleration_lp: Vec<f64>,
     /// Velocity, raw.
     pub velocity: Vec<f64>,
     /// Load − motor acceleration, raw, where both were measured.
@@ -85,6 +88,8 @@ impl Kinematics {
     fn of_piece(dataset: &Dataset, record: &Record, filter: LowPass) -> Self {
         let (period_s, hold) = (record.period_s, dataset.hold);
         let bodies = Bodies::of(record, hold);
+        let of_the_fit = LowPass::new(period_s, fit_cutoff_hz(dataset, record));
+        let of_the_fit = of_the_fit.unwrap_or_else(|| filter.clone());
         let friction = bodies.with_friction();
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, hold);
         let velocity_lp = filter.apply(&friction.velocity);
@@ -113,6 +118,7 @@ impl Kinematics {
             pieces: record.pieces(),
             duration_s: record.duration_s(),
             load_acceleration: bodies.load_acceleration,
+            acceleration_lp: of_the_fit.apply(&bodies.motor.acceleration),
             acceleration: bodies.motor.acceleration,
             velocity: bodies.motor.velocity,
             effort,
@@ -128,6 +134,7 @@ impl Kinematics {
             .extend(later.map(|piece| start + piece.start..start + piece.end));
         self.time_s.extend(next.time_s);
         self.acceleration.extend(next.acceleration);
+        self.acceleration_lp.extend(next.acceleration_lp);
         self.velocity.extend(next.velocity);
         extend(&mut self.load_acceleration, next.load_acceleration);
         self.position_lp.extend(next.position_lp);
@@ -296,5 +303,16 @@ mod tests {
         assert!((difference[100] - 1.0e-4).abs() < 1.0e-12);
         let behind = motion.position_lp[3000] - motion.friction_position[3000];
         assert!((behind - 1.0e-4).abs() < 1.0e-7, "{behind}");
+    }
+
+    #[test]
+    fn acceleration_for_what_is_not_linear_in_it_has_the_cutoff_of_the_fit() {
+        let dataset = dataset();
+        let of = |motion: Kinematics| (motion.acceleration_lp, motion.velocity_lp);
+        let (fit, velocity) = of(Kinematics::new(&dataset, &dataset.train).unwrap());
+        let slow = Kinematics::with_cutoff(&dataset, &dataset.train, 5.0).unwrap();
+        let (same, slower) = of(slow);
+        assert_eq!(fit, same);
+        assert_ne!(velocity, slower);
     }
 }

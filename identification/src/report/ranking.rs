@@ -146,7 +146,7 @@ fn on_free_run(findings: &Findings<'_>) -> Vec<Candidate> {
         effect: effect.to_string(),
         validation_error_percent: None,
         difference_left_percent: None,
-        evidence: reversals.t(judged),
+        evidence: judged.t(&reversals.rigid),
         share: removed(judged.held_out, reversals.rigid.held_out),
         judged_on: FREE_RUN,
         physical: true,

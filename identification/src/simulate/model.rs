@@ -180,10 +180,22 @@ impl Forces<'_> {
         let loaded = Instant {
             effort: acting.motor,
             resistance: acting.resistance(now.velocity),
+            surface: self.surface(&instant),
             ..instant
         };
         acting.add_all(&self.by_load, &loaded);
         acting
+    }
+
+    /// Friction level over Coulomb friction, as far as it is a matter of the surface.
+    fn surface(&self, at: &Instant) -> f64 {
+        let level = |force: &AtWork<'_>| force.effect.action(at, force.parameter, force.own).level;
+        let of_surface = |force: &&AtWork<'_>| !force.effect.comes_and_goes();
+        let is_coulomb = |force: &&AtWork<'_>| force.effect.called() == EffectName::Coulomb;
+        let forces = || self.by_motion.iter();
+        let coulomb: f64 = forces().filter(is_coulomb).map(level).sum();
+        let all: f64 = forces().filter(of_surface).map(level).sum();
+        if coulomb > 0.0 { all / coulomb } else { 1.0 }
     }
 }
 

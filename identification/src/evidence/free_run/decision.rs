@@ -3,9 +3,11 @@
 //! A shape is *seen* where it leaves clearly less than rigid friction and is larger than what an
 //! encoder shows of nothing. It is *accepted* where it also leaves clearly less than its rival.
 //! Where something is seen and nothing accepted, the run is undecided. "Less" is asked twice: on
-//! the blocks that were not fitted and on the whole record.
+//! the blocks that were not fitted and on the whole record. A gap must be certain over the blocks too.
 
-use crate::evidence::thresholds::{HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS};
+use crate::evidence::thresholds::{
+    CERTAIN_T, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
+};
 
 /// What a free run accepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +36,8 @@ pub(crate) struct Tried {
     pub left: Left,
     /// Deflection of its bristle or width of its gap; the smaller one where it has both.
     pub size: f64,
+    /// Mean over standard error of the gains per block over rigid friction.
+    pub t: f64,
 }
 
 /// What was tried beside each other.
@@ -77,7 +81,8 @@ impl Scene {
         let is_bristle = self.is_seen(bristle);
         let gap = self.gap.as_ref().filter(|gap| self.is_seen(gap));
         let presliding = is_bristle && self.gap.as_ref().is_none_or(|gap| wins(bristle, gap));
-        let backlash = gap.is_some_and(|gap| wins(gap, bristle));
+        // A gap shows at every reversal: one that shows in few blocks stands for something else.
+        let backlash = gap.is_some_and(|gap| wins(gap, bristle) && gap.t >= CERTAIN_T);
         Accepted {
             presliding,
             backlash,
@@ -114,6 +119,7 @@ mod tests {
         Tried {
             left: left(held_out, all),
             size: 4.0e-6,
+            t: CERTAIN_T,
         }
     }
 
@@ -210,6 +216,15 @@ mod tests {
                 tried(0.41, 0.41),
                 Some(tried(0.3, 0.3)),
                 gap,
+            ),
+            (
+                "a gap that shows in few blocks",
+                nothing,
+                Some(Tried {
+                    t: CERTAIN_T - 0.1,
+                    ..tried(0.1, 0.1)
+                }),
+                torn,
             ),
             (
                 "a gap just does not",

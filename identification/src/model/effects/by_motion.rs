@@ -5,9 +5,15 @@
 //! the fit would explain noise by itself. So the effort is computed from the motion. The few
 //! coefficients for that are fitted to the record beside the effect's columns, and both are made to
 //! agree by a few rounds. A handful of numbers from thousands of rows hold no noise of a row.
+//!
+//! What else the model has ([`Others`]) is a part of the effort as it was fitted last: a payload is
+//! carried, and friction that grows with the load grows with it.
 
 use nalgebra::DMatrix;
 
+use axis_model::EffectName;
+
+use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 
 /// Number of the usual columns.
@@ -16,11 +22,61 @@ const USUAL: usize = 4;
 /// Acceleration, velocity, direction, one.
 pub(crate) type Usual = [f64; USUAL];
 
+/// What the other effects of a model did in an earlier fit; row by row, empty where there are none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Others {
+    /// Coefficients of the usual effects, where they are known.
+    pub usual: Option<Usual>,
+    /// Force by what else acts on the load.
+    pub load: Vec<f64>,
+    /// Force by what else acts on the motor and its screw.
+    pub motor: Vec<f64>,
+    /// Friction level beside Coulomb's, as far as it is a matter of the surface.
+    pub level: Vec<f64>,
+}
+
+impl Others {
+    /// Force on the load at a row.
+    #[inline]
+    #[must_use]
+    pub(crate) fn load(&self, row: usize) -> f64 {
+        at(&self.load, row)
+    }
+
+    /// Friction level beside Coulomb's at a row.
+    #[inline]
+    #[must_use]
+    pub(crate) fn level(&self, row: usize) -> f64 {
+        at(&self.level, row)
+    }
+
+    /// Force on both at a row.
+    #[inline]
+    #[must_use]
+    pub(crate) fn all(&self, row: usize) -> f64 {
+        self.load(row) + at(&self.motor, row)
+    }
+
+    fn has_forces(&self) -> bool {
+        !(self.load.is_empty() && self.motor.is_empty())
+    }
+}
+
+fn at(values: &[f64], row: usize) -> f64 {
+    values.get(row).copied().unwrap_or(0.0)
+}
+
+/// Place among the usual four, which are fitted beside another's own columns.
+#[must_use]
+pub(crate) fn place_among_usual(called: Called) -> Option<usize> {
+    use EffectName::{Coulomb, Inertia, Offset, Viscous};
+    let mut usual = [Inertia, Viscous, Coulomb, Offset].into_iter();
+    usual.position(|name| called == name)
+}
+
 /// What the usual effort is made of, row by row and low-passed.
 pub(crate) struct ByMotion<'a> {
     motion: &'a Kinematics,
-    /// Low-passed acceleration.
-    pub acceleration: Vec<f64>,
     /// The fitted rows.
     places: Vec<usize>,
     /// What a fitted row has of each, low-passed, and its effort.
@@ -36,13 +92,26 @@ impl<'a> ByMotion<'a> {
     /// Of a motion.
     #[must_use]
     pub(crate) fn of(motion: &'a Kinematics) -> Self {
+        Self::beside(motion, &Others::default())
+    }
+
+    /// Of a motion, beside the other effects of a model: their force is taken off the effort.
+    #[must_use]
+    pub(crate) fn beside(motion: &'a Kinematics, others: &Others) -> Self {
         let acceleration = motion.low_passed(&motion.acceleration);
         let direction = motion.low_passed(&motion.direction);
         let places: Vec<usize> = (0..motion.len())
             .filter(|row| motion.fitted[*row])
             .collect();
+        let others = if others.has_forces() {
+            let all: Vec<f64> = (0..motion.len()).map(|row| others.all(row)).collect();
+            motion.low_passed(&all)
+        } else {
+            vec![0.0; motion.len()]
+        };
         let row = |row: &usize| {
-            let (velocity, effort) = (motion.velocity_lp[*row], motion.effort_lp[*row]);
+            let velocity = motion.velocity_lp[*row];
+            let effort = motion.effort_lp[*row] - others[*row];
             [acceleration[*row], velocity, direction[*row], 1.0, effort]
         };
         let rows: Vec<Row> = places.iter().map(row).collect();
@@ -54,7 +123,6 @@ impl<'a> ByMotion<'a> {
             }),
             rows,
             places,
-            acceleration,
         }
     }
 
@@ -63,7 +131,7 @@ impl<'a> ByMotion<'a> {
     #[must_use]
     pub(crate) fn at(&self, row: usize) -> Usual {
         [
-            self.acceleration[row],
+            self.motion.acceleration_lp[row],
             self.motion.velocity_lp[row],
             self.motion.direction[row],
             1.0,

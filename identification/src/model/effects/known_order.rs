@@ -9,6 +9,7 @@
 //! The name must be earned ([`crate::evidence::known_orders`]): such a wave must beat the smooth
 //! functions of the position ([`Effect::smooth`]).
 
+use super::by_motion::Others;
 use super::{Action, Against, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, wave};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
@@ -36,6 +37,16 @@ impl Effect for KnownOrder {
 
     fn columns(&self, motion: &Kinematics, dataset: &Dataset, k: f64) -> Vec<Vec<f64>> {
         self.of.columns(motion, dataset, k)
+    }
+
+    fn columns_beside(
+        &self,
+        motion: &Kinematics,
+        dataset: &Dataset,
+        k: f64,
+        others: &Others,
+    ) -> Vec<Vec<f64>> {
+        self.of.columns_beside(motion, dataset, k, others)
     }
 
     fn width(&self, k: f64) -> usize {

@@ -13,7 +13,12 @@
 //!
 //! The effort itself would be a noisy regressor: its noise has the same sign as the target's
 //! wherever the motor drives, and the effect would be found on every axis that hardly brakes. So Q
-//! is computed from the motion ([`ByMotion`]), once more after each step of σ.
+//! is computed from the motion ([`ByMotion`]), once more after each step of σ. What the model has
+//! beside the usual effects (a payload, a spring) is a part of R as it was fitted last ([`Others`]).
+//!
+//! Where the friction of the axis changes with place, speed or time, the load may press that very
+//! surface (a nut that warms up) or another one (a worn guide beside the screw). These are two
+//! forms; the second is the usual one.
 //!
 //! What is found is friction only where the friction without load is: an unphysical split of the
 //! usual columns could have any ratio.
@@ -23,13 +28,21 @@
 
 use axis_model::EffectName;
 
-use super::by_motion::{ByMotion, Usual};
+use super::by_motion::{ByMotion, Others, Usual};
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
-/// μ·|Q|·sign(v).
-pub(crate) struct LoadDependentFriction;
+/// μ·|Q|·sign(v), or with the friction that it adds to: μ·|Q|·sign(v)·F(x, v, t)/Fc.
+pub(crate) struct LoadDependentFriction {
+    /// Whether the load presses the surface whose friction changes with place, speed or time.
+    is_shared: bool,
+}
+
+/// On a surface of its own: the usual form.
+pub(crate) static OWN_SURFACE: &LoadDependentFriction = &LoadDependentFriction { is_shared: false };
+static SHARED_SURFACE: &LoadDependentFriction = &LoadDependentFriction { is_shared: true };
+static FORMS: [&dyn Effect; 2] = [SHARED_SURFACE, OWN_SURFACE];
 
 /// Shares of the moved mass that are tried as the motor's own.
 const MOTOR_SHARES: [f64; 5] = [0.0, 0.2, 0.4, 0.6, 0.8];
@@ -50,22 +63,36 @@ fn force(coefficients: Usual, motor_share: f64, at: Usual) -> f64 {
     (1.0 - motor_share) * mass * at[0] + viscous * at[1] + coulomb * at[2] + offset
 }
 
-/// |Q| sign(v) at the coefficients of a fit.
-fn column(motion: &Kinematics, by_motion: &ByMotion<'_>, usual: Usual, share: f64) -> Vec<f64> {
-    let size = |row| force(usual, share, by_motion.at(row)).abs();
-    let rows = 0..motion.len();
-    rows.map(|row| motion.direction[row] * size(row)).collect()
-}
-
-/// The column that agrees with the coefficients that are fitted beside it.
-fn consistent(motion: &Kinematics, share: f64) -> Vec<f64> {
-    let by_motion = ByMotion::of(motion);
-    let mut own = vec![0.0; motion.len()];
-    for _ in 0..FITS {
-        let (usual, _) = by_motion.fit(&[own]);
-        own = column(motion, &by_motion, usual, share);
+impl LoadDependentFriction {
+    /// |Q| sign(v) with the coefficients that are known, or that agree with those that are fitted
+    /// beside it; what else the load has to be moved against is a part of Q.
+    fn column(&self, motion: &Kinematics, share: f64, others: &Others) -> Vec<f64> {
+        let by_motion = ByMotion::beside(motion, others);
+        let of = |usual: Usual| {
+            let [.., coulomb, _] = usual;
+            let at = |row| {
+                let transmitted = force(usual, share, by_motion.at(row)) + others.load(row);
+                motion.direction[row] * f64::abs(transmitted) * self.surface(coulomb, others, row)
+            };
+            (0..motion.len()).map(at).collect()
+        };
+        if let Some(usual) = others.usual {
+            return of(usual);
+        }
+        (0..FITS).fold(vec![0.0; motion.len()], |own, _| {
+            let (usual, _) = by_motion.fit(&[own]);
+            of(usual)
+        })
     }
-    own
+
+    /// How much friction its surface has at a row, over what it has where nothing changes it.
+    fn surface(&self, coulomb: f64, others: &Others, row: usize) -> f64 {
+        if self.is_shared && coulomb > 0.0 {
+            1.0 + others.level(row) / coulomb
+        } else {
+            1.0
+        }
+    }
 }
 
 impl Effect for LoadDependentFriction {
@@ -74,11 +101,34 @@ impl Effect for LoadDependentFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "mu |Q| sign(v), Q = force by motion behind the motor's own inertia"
+        if self.is_shared {
+            "mu |Q| F/Fc sign(v), Q = force by motion behind the motor's own inertia, F/Fc = friction \
+             over its level"
+        } else {
+            "mu |Q| sign(v), Q = force by motion behind the motor's own inertia"
+        }
     }
 
-    fn columns(&self, motion: &Kinematics, _: &Dataset, motor_share: f64) -> Vec<Vec<f64>> {
-        vec![consistent(motion, motor_share)]
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn form(&self) -> f64 {
+        f64::from(u8::from(self.is_shared))
+    }
+
+    fn columns(&self, motion: &Kinematics, dataset: &Dataset, motor_share: f64) -> Vec<Vec<f64>> {
+        self.columns_beside(motion, dataset, motor_share, &Others::default())
+    }
+
+    fn columns_beside(
+        &self,
+        motion: &Kinematics,
+        _: &Dataset,
+        motor_share: f64,
+        others: &Others,
+    ) -> Vec<Vec<f64>> {
+        vec![self.column(motion, motor_share, others)]
     }
 
     fn is_tuned(&self) -> bool {
@@ -106,8 +156,9 @@ impl Effect for LoadDependentFriction {
         } else {
             1.0
         };
-        let by_motion = behind.abs() / (1.0 + drives * (1.0 - motor_share) * own[0]);
-        Action::level(own[0] * by_motion)
+        let surface = if self.is_shared { at.surface } else { 1.0 };
+        let ratio = own[0] * surface;
+        Action::level(ratio * behind.abs() / (1.0 + drives * (1.0 - motor_share) * ratio))
     }
 
     fn start(&self, _: &Dataset) -> f64 {
@@ -164,7 +215,7 @@ mod tests {
     #[test]
     fn the_column_is_the_force_by_motion_against_the_direction() {
         let axis = axis(loaded);
-        let columns = LoadDependentFriction.columns(&axis.motion, &axis.dataset, MOTOR_SHARE);
+        let columns = OWN_SURFACE.columns(&axis.motion, &axis.dataset, MOTOR_SHARE);
         let mut brakes = 0;
         for row in (300..5700).filter(|row| axis.motion.fitted[*row]) {
             let wanted = by_motion(&axis.motion, row);
@@ -208,7 +259,7 @@ mod tests {
                 effort: mass_force + resistance + level * velocity.signum(),
                 ..Instant::default()
             };
-            let action = LoadDependentFriction.action(&at, MOTOR_SHARE, &[RATIO]);
+            let action = OWN_SURFACE.action(&at, MOTOR_SHARE, &[RATIO]);
             assert!(
                 (action.level - level).abs() < 1.0e-9,
                 "{} {level}",
@@ -219,9 +270,24 @@ mod tests {
     }
 
     #[test]
+    fn on_a_surface_that_changes_it_changes_with_it() {
+        let at = Instant {
+            velocity: 0.1,
+            resistance: 60.0,
+            effort: 130.0,
+            surface: 1.8,
+            ..Instant::default()
+        };
+        let level = |effect: &dyn Effect, ratio| effect.action(&at, MOTOR_SHARE, &[ratio]).level;
+        let shared = level(SHARED_SURFACE, RATIO);
+        assert_eq!(shared, level(OWN_SURFACE, 1.8 * RATIO));
+        assert!(shared > level(OWN_SURFACE, RATIO));
+    }
+
+    #[test]
     fn a_ratio_is_above_zero_and_below_self_locking_beside_friction_that_is_none_below_zero() {
         let physical = |ratio: f64, coulomb: f64, viscous: f64| {
-            LoadDependentFriction.is_physical(&Fitted {
+            OWN_SURFACE.is_physical(&Fitted {
                 parameter: MOTOR_SHARE,
                 own: &[ratio],
                 inertia: 90.0,
@@ -252,7 +318,7 @@ mod tests {
             coefficients: &[(RATIO, 0.01)],
             dataset: &axis(usual).dataset,
         };
-        let named = LoadDependentFriction.parameters(&naming);
+        let named = OWN_SURFACE.parameters(&naming);
         let wanted = Named {
             name: EffectName::LoadDependentFriction.parameters()[0].report_name(),
             value: RATIO,

@@ -11,7 +11,7 @@
 
 use axis_model::EffectName;
 
-use super::by_motion::{ByMotion, Usual};
+use super::by_motion::{ByMotion, Others, Usual};
 use super::known_order::KnownOrder;
 use super::position_dependent_inertia::PositionDependentInertia;
 use super::torque_ripple::TorqueRipple;
@@ -52,26 +52,30 @@ const LARGEST: f64 = 0.5;
 const ROUNDS: usize = 3;
 
 /// The columns with the effort of each row by the motion that agrees with its wave, `q / (1 + w)`.
-fn consistent(motion: &Kinematics, k: f64) -> Vec<Vec<f64>> {
+fn consistent(motion: &Kinematics, k: f64, others: &Others) -> Vec<Vec<f64>> {
     let waves = wave::columns(motion, k, |_| Weight::PLAIN);
-    let by_motion = ByMotion::of(motion);
+    let by_motion = ByMotion::beside(motion, others);
+    let with_wave = |usual: Usual, own: &[f64]| {
+        let effort = |row| by_motion.effort(usual, row) + others.all(row);
+        with_wave(&effort, own, &waves)
+    };
     let (mut usual, mut own) = by_motion.fit(&[]);
     for _ in 0..ROUNDS {
-        let efforts = with_wave(&by_motion, usual, &own, &waves);
+        let efforts = with_wave(usual, &own);
         (usual, own) = by_motion.fit(&columns(&waves, &efforts));
     }
-    columns(&waves, &with_wave(&by_motion, usual, &own, &waves))
+    columns(&waves, &with_wave(usual, &own))
 }
 
 /// Effort of each row by the motion, over one and its wave; without coefficients of that as it is.
-fn with_wave(by_motion: &ByMotion<'_>, usual: Usual, own: &[f64], waves: &[Vec<f64>]) -> Vec<f64> {
+fn with_wave(effort: &dyn Fn(usize) -> f64, own: &[f64], waves: &[Vec<f64>]) -> Vec<f64> {
     let rows = waves[0].iter().zip(&waves[1]).enumerate();
     rows.map(|(row, (cos, sin))| {
         let wave = match own {
             [a, b] => a * cos + b * sin,
             _ => 0.0,
         };
-        by_motion.effort(usual, row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
+        effort(row) / (1.0 + wave.clamp(-LARGEST, LARGEST))
     })
     .collect()
 }
@@ -93,8 +97,18 @@ impl Effect for TorqueConstantRipple {
         "-u (a cos(2 pi k x) + b sin(2 pi k x)), u = effort by motion"
     }
 
-    fn columns(&self, motion: &Kinematics, _: &Dataset, k: f64) -> Vec<Vec<f64>> {
-        consistent(motion, k)
+    fn columns(&self, motion: &Kinematics, dataset: &Dataset, k: f64) -> Vec<Vec<f64>> {
+        self.columns_beside(motion, dataset, k, &Others::default())
+    }
+
+    fn columns_beside(
+        &self,
+        motion: &Kinematics,
+        _: &Dataset,
+        k: f64,
+        others: &Others,
+    ) -> Vec<Vec<f64>> {
+        consistent(motion, k, others)
     }
 
     fn width(&self, _: f64) -> usize {
