@@ -10,4 +10,5 @@ pub(crate) mod rows;
 pub(crate) mod search;
 pub(crate) mod side_by_side;
 pub(crate) mod span;
+pub(crate) mod told;
 pub(crate) mod tuning;

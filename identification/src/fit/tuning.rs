@@ -5,11 +5,11 @@
 //! lower cut-off.
 
 use crate::fit::bench::Bench;
-use crate::fit::fitted::{Fitted, Term};
+use crate::fit::fitted::Fitted;
 use crate::fit::search::{descend, smallest};
-use crate::model::effects::by_motion::place_among_usual;
+use crate::fit::told;
 use crate::model::effects::{Effect, Setting, Stage, place_among_forms};
-use crate::model::inverse::{Beside, Model, Part};
+use crate::model::inverse::{Model, Part};
 
 /// Cut-off for the search of a delay: quantisation comes back through the controller as effort that
 /// follows measured noise, and looks like a delay at 100 Hz but not here.
@@ -78,54 +78,6 @@ fn linearised(bench: &Bench<'_>, mut model: Model) -> Model {
     model
 }
 
-/// The model whose effects that follow the load are told what the others do by its own fit. In the
-/// end that is the usual ones too: on another record they do what they did here.
-fn told(bench: &Bench<'_>, mut model: Model) -> Model {
-    let follows = |part: &Part| part.effect.follows_load();
-    if !model.parts.iter().any(follows) {
-        return model;
-    }
-    let tell = |model: &mut Model, told: &[Beside]| {
-        let follow = model.parts.iter_mut().filter(|part| follows(part));
-        follow.for_each(|part| part.beside = told.to_vec());
-    };
-    tell(&mut model, &[]);
-    let has_others = model
-        .parts
-        .iter()
-        .any(|part| is_told(part) && !is_usual(part));
-    for _ in 0..if has_others { RENEWALS } else { 0 } {
-        let others = beside(&bench.fit(&model));
-        tell(&mut model, &others);
-    }
-    let all = told_by(&bench.fit(&model), &is_told);
-    tell(&mut model, &all);
-    model
-}
-
-/// Whether effects that follow the load are told of a part.
-fn is_told(part: &Part) -> bool {
-    part.effect.stage() == Stage::Force && !part.effect.follows_load()
-}
-
-fn is_usual(part: &Part) -> bool {
-    place_among_usual(part.called()).is_some()
-}
-
-/// What effects that follow the load are told of the others, but for the usual ones.
-fn beside(fitted: &Fitted) -> Vec<Beside> {
-    told_by(fitted, &|part| is_told(part) && !is_usual(part))
-}
-
-fn told_by(fitted: &Fitted, is_one: &dyn Fn(&Part) -> bool) -> Vec<Beside> {
-    let others = fitted.terms().filter(|term| is_one(term.part));
-    let with_own = |term: Term<'_>| Beside {
-        part: term.part.clone(),
-        own: term.own.to_vec(),
-    };
-    others.map(with_own).collect()
-}
-
 /// Puts the working point of the forces where a fit has them.
 fn put_about(model: &mut Model, fitted: &Fitted) {
     let is_force = |part: &Part| part.effect.stage() == Stage::Force;
@@ -147,11 +99,7 @@ pub(crate) fn extended(
 ) -> Option<Model> {
     let bench = pair.of(effect);
     let fixed = bench.gathered(model);
-    let beside = if effect.follows_load() {
-        beside(&bench.fit(model))
-    } else {
-        Vec::new()
-    };
+    let beside = told::beside(bench, model, effect);
     let part = |parameter: f64| Part {
         beside: beside.clone(),
         ..Part::found(effect, parameter)
@@ -178,7 +126,7 @@ pub(crate) fn extended(
     let step = effect.first_step(bench.motion, start);
     let parameter = descend(start, step, bounds, &sse);
     let settled = settled(bench, with(parameter), effect);
-    Some(told(pair.bench, settled))
+    Some(told::of_the_others(pair.bench, settled))
 }
 
 /// Whether an effect that repeats has another parameter than those of its kind in the model.
@@ -253,7 +201,7 @@ pub(crate) fn refine(pair: Pair<'_>, model: &mut Model) {
         for place in model.outwards() {
             refine_one(pair, model, place);
         }
-        *model = told(pair.bench, std::mem::take(model));
+        *model = told::of_the_others(pair.bench, std::mem::take(model));
     }
 }
 
@@ -276,7 +224,7 @@ fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
 #[must_use]
 pub(crate) fn refined_at(pair: Pair<'_>, mut model: Model, place: usize) -> Model {
     refine_one(pair, &mut model, place);
-    told(pair.bench, model)
+    told::of_the_others(pair.bench, model)
 }
 
 /// The model with the form of a part that leaves the least, each form with its nonlinear parameter
@@ -299,7 +247,6 @@ mod tests {
     use super::*;
     use crate::fit::made::{USUAL, axis, found, model, usual};
     use crate::model::effects::find;
-    use crate::model::name::Called;
     use crate::motion::kinematics::Kinematics;
     use axis_model::EffectName::{
         self, Coulomb, Delay, FrictionDrift, Inertia, Offset, Stribeck, TorqueRipple,
@@ -480,64 +427,14 @@ mod tests {
         }
     }
 
-    const RATIO: f64 = 0.15;
-    const SHARE: f64 = 0.4;
-
-    /// What friction that grows with the load adds to a force, on a surface of its own.
-    fn by_load(motion: &Kinematics, row: usize, force: f64) -> f64 {
-        let behind = force - SHARE * USUAL[0] * motion.acceleration[row];
-        RATIO * behind.abs() * motion.direction[row]
-    }
-
-    #[test]
-    fn friction_that_grows_with_the_load_grows_with_all_that_the_load_is() {
-        let axis = axis(|motion, row| {
-            let is_there = f64::from(u8::from(motion.time_s[row] > 2.5));
-            let brings = 30.0 * motion.acceleration[row] + 6.0 * motion.direction[row] + 40.0;
-            let force = usual(motion, row) + is_there * brings;
-            force + by_load(motion, row, force)
-        });
-        let bench = axis.bench();
-        let untold = model(&DECLARED)
-            .with(found(EffectName::Payload, 2.5))
-            .with(found(EffectName::LoadDependentFriction, SHARE));
-        let told = told(&bench, untold.clone());
-        assert!(bench.sse(&told) < 0.05 * bench.sse(&untold));
-        let fitted = bench.fit(&told);
-        let ratio = fitted.of(EffectName::LoadDependentFriction).unwrap()[0];
-        assert!((ratio - RATIO).abs() < 0.003, "{ratio}");
-        // Told of the usual ones, it needs no fit of its own on another record.
-        assert_eq!(told.parts[5].beside.len(), DECLARED.len() + 1);
-        // Nothing else follows the load, and what is told is told anew.
-        assert!(told.parts[..5].iter().all(|part| part.beside.is_empty()));
-        let alone = super::told(&bench, told.without(&told.parts[4]));
-        assert_eq!(alone.parts[4].beside.len(), DECLARED.len());
-    }
-
-    #[test]
-    fn a_torque_constant_that_ripples_acts_on_all_of_the_effort() {
-        let wave = |x: f64| 0.1 * (TAU * 400.0 * x).cos();
-        let axis = axis(|motion, row| {
-            let force = usual(motion, row) + 3000.0 * motion.position_lp[row];
-            force / (1.0 + wave(motion.position_lp[row]))
-        });
-        let bench = axis.bench();
-        let spring = find(Called::Structure("force over position")).unwrap();
-        let untold = model(&DECLARED)
-            .with(Part::found(spring, 2.0))
-            .with(found(EffectName::TorqueConstantRipple, 400.0));
-        let told = told(&bench, untold.clone());
-        let [before, after] = [&untold, &told].map(|model| bench.sse(model));
-        assert!(after < 0.1 * before, "{before} {after}");
-    }
-
     #[test]
     fn the_delay_is_the_same_beside_friction_that_grows_with_the_load() {
-        let late = 4;
+        let (share, late) = (0.4, 4);
         let axis = axis(|motion, row| {
             let row = (row + late).min(motion.len() - 1);
             let force = usual(motion, row);
-            force + by_load(motion, row, force)
+            let behind = force - share * USUAL[0] * motion.acceleration[row];
+            force + 0.15 * behind.abs() * motion.direction[row]
         });
         let slow = Kinematics::with_cutoff(&axis.dataset, &axis.dataset.train, 30.0).unwrap();
         let (bench, low) = (axis.bench(), Bench::new(&axis.dataset, &slow));
@@ -546,7 +443,7 @@ mod tests {
             low: &low,
         };
         let mut model = model(&DECLARED)
-            .with(found(EffectName::LoadDependentFriction, SHARE))
+            .with(found(EffectName::LoadDependentFriction, share))
             .with(found(Delay, 1.0e-3));
         refine(pair, &mut model);
         let delay_s = model.parts[5].parameter;
