@@ -15,6 +15,7 @@
 //! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
 //! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
 //! | [`mod@make::untried`], [`outside::untried`] | those written after these, to be run once |
+//! | [`mod@make::unmet`], [`outside::unmet`] | those written after all of these, to be run once |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -41,8 +42,8 @@ pub mod truth;
 
 /// How one record is made, without making it.
 pub struct Recipe {
-    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `clean`, `outside`
-    /// or `spoilt`.
+    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`, `clean`,
+    /// `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -81,7 +82,7 @@ pub struct Apart {
 
 /// What was written apart, in the order in which it was.
 #[must_use]
-pub fn written_apart() -> [Apart; 3] {
+pub fn written_apart() -> [Apart; 4] {
     [
         Apart {
             table: "held-back",
@@ -97,6 +98,11 @@ pub fn written_apart() -> [Apart; 3] {
             table: "untried",
             makes: make::untried(),
             outside: outside::untried::UNTRIED,
+        },
+        Apart {
+            table: "unmet",
+            makes: make::unmet(),
+            outside: outside::unmet::UNMET,
         },
     ]
 }

@@ -13,6 +13,7 @@ pub mod held_back;
 pub mod logs;
 pub mod loops;
 pub mod screws;
+pub mod unmet;
 pub mod unseen;
 pub mod untried;
 pub mod vertical;
@@ -175,6 +176,13 @@ pub fn unseen() -> Vec<Make> {
 #[must_use]
 pub fn untried() -> Vec<Make> {
     untried::FAMILIES.concat()
+}
+
+/// Makes that are written after those of [`untried()`] had been run and had become known. They are
+/// a table of their own.
+#[must_use]
+pub fn unmet() -> Vec<Make> {
+    unmet::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.

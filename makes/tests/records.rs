@@ -4,10 +4,11 @@ mod common;
 
 use common::{some_of, some_outside};
 use makes::draw::Draw;
-use makes::make::{Form, Make, Presence, all, held_back, unseen, untried};
+use makes::make::{Form, Make, Presence, all, held_back, unmet, unseen, untried};
 use makes::motion::Motion;
 use makes::outside::OUTSIDE;
 use makes::outside::held_back::HELD_BACK;
+use makes::outside::unmet::UNMET;
 use makes::outside::unseen::UNSEEN;
 use makes::outside::untried::UNTRIED;
 use makes::rig::{Kind, Rig};
@@ -212,6 +213,25 @@ fn the_untried_makes_hide_every_name_of_an_effect_twice() {
         assert_eq!(hidden(effect), 2, "{effect:?}");
     }
     assert!(makes.len() == 20 && UNTRIED.len() == 6);
+    assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
+}
+
+#[test]
+fn the_unmet_makes_hide_every_name_of_an_effect_and_gaps_and_their_like_twice() {
+    let makes = unmet();
+    let hidden = |effect: &Effect| makes.iter().filter(|m| m.hides.contains(effect)).count();
+    for effect in NAMES.iter().filter(|effect| **effect != Effect::Offset) {
+        assert!(hidden(effect) >= 1, "{effect:?}");
+    }
+    for effect in [
+        Effect::Backlash,
+        Effect::Compliance,
+        Effect::Presliding,
+        Effect::Stribeck,
+    ] {
+        assert!(hidden(&effect) >= 2, "{effect:?}");
+    }
+    assert!(makes.len() == 14 && UNMET.len() == 5);
     assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
 }
 

@@ -6,12 +6,12 @@
 //! motion of the run. What these leave on the machine with one effect alone is put beside what they
 //! leave on the machine without any. An effect between motor and load shows in their distance.
 //!
-//! Of an untried make more is asked: an effect shows in the validation record as in the training
-//! record, what is left with it is half as much again as what is left without it, and no two
-//! effects of a make leave the same.
+//! Of an untried or unmet make more is asked: an effect shows in the validation record as in the
+//! training record, what is left with it is half as much again as what is left without it, and no
+//! two effects of a make leave the same.
 
 use makes::draw::Draw;
-use makes::make::{Make, Presence, unseen, untried};
+use makes::make::{Make, Presence, unmet, unseen, untried};
 use makes::motion::Motion;
 use makes::rig::Rig;
 use makes::sensing::{Source, Trace};
@@ -31,8 +31,8 @@ const SHARE_OF_EFFORT: f64 = 0.005;
 /// Growth of the distance between motor and load, in counts of the load's scale.
 const COUNTS: f64 = 5.0;
 
-/// An effect of an untried make takes this share of what is left without its name: a factor of one
-/// and a half.
+/// An effect of an untried or unmet make takes this share of what is left without its name: a factor
+/// of one and a half.
 const UNTRIED_SHARE_OF_LEFT: f64 = 1.0 / 3.0;
 /// Cosine of what two effects of a make leave.
 const ALIKE: f64 = 0.75;
@@ -229,10 +229,10 @@ fn shown_and_alike(make: &Make, motion: fn(&Rig) -> &(Motion, f64)) -> (Vec<Show
     (shown.collect(), alike.fold(0.0, f64::max))
 }
 
-#[test]
-fn each_effect_of_an_untried_make_shows_in_both_records_and_is_like_no_other() {
-    let makes = untried();
-    let some = Scope::now().spread("untried makes, effect by effect", &makes, 1, 6);
+/// Asks of makes of a table that each effect shows in both records and is like no other.
+fn assert_each_shows_in_both_records_and_is_like_no_other(table: &str, makes: &[Make]) {
+    let rows = format!("{table} makes, effect by effect");
+    let some = Scope::now().spread(&rows, makes, 1, 6);
     let all = on_all_cores(&some, |make| {
         [
             shown_and_alike(make, |rig| &rig.training),
@@ -250,4 +250,14 @@ fn each_effect_of_an_untried_make_shows_in_both_records_and_is_like_no_other() {
             }
         }
     }
+}
+
+#[test]
+fn each_effect_of_an_untried_make_shows_in_both_records_and_is_like_no_other() {
+    assert_each_shows_in_both_records_and_is_like_no_other("untried", &untried());
+}
+
+#[test]
+fn each_effect_of_an_unmet_make_shows_in_both_records_and_is_like_no_other() {
+    assert_each_shows_in_both_records_and_is_like_no_other("unmet", &unmet());
 }

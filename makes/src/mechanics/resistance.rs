@@ -4,6 +4,8 @@
 //!   again above the critical velocity v_c (Wouterse, IEE Proceedings B 138, 1991).
 //! - Fluids that thin under shear: consistency·|v|ⁿ with n below one (Ostwald and de Waele's law;
 //!   Bird, Armstrong and Hassager, Dynamics of Polymeric Liquids, 1987, ch. 4).
+//! - A flap in water that opens one way: quadratic·v² in positive motion, nothing in negative
+//!   (Newman, Marine Hydrodynamics, 1977, ch. 2, for the plate).
 
 /// A law of resistance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +24,9 @@ pub enum Resistance {
         /// n.
         exponent: f64,
     },
+    /// A flap that opens in negative motion: quadratic drag in positive motion, N s²/m² or
+    /// N m s²/rad².
+    Flap(f64),
 }
 
 impl Resistance {
@@ -40,6 +45,7 @@ impl Resistance {
                 consistency,
                 exponent,
             } => (consistency * libm::pow(velocity.abs(), exponent)).copysign(velocity),
+            Self::Flap(quadratic) => quadratic * velocity.max(0.0) * velocity.max(0.0),
         }
     }
 }
@@ -67,5 +73,11 @@ mod tests {
         };
         assert!((glue.against(1.0) - 40.0).abs() < 1.0e-12);
         assert!((glue.against(-0.25) + 20.0).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn a_flap_drags_with_velocity_squared_one_way_only() {
+        let flap = Resistance::Flap(40.0);
+        assert_eq!([0.5, -0.5].map(|v| flap.against(v)), [10.0, 0.0]);
     }
 }
