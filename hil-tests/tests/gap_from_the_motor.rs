@@ -7,7 +7,8 @@
 //! Whatever the machine: no gap is named where there is none, and what is `explained` has no other
 //! name than what the machine has. From 50 µm on a gap is named or the record is `unexplained`, but
 //! for the machines of [`HIDDEN`]: their motors hardly feel what is behind the gap. The reference
-//! machine is explained with its bristle, without a gap and beside one of 50 µm. The golden table has the width that is named on each machine, zero where none is.
+//! machine is explained with its bristle, without a gap and beside one of 50 µm. The golden table
+//! has the width that is named on each machine, zero where none is.
 
 use std::path::Path;
 

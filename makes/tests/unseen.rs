@@ -31,8 +31,8 @@ const SHARE_OF_EFFORT: f64 = 0.005;
 /// Growth of the distance between motor and load, in counts of the load's scale.
 const COUNTS: f64 = 5.0;
 
-/// An effect of an untried or unmet make takes this share of what is left without its name: a factor
-/// of one and a half.
+/// An effect of an untried or unmet make takes this share of what is left without its name: a
+/// factor of one and a half.
 const UNTRIED_SHARE_OF_LEFT: f64 = 1.0 / 3.0;
 /// Cosine of what two effects of a make leave.
 const ALIKE: f64 = 0.75;

@@ -11,10 +11,10 @@ use crate::model::inverse::{Model, Origin, Part};
 /// Drops what another record contradicts: what holds on one record only is no effect of the axis.
 ///
 /// Only the structure is asked. Coefficients are those of one half of the other record, judged on
-/// its other half, and the other way round: friction of another day is no contradiction. Where half
-/// a record does not tell an effect's size, it is asked at the size that it has on the first one. An
-/// effect goes where it makes that error larger by more than a little, and where it should have shown, by
-/// the size that it has on the first record, but does not.
+/// its other half, and the other way round: friction of another day is no contradiction. What half
+/// a record does not tell stays as it is on the first one. An effect goes where it makes that error
+/// larger by more than a little, and where it should have shown, by the size that it has on the
+/// first record, but does not.
 ///
 /// A model with an effect over the position is asked where the first record was: beyond that it is
 /// not known, nor what goes with it there.

@@ -147,8 +147,8 @@ pub(crate) struct Instant {
     pub time_s: f64,
     /// Time over the duration of the training record.
     pub time_share: f64,
-    /// Effort on the motor, without what acts against it there. Like what follows, only effects that
-    /// follow the load are told it.
+    /// Effort on the motor, without what acts against it there. Like what comes next, only effects
+    /// that follow the load are told it.
     pub effort: f64,
     /// Friction level of the axis over its Coulomb friction.
     pub surface: f64,

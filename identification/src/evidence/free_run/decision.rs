@@ -3,7 +3,8 @@
 //! A shape is *seen* where it leaves clearly less than rigid friction and is larger than what an
 //! encoder shows of nothing. It is *accepted* where it also leaves clearly less than its rival.
 //! Where something is seen and nothing accepted, the run is undecided. "Less" is asked twice: on
-//! the blocks that were not fitted and on the whole record. A gap must be certain over the blocks too.
+//! the blocks that were not fitted and on the whole record. A gap must be certain over the blocks
+//! too.
 
 use crate::evidence::thresholds::{
     CERTAIN_T, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,

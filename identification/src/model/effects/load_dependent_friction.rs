@@ -14,7 +14,8 @@
 //! The effort itself would be a noisy regressor: its noise has the same sign as the target's
 //! wherever the motor drives, and the effect would be found on every axis that hardly brakes. So Q
 //! is computed from the motion ([`ByMotion`]), once more after each step of σ. What the model has
-//! beside the usual effects (a payload, a spring) is a part of R as it was fitted last ([`Others`]).
+//! beside the usual effects (a payload, a spring) is a part of it as it was fitted last
+//! ([`Others`]).
 //!
 //! Where the friction of the axis changes with place, speed or time, the load may press that very
 //! surface (a nut that warms up) or another one (a worn guide beside the screw). These are two
