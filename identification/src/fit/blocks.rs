@@ -18,6 +18,10 @@ const RIDGE: f64 = 1.0e-12;
 /// A column is in one fold where no more than this part of its sum of squares is in the others.
 const NOTHING_LEFT: f64 = 1.0e-6;
 
+/// A coefficient that is known beforehand may differ by as much as makes this part of the target's
+/// root mean square: one that is next to zero (an offset) changes by more than a share of itself.
+const LEAST_SPREAD: f64 = 0.05;
+
 /// Gram matrices of `[columns, target]`, one per block.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks {
@@ -123,8 +127,8 @@ impl Blocks {
     }
 
     /// Sum of squares left on folds that were left out, with coefficients that are known beforehand
-    /// to within a share of themselves: what a fold's rest does not tell stays where it was. The
-    /// blocks hold so many independent samples.
+    /// to within a share of themselves, or [`LEAST_SPREAD`]: what a fold's rest does not tell stays
+    /// where it was. The blocks hold so many independent samples.
     #[must_use]
     pub(crate) fn left_out_near(
         &self,
@@ -134,6 +138,12 @@ impl Blocks {
     ) -> f64 {
         let size = self.scale.len();
         let total = sum(&self.grams, size);
+        let least = |i: usize| LEAST_SPREAD * (total[(size - 1, size - 1)] / total[(i, i)]).sqrt();
+        let spread = known.iter().enumerate().map(|(i, known)| {
+            let least = Some(least(i)).filter(|least| least.is_finite());
+            within * known.abs().max(least.unwrap_or(0.0))
+        });
+        let spread: Vec<f64> = spread.collect();
         let of_fold = |fold: usize| {
             let own = self.grams.iter().skip(fold).step_by(self.folds);
             let own = own.fold(DMatrix::zeros(size, size), |sum, gram| sum + gram);
@@ -142,7 +152,7 @@ impl Blocks {
                 rest[(size - 1, size - 1)] / total[(size - 1, size - 1)].max(f64::MIN_POSITIVE);
             let samples = (share * independent_samples).max(1.0);
             let variance = left(&rest, &self.solve(&rest)) / samples;
-            left(&own, &near(&rest, known, within, variance))
+            left(&own, &near(&rest, known, &spread, variance))
         };
         (0..self.folds).map(of_fold).sum()
     }
@@ -260,23 +270,22 @@ impl Blocks {
     }
 }
 
-/// Least squares by a Gram matrix with coefficients that are known to within a share of themselves,
-/// where an independent sample of the target has this variance (Tikhonov's regularisation).
-fn near(gram: &DMatrix<f64>, known: &[f64], within: f64, variance: f64) -> DVector<f64> {
+/// Least squares by a Gram matrix with coefficients that are known to within a spread each, where
+/// an independent sample of the target has this variance (Tikhonov's regularisation).
+fn near(gram: &DMatrix<f64>, known: &[f64], spread: &[f64], variance: f64) -> DVector<f64> {
     let size = known.len();
     let known = DVector::from_row_slice(known);
     let columns = gram.view((0, 0), (size, size)).into_owned();
     let right = gram.view((0, size), (size, 1)).column(0) - &columns * &known;
-    // In shares of what is known, so that all are of one size; what is known as zero stays so.
-    let scaled = DMatrix::from_fn(size, size, |i, j| columns[(i, j)] * known[i] * known[j]);
-    let right = DVector::from_fn(size, |i, _| right[i] * known[i]);
-    let prior = variance / within.powi(2);
-    let ridge = prior.max(RIDGE * scaled.trace()).max(f64::MIN_POSITIVE);
+    // In spreads, so that all are of one size.
+    let scaled = DMatrix::from_fn(size, size, |i, j| columns[(i, j)] * spread[i] * spread[j]);
+    let right = DVector::from_fn(size, |i, _| right[i] * spread[i]);
+    let ridge = variance.max(RIDGE * scaled.trace()).max(f64::MIN_POSITIVE);
     let normal = scaled + DMatrix::identity(size, size) * ridge;
-    let shares = normal
+    let moved = normal
         .cholesky()
         .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
-    DVector::from_fn(size, |i, _| known[i] * (1.0 + shares[i]))
+    DVector::from_fn(size, |i, _| known[i] + spread[i] * moved[i])
 }
 
 fn sum(grams: &[DMatrix<f64>], size: usize) -> DMatrix<f64> {
@@ -407,13 +416,10 @@ mod tests {
     #[test]
     fn what_a_record_does_not_tell_stays_as_it_was_known() {
         let known = [2.0, 1.0];
-        let at = |gram: &[f64], within, variance| {
-            let coefficients = near(
-                &DMatrix::from_row_slice(3, 3, gram),
-                &known,
-                within,
-                variance,
-            );
+        let at = |gram: &[f64], within: f64, variance| {
+            let spread = known.map(|known| within * known);
+            let gram = DMatrix::from_row_slice(3, 3, gram);
+            let coefficients = near(&gram, &known, &spread, variance);
             [coefficients[0], coefficients[1]]
         };
         let is_near = |one: [f64; 2], other: [f64; 2]| {
@@ -439,6 +445,13 @@ mod tests {
         let others: f64 = blocks.cross_validate().held_out.iter().sum();
         assert!((left(1.0e-6) - 9.0).abs() < 1.0e-6);
         assert!((left(1.0e6) - others).abs() < 1.0e-6, "{others}");
+    }
+
+    #[test]
+    fn a_coefficient_that_was_next_to_zero_may_move_by_its_part_of_the_target() {
+        // All of the target is one column, whose coefficient comes from 0 to 3.
+        let left = blocks(&[(1.0, 3.0); 40]).left_out_near(&[0.0], 1.0, 4.0e3);
+        assert!(left < 1.0e-3 * 9.0 * 40.0, "{left}");
     }
 
     #[test]
