@@ -113,8 +113,8 @@ fn findings<'a>(
 fn declared(pair: Pair<'_>) -> Model {
     let mut model = Model::declared(pair.bench.dataset);
     model = effort::with_declared_load(pair.bench, &model);
-    tuning::prepare(pair, &mut model);
-    effort::without_load(&forms::chosen(pair, model))
+    tuning::begin(pair, &mut model);
+    effort::without_load(&forms::refined(pair, model))
 }
 
 /// Forward selection on the effort, with the validation record's veto.

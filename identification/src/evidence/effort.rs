@@ -223,9 +223,8 @@ impl Output for Effort<'_> {
         }
     }
 
-    fn refined(&self, mut model: Model) -> Model {
-        tuning::refine(self.pair, &mut model);
-        forms::chosen(self.pair, model)
+    fn refined(&self, model: Model) -> Model {
+        forms::refined(self.pair, model)
     }
 }
 

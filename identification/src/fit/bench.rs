@@ -77,14 +77,19 @@ impl<'a> Bench<'a> {
     #[must_use]
     pub(crate) fn raw(&self, part: &Part) -> Vec<Vec<f64>> {
         let (motion, dataset) = (self.motion, self.dataset);
-        let others = self.others(&part.beside);
+        let others = self.others(part);
         part.effect
             .columns_beside(motion, dataset, part.parameter, &others)
     }
 
     /// What the parts of an earlier fit did.
-    fn others(&self, parts: &[Beside]) -> Others {
+    fn others(&self, of: &Part) -> Others {
         let mut others = Others::default();
+        let itself = |beside: &&Beside| beside.part.called() == of.called();
+        let parts: Vec<&Beside> = of.beside.iter().filter(|one| !itself(one)).collect();
+        if let Some(itself) = of.beside.iter().find(itself) {
+            others.ratio = itself.own[0];
+        }
         if parts
             .iter()
             .any(|beside| place_among_usual(beside.part.called()).is_none())

@@ -140,16 +140,21 @@ fn is_new(bench: &Bench<'_>, model: &Model, effect: &'static dyn Effect, paramet
     known.all(|part| (part.parameter - parameter).abs() > least)
 }
 
-/// The nonlinear parameters of a declared model, from nothing: delay and actuator first, since all
-/// columns go through them.
+/// The nonlinear parameters of a declared model, from nothing.
 pub(crate) fn prepare(pair: Pair<'_>, model: &mut Model) {
+    begin(pair, model);
+    refine(pair, model);
+}
+
+/// The nonlinear parameters of a declared model on their grids: delay and actuator first, since all
+/// columns go through them.
+pub(crate) fn begin(pair: Pair<'_>, model: &mut Model) {
     let is_force = |place: &usize| model.parts[*place].effect.stage() == Stage::Force;
     let (forces, others): (Vec<usize>, Vec<usize>) =
         model.outwards().into_iter().partition(is_force);
     for place in others.into_iter().chain(forces) {
         start(pair, model, place);
     }
-    refine(pair, model);
 }
 
 /// Puts a nonlinear parameter where its grid, or that of its known orders, leaves the least beside
@@ -214,7 +219,14 @@ fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
     if step <= 0.0 {
         return;
     }
-    let at = |parameter: f64| settled(bench, model.with_parameter(place, parameter), effect);
+    let at = |parameter: f64| {
+        let stepped = settled(bench, model.with_parameter(place, parameter), effect);
+        if told::is_close(model) {
+            told::of_the_others(bench, stepped)
+        } else {
+            stepped
+        }
+    };
     let sse = |parameter: f64| bench.sse(&at(parameter));
     let best = descend(parameter, step, effect.bounds(bench.motion), &sse);
     *model = at(best);

@@ -27,6 +27,8 @@ pub(crate) type Usual = [f64; USUAL];
 pub(crate) struct Others {
     /// Coefficients of the usual effects, where they are known.
     pub usual: Option<Usual>,
+    /// Coefficient of the effect itself, where it has one and that is known.
+    pub ratio: f64,
     /// Force by what else acts on the load.
     pub load: Vec<f64>,
     /// Force by what else acts on the motor and its screw.

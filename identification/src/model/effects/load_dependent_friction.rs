@@ -19,7 +19,9 @@
 //!
 //! Where the friction of the axis changes with place, speed or time, the load may press that very
 //! surface (a nut that warms up) or another one (a worn guide beside the screw). These are two
-//! forms; the second is the usual one.
+//! forms; the second is the usual one. Where μ changes, 1 − μ² does too, and the usual columns
+//! cannot take it up: the column of that form has F = R/(1 − μ σ) itself for Q, with the μ of an
+//! earlier fit, and all coefficients are without primes.
 //!
 //! What is found is friction only where the friction without load is: an unphysical split of the
 //! usual columns could have any ratio.
@@ -69,21 +71,34 @@ impl LoadDependentFriction {
     /// beside it; what else the load has to be moved against is a part of Q.
     fn column(&self, motion: &Kinematics, share: f64, others: &Others) -> Vec<f64> {
         let by_motion = ByMotion::beside(motion, others);
-        let of = |usual: Usual| {
+        let of = |usual: Usual, ratio: f64| {
             let [.., coulomb, _] = usual;
             let at = |row| {
-                let transmitted = force(usual, share, by_motion.at(row)) + others.load(row);
-                motion.direction[row] * f64::abs(transmitted) * self.surface(coulomb, others, row)
+                let behind = force(usual, share, by_motion.at(row)) + others.load(row);
+                let surface = self.surface(coulomb, others, row);
+                let direction = motion.direction[row];
+                direction * surface * self.transmitted(behind, direction, ratio * surface)
             };
             (0..motion.len()).map(at).collect()
         };
         if let Some(usual) = others.usual {
-            return of(usual);
+            return of(usual, others.ratio);
         }
         (0..FITS).fold(vec![0.0; motion.len()], |own, _| {
-            let (usual, _) = by_motion.fit(&[own]);
-            of(usual)
+            let (usual, ratio) = by_motion.fit(&[own]);
+            of(usual, ratio[0])
         })
+    }
+
+    /// Magnitude of the force that is transmitted where a force has to be overcome: Q on a surface
+    /// of its own, F on one that changes.
+    fn transmitted(&self, behind: f64, direction: f64, ratio: f64) -> f64 {
+        if self.is_shared {
+            let drives = (direction * behind).signum();
+            behind.abs() / (1.0 - drives * ratio.clamp(0.0, LARGEST_RATIO))
+        } else {
+            behind.abs()
+        }
     }
 
     /// How much friction its surface has at a row, over what it has where nothing changes it.
@@ -157,9 +172,12 @@ impl Effect for LoadDependentFriction {
         } else {
             1.0
         };
-        let surface = if self.is_shared { at.surface } else { 1.0 };
-        let ratio = own[0] * surface;
-        Action::level(ratio * behind.abs() / (1.0 + drives * (1.0 - motor_share) * ratio))
+        if self.is_shared {
+            let ratio = own[0] * at.surface;
+            Action::level(ratio * behind.abs() / (1.0 - drives * motor_share * ratio))
+        } else {
+            Action::level(own[0] * behind.abs() / (1.0 + drives * (1.0 - motor_share) * own[0]))
+        }
     }
 
     fn start(&self, _: &Dataset) -> f64 {
@@ -244,45 +262,58 @@ mod tests {
         assert!((mass / USUAL[0] - 1.0).abs() < 0.005, "{mass}");
     }
 
-    #[test]
-    fn a_simulated_axis_has_the_force_of_the_fit_whether_it_drives_or_brakes() {
-        for (mass_force, resistance, velocity) in [
+    /// Level of a simulated axis over what the fit has at the same force by motion.
+    fn level_over_fitted(
+        effect: &LoadDependentFriction,
+        surface: f64,
+    ) -> impl Iterator<Item = f64> {
+        let cases = [
             (30.0, 45.0, 0.1),
             (-200.0, 45.0, 0.1),
             (-30.0, -45.0, -0.1),
             (200.0, -45.0, -0.1),
-        ] {
-            let by_motion: f64 = (1.0 - MOTOR_SHARE) * mass_force + resistance;
-            let level = RATIO * by_motion.abs();
-            let at = Instant {
-                velocity,
-                resistance,
-                effort: mass_force + resistance + level * velocity.signum(),
-                ..Instant::default()
-            };
-            let action = OWN_SURFACE.action(&at, MOTOR_SHARE, &[RATIO]);
-            assert!(
-                (action.level - level).abs() < 1.0e-9,
-                "{} {level}",
-                action.level
-            );
-            assert_eq!(action.force, 0.0);
+        ];
+        cases
+            .into_iter()
+            .map(move |(mass_force, resistance, velocity)| {
+                let behind = (1.0 - MOTOR_SHARE) * mass_force + resistance;
+                let direction = f64::signum(velocity);
+                let ratio = if effect.is_shared {
+                    RATIO * surface
+                } else {
+                    RATIO
+                };
+                let level = ratio * effect.transmitted(behind, direction, ratio);
+                let at = Instant {
+                    velocity,
+                    resistance,
+                    effort: mass_force + resistance + level * direction,
+                    surface,
+                    ..Instant::default()
+                };
+                let action = effect.action(&at, MOTOR_SHARE, &[RATIO]);
+                assert_eq!(action.force, 0.0);
+                action.level / level
+            })
+    }
+
+    #[test]
+    fn a_simulated_axis_has_the_force_of_the_fit_whether_it_drives_or_brakes() {
+        for effect in [OWN_SURFACE, SHARED_SURFACE] {
+            for surface in [1.0, 1.8] {
+                let mut shares = level_over_fitted(effect, surface);
+                assert!(shares.all(|share| (share - 1.0).abs() < 1.0e-12));
+            }
         }
     }
 
     #[test]
-    fn on_a_surface_that_changes_it_changes_with_it() {
-        let at = Instant {
-            velocity: 0.1,
-            resistance: 60.0,
-            effort: 130.0,
-            surface: 1.8,
-            ..Instant::default()
-        };
-        let level = |effect: &dyn Effect, ratio| effect.action(&at, MOTOR_SHARE, &[ratio]).level;
-        let shared = level(SHARED_SURFACE, RATIO);
-        assert_eq!(shared, level(OWN_SURFACE, 1.8 * RATIO));
-        assert!(shared > level(OWN_SURFACE, RATIO));
+    fn a_surface_that_changes_is_pressed_by_what_it_makes_the_motor_transmit() {
+        // Driving 60 N against a friction of 0.2 of what is transmitted takes 75 N, braking 50 N.
+        assert_eq!(SHARED_SURFACE.transmitted(60.0, 1.0, 0.2), 75.0);
+        assert_eq!(SHARED_SURFACE.transmitted(60.0, -1.0, 0.2), 50.0);
+        assert_eq!(SHARED_SURFACE.transmitted(-60.0, 1.0, 0.2), 50.0);
+        assert_eq!(OWN_SURFACE.transmitted(-60.0, 1.0, 0.2), 60.0);
     }
 
     #[test]
