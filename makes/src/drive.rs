@@ -54,6 +54,8 @@ pub enum Flaw {
     Starved(f64),
     /// The delivered effort is larger by a share about a place: centre, half width at 1/e, share.
     Patch(f64, f64, f64),
+    /// The last command stays for so long, s, at the end of every period, s: telegrams are lost.
+    Silence(f64, f64),
 }
 
 /// Where and when a drive works.
@@ -104,6 +106,7 @@ pub struct DriveState {
     current: f64,
     rate: f64,
     played: f64,
+    heard: f64,
 }
 
 /// What a drive gives.
@@ -124,7 +127,8 @@ impl Drive {
         place: Place,
         step_s: f64,
     ) -> Delivered {
-        let due = self.waited(state, rounded(command, self.quantum), step_s);
+        let heard = self.heard(state, rounded(command, self.quantum), place.time_s);
+        let due = self.waited(state, heard, step_s);
         let current = self.follow(state, due, step_s);
         let drooped = current / (1.0 + self.droop * current.abs());
         let ripple = self.ripple.map_or(0.0, |wave| {
@@ -133,6 +137,15 @@ impl Drive {
         let given = drooped * (1.0 + ripple);
         let effort = flawed(self.flaw, given, place, &mut state.played);
         Delivered { current, effort }
+    }
+
+    fn heard(&self, state: &mut DriveState, command: f64, time_s: f64) -> f64 {
+        let is_silent = matches!(self.flaw, Some(Flaw::Silence(lasts_s, period_s))
+            if time_s.rem_euclid(period_s) >= period_s - lasts_s);
+        if !is_silent {
+            state.heard = command;
+        }
+        state.heard
     }
 
     fn waited(&self, state: &mut DriveState, command: f64, step_s: f64) -> f64 {
@@ -176,7 +189,7 @@ pub fn rounded(value: f64, quantum: f64) -> f64 {
 fn flawed(flaw: Option<Flaw>, effort: f64, place: Place, played: &mut f64) -> f64 {
     let time_s = place.time_s;
     match flaw {
-        None => effort,
+        None | Some(Flaw::Silence(..)) => effort,
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
         Some(Flaw::Stronger(share, from_s)) if time_s >= from_s => effort * (1.0 + share),
         Some(Flaw::Stronger(..)) => effort,
@@ -276,6 +289,22 @@ mod tests {
             time_s,
             ..Place::default()
         }
+    }
+
+    #[test]
+    fn while_telegrams_are_lost_the_last_command_stays() {
+        let drive = Drive {
+            current_loop: CurrentLoop::Ideal,
+            flaw: Some(Flaw::Silence(0.1, 1.0)),
+            ..Drive::default()
+        };
+        let mut state = DriveState::default();
+        let mut effort = |command, time_s| {
+            let delivered = drive.step(&mut state, command, at_time(time_s), STEP_S);
+            delivered.effort
+        };
+        assert_eq!([effort(3.0, 0.8), effort(5.0, 0.95)], [3.0, 3.0]);
+        assert_eq!(effort(7.0, 1.05), 7.0);
     }
 
     #[test]

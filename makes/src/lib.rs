@@ -15,7 +15,8 @@
 //! | [`mod@make::held_back`], [`outside::held_back`] | those written apart, to be run once |
 //! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
 //! | [`mod@make::untried`], [`outside::untried`] | those written after these, to be run once |
-//! | [`mod@make::unmet`], [`outside::unmet`] | those written after all of these, to be run once |
+//! | [`mod@make::unmet`], [`outside::unmet`] | those written after them, to be run once |
+//! | [`mod@make::unforeseen`], [`outside::unforeseen`] | those written after all of these |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -42,8 +43,8 @@ pub mod truth;
 
 /// How one record is made, without making it.
 pub struct Recipe {
-    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`, `clean`,
-    /// `outside` or `spoilt`.
+    /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`,
+    /// `unforeseen`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -82,7 +83,7 @@ pub struct Apart {
 
 /// What was written apart, in the order in which it was.
 #[must_use]
-pub fn written_apart() -> [Apart; 4] {
+pub fn written_apart() -> [Apart; 5] {
     [
         Apart {
             table: "held-back",
@@ -103,6 +104,11 @@ pub fn written_apart() -> [Apart; 4] {
             table: "unmet",
             makes: make::unmet(),
             outside: outside::unmet::UNMET,
+        },
+        Apart {
+            table: "unforeseen",
+            makes: make::unforeseen(),
+            outside: outside::unforeseen::UNFORESEEN,
         },
     ]
 }

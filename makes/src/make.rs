@@ -13,6 +13,7 @@ pub mod held_back;
 pub mod logs;
 pub mod loops;
 pub mod screws;
+pub mod unforeseen;
 pub mod unmet;
 pub mod unseen;
 pub mod untried;
@@ -183,6 +184,13 @@ pub fn untried() -> Vec<Make> {
 #[must_use]
 pub fn unmet() -> Vec<Make> {
     unmet::FAMILIES.concat()
+}
+
+/// Makes that are written after those of [`unmet()`] had been run and had become known. They are a
+/// table of their own.
+#[must_use]
+pub fn unforeseen() -> Vec<Make> {
+    unforeseen::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.

@@ -3,15 +3,17 @@
 //! A leg goes from one place to another and stands at both ends. Its shape is a trapezoid of
 //! velocity, the polynomial of least jerk (Flash and Hogan, J. Neuroscience 5, 1985), half a turn
 //! of a circle, whole cycles of a sine, a cycloid, a way with a sine on top, the polynomial of
-//! least snap, or a packet of waves.
+//! least snap, a packet of waves, soft ramps of velocity, or two waves at once.
 
 mod habits;
+mod swells;
 mod trades;
 
 use std::f64::consts::{PI, TAU};
 
 use crate::draw::Draw;
 use crate::motion::habits::{least_snap, packet};
+use crate::motion::swells::{Waves, doublet};
 use crate::motion::trades::{cycloid, schroeder};
 
 /// What is wanted at a time.
@@ -41,6 +43,9 @@ enum Shape {
     LeastSnap,
     /// Amplitude and whole cycles.
     Packet(f64, f64),
+    /// Time of a ramp, s.
+    SoftRamps(f64),
+    TwoWaves(Waves),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,6 +214,14 @@ impl Leg {
             }
             Shape::Cycloid => share(cycloid(t / duration)),
             Shape::LeastSnap => share(least_snap(t / duration)),
+            Shape::SoftRamps(ramp_s) => self.soft_ramps(t, ramp_s),
+            Shape::TwoWaves(waves) => {
+                let wave = waves.at(t, duration);
+                Setpoint {
+                    position: self.from + wave.position,
+                    ..wave
+                }
+            }
             Shape::Packet(amplitude, cycles) => {
                 let wave = packet(amplitude, cycles, t, duration);
                 Setpoint {
@@ -411,6 +424,9 @@ pub enum Programme {
     /// Sines side by side of one amplitude and of frequencies f, 2f, … nf: deviation of the whole,
     /// f in Hz, n.
     Multisine(f64, f64, u32),
+    /// A push one way, two the other and one back, of drawn size: amplitude, time of each, s, and
+    /// the seed of the sizes.
+    Doublets(f64, f64, u64),
 }
 
 impl Programme {
@@ -428,6 +444,10 @@ impl Programme {
             }
             Self::Multisine(deviation, lowest_hz, lines) => {
                 deviation * schroeder(TAU * lowest_hz * time_s, lines)
+            }
+            Self::Doublets(amplitude, each_s, seed) => {
+                let (turn, sign) = doublet(time_s, each_s);
+                amplitude * sign * Draw::of("doublets", seed ^ turn).between(0.25, 1.0)
             }
             Self::Steps(amplitude, each_s, seed) => {
                 let step = (time_s / each_s).floor() as u64;

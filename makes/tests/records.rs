@@ -4,10 +4,11 @@ mod common;
 
 use common::{some_of, some_outside};
 use makes::draw::Draw;
-use makes::make::{Form, Make, Presence, all, held_back, unmet, unseen, untried};
+use makes::make::{Form, Make, Presence, all, held_back, unforeseen, unmet, unseen, untried};
 use makes::motion::Motion;
 use makes::outside::OUTSIDE;
 use makes::outside::held_back::HELD_BACK;
+use makes::outside::unforeseen::UNFORESEEN;
 use makes::outside::unmet::UNMET;
 use makes::outside::unseen::UNSEEN;
 use makes::outside::untried::UNTRIED;
@@ -233,6 +234,20 @@ fn the_unmet_makes_hide_every_name_of_an_effect_and_gaps_and_their_like_twice() 
     }
     assert!(makes.len() == 14 && UNMET.len() == 5);
     assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
+}
+
+#[test]
+fn the_unforeseen_makes_hide_every_name_of_an_effect_one_two_or_three_at_once() {
+    let makes = unforeseen();
+    let hidden = |effect: &Effect| makes.iter().filter(|m| m.hides.contains(effect)).count();
+    for effect in NAMES.iter().filter(|effect| **effect != Effect::Offset) {
+        assert!(hidden(effect) >= 1, "{effect:?}");
+    }
+    assert!(makes.len() == 20 && UNFORESEEN.len() == 5);
+    for count in 1..=3 {
+        let with = makes.iter().filter(|make| make.hides.len() == count);
+        assert!(with.count() >= 2, "{count}");
+    }
 }
 
 #[test]

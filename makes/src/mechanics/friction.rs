@@ -9,6 +9,10 @@
 //! - Maxwell slip: elastoplastic elements side by side. Lampaert, Swevers and Al-Bender, IEEE TAC
 //!   47, 2002.
 //! - Bouc–Wen: dz = dx·(1 − ½(1 + sign(dx z))·|z|ⁿ). Wen, ASCE J. Eng. Mech. 102, 1976.
+//! - thixotropic: Fc·(1 + surplus·λ), dλ/dt = (1 − λ)/τ − |v|·λ/way: sludge and cold grease set at
+//!   rest and are stirred thin. Moore, Trans. British Ceramic Society 58, 1959.
+//! - brake: a level that is there for a time after every start, from when it has stood for another
+//!   time: a holding brake that opens late.
 //!
 //! A rigid law gives a *level*, not a force: at rest it is whatever holds, and the step of the
 //! train finds it. The others give a force and keep a state. Bristles of Dahl and LuGre are stepped
@@ -92,6 +96,26 @@ pub enum Law {
         /// n.
         exponent: f64,
     },
+    /// What sets at rest and is stirred thin.
+    Thixotropic {
+        /// Level where it is stirred thin.
+        coulomb: f64,
+        /// What comes on top where it has set, as a share.
+        surplus: f64,
+        /// Time in which 63 % of it comes back at rest, s.
+        sets_in_s: f64,
+        /// Way over which 63 % of it goes.
+        way: f64,
+    },
+    /// A holding brake.
+    Brake {
+        /// Level while it is closed.
+        holds: f64,
+        /// Time after a start until it opens, s.
+        opens_in_s: f64,
+        /// Time at rest until it closes, s.
+        closes_in_s: f64,
+    },
 }
 
 impl Law {
@@ -127,7 +151,9 @@ impl Law {
             | Self::Smooth { coulomb, .. }
             | Self::Dahl { coulomb, .. }
             | Self::LuGre { coulomb, .. }
-            | Self::BoucWen { coulomb, .. } => *coulomb,
+            | Self::BoucWen { coulomb, .. }
+            | Self::Thixotropic { coulomb, .. } => *coulomb,
+            Self::Brake { .. } => 0.0,
             Self::MaxwellSlip { elements } => elements.iter().map(|e| e.limit).sum(),
         }
     }
@@ -140,7 +166,9 @@ impl Law {
             | Self::Smooth { coulomb, .. }
             | Self::Dahl { coulomb, .. }
             | Self::LuGre { coulomb, .. }
-            | Self::BoucWen { coulomb, .. } => *coulomb *= factor,
+            | Self::BoucWen { coulomb, .. }
+            | Self::Thixotropic { coulomb, .. } => *coulomb *= factor,
+            Self::Brake { holds, .. } => *holds *= factor,
             Self::MaxwellSlip { elements } => elements.iter_mut().for_each(|e| e.limit *= factor),
         }
         self
@@ -151,7 +179,11 @@ impl Law {
     pub fn states(&self) -> usize {
         match self {
             Self::Rigid { .. } | Self::Smooth { .. } => 0,
-            Self::Dahl { .. } | Self::LuGre { .. } | Self::BoucWen { .. } => 1,
+            Self::Dahl { .. }
+            | Self::LuGre { .. }
+            | Self::BoucWen { .. }
+            | Self::Thixotropic { .. } => 1,
+            Self::Brake { .. } => 2,
             Self::MaxwellSlip { elements } => elements.len(),
         }
     }
@@ -202,6 +234,36 @@ impl Law {
                 *z = (*z + way * stiffness / coulomb * (1.0 - against)).clamp(-1.0, 1.0);
                 Reaction::force(coulomb * *z)
             }
+            Self::Thixotropic {
+                coulomb,
+                surplus,
+                sets_in_s,
+                way: thins_over,
+            } => {
+                // The state is what is stirred, so that it has set at the start.
+                let rates = [1.0 / sets_in_s, velocity.abs() / thins_over];
+                let sum = rates[0] + rates[1];
+                let end = rates[1] / sum;
+                state[0] = end + (state[0] - end) * libm::exp(-sum * step_s);
+                Reaction::level(coulomb * (1.0 + surplus * (1.0 - state[0])))
+            }
+            Self::Brake {
+                holds,
+                opens_in_s,
+                closes_in_s,
+            } => {
+                let [stood_s, moved_s] = [state[0], state[1]];
+                if velocity == 0.0 {
+                    state[0] += step_s;
+                    if stood_s >= *closes_in_s {
+                        state[1] = 0.0;
+                    }
+                } else {
+                    state[0] = 0.0;
+                    state[1] += step_s;
+                }
+                Reaction::level(if moved_s < *opens_in_s { *holds } else { 0.0 })
+            }
         }
     }
 }
@@ -237,6 +299,15 @@ pub enum Scale {
         width: f64,
         /// Height.
         share: f64,
+    },
+    /// 1 + share · cos(waves · x + phase): a disc or a roller that is out of round.
+    Wavy {
+        /// Share.
+        share: f64,
+        /// Wave number, rad per unit of position.
+        waves: f64,
+        /// Phase at position zero, rad.
+        phase: f64,
     },
     /// 1 + surplus · exp(−t/τ): warms up from the start of the record.
     WarmUp {
@@ -298,6 +369,11 @@ impl Scale {
                 let s = (at.position - centre) / width;
                 share * libm::exp(-s * s)
             }
+            Self::Wavy {
+                share,
+                waves,
+                phase,
+            } => share * libm::cos(waves * at.position + phase),
             Self::WarmUp {
                 surplus,
                 time_constant_s,
@@ -564,5 +640,72 @@ mod tests {
                 "{scale:?}"
             );
         }
+    }
+
+    /// Level of a law after a time at constant speed.
+    fn level_after(law: &Law, state: &mut [f64], velocity: f64, time_s: f64) -> f64 {
+        let mut level = 0.0;
+        for _ in 0..10_000 {
+            level = law.slide(state, velocity, time_s * 1.0e-4).level;
+        }
+        level
+    }
+
+    #[test]
+    fn sludge_is_thin_once_it_is_stirred_and_sets_at_rest() {
+        let sludge = Law::Thixotropic {
+            coulomb: 10.0,
+            surplus: 0.8,
+            sets_in_s: 2.0,
+            way: 0.5,
+        };
+        let mut state = [0.0];
+        // Stirred at 1 m/s it comes to rates of ½ and 2 per second: a fifth of the surplus.
+        let stirred = level_after(&sludge, &mut state, 1.0, 10.0);
+        assert!((stirred - 11.6).abs() < 1.0e-6, "{stirred}");
+        let set = level_after(&sludge, &mut state, 0.0, 2.0);
+        // 0.2 and 63.2 % of the rest of 0.8
+        assert!(
+            (set - (18.0 - 8.0 * 0.8 * 0.367_879)).abs() < 1.0e-2,
+            "{set}"
+        );
+        assert_eq!(sludge.level(), 10.0);
+    }
+
+    #[test]
+    fn a_brake_that_opens_late_holds_for_its_time_after_a_start_and_again_after_a_rest() {
+        let brake = Law::Brake {
+            holds: 40.0,
+            opens_in_s: 0.1,
+            closes_in_s: 0.3,
+        };
+        let mut state = [0.0; 2];
+        assert_eq!(level_after(&brake, &mut state, 0.2, 0.09), 40.0);
+        assert_eq!(level_after(&brake, &mut state, 0.2, 0.02), 0.0);
+        assert_eq!(level_after(&brake, &mut state, 0.0, 0.2), 0.0);
+        assert_eq!(level_after(&brake, &mut state, 0.2, 0.2), 0.0);
+        assert_eq!(level_after(&brake, &mut state, 0.0, 0.4), 40.0);
+        assert_eq!(brake.level(), 0.0);
+    }
+
+    #[test]
+    fn what_is_out_of_round_rubs_most_once_a_turn() {
+        let felt = Scale::Wavy {
+            share: 0.4,
+            waves: 1.0,
+            phase: 0.0,
+        };
+        let factor = |position| {
+            let at = Contact {
+                position,
+                velocity: 1.0,
+                direction: 1.0,
+                transmitted: 0.0,
+                time_s: 0.0,
+            };
+            felt.factor(&at)
+        };
+        assert!((factor(0.0) - 1.4).abs() < 1.0e-12);
+        assert!((factor(std::f64::consts::PI) - 0.6).abs() < 1.0e-12);
     }
 }

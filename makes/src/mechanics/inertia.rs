@@ -1,7 +1,10 @@
-//! Inertia of a body: constant, changing at a time, or a function of position.
+//! Inertia of a body: constant, changing at a time or with it, or a function of position.
 //!
 //! With J(x) the energy is T = ½ J(x) v² and Lagrange's equation gives J a + ½ J'(x) v² = F: the
 //! second term is what a crank or an arm adds (Wittenburg, Dynamics of Multibody Systems, 2008).
+//! With J(t), of something on board that moves by itself, it gives J a + J'(t) v = F.
+
+use std::f64::consts::TAU;
 
 /// Inertia, kg or kg m².
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +40,15 @@ pub enum Inertia {
         /// Phase at position zero, rad.
         phase: f64,
     },
+    /// J(t) = mean · (1 + share · sin(2π f t)): something on board stretches and folds by itself.
+    Breathing {
+        /// Mean.
+        mean: f64,
+        /// Amplitude, as a share of the mean.
+        share: f64,
+        /// f, Hz.
+        frequency_hz: f64,
+    },
 }
 
 impl Inertia {
@@ -60,6 +72,11 @@ impl Inertia {
                 waves,
                 phase,
             } => mean * (1.0 + share * libm::cos(waves * position + phase)),
+            Self::Breathing {
+                mean,
+                share,
+                frequency_hz,
+            } => mean * (1.0 + share * libm::sin(TAU * frequency_hz * time_s)),
         }
     }
 
@@ -67,7 +84,10 @@ impl Inertia {
     #[must_use]
     pub fn slope(&self, position: f64) -> f64 {
         match self {
-            Self::Constant(_) | Self::Payload { .. } | Self::Filling { .. } => 0.0,
+            Self::Constant(_)
+            | Self::Payload { .. }
+            | Self::Filling { .. }
+            | Self::Breathing { .. } => 0.0,
             Self::Harmonic {
                 mean,
                 share,
@@ -77,13 +97,32 @@ impl Inertia {
         }
     }
 
+    /// dJ/dt of what moves by itself, which takes momentum along.
+    #[must_use]
+    pub fn rate(&self, time_s: f64) -> f64 {
+        match self {
+            Self::Constant(_)
+            | Self::Payload { .. }
+            | Self::Filling { .. }
+            | Self::Harmonic { .. } => 0.0,
+            Self::Breathing {
+                mean,
+                share,
+                frequency_hz,
+            } => {
+                let w = TAU * frequency_hz;
+                mean * share * w * libm::cos(w * time_s)
+            }
+        }
+    }
+
     /// Its middle: what a model with one inertia would be told.
     #[must_use]
     pub fn nominal(&self) -> f64 {
         match self {
             Self::Constant(inertia) => *inertia,
             Self::Payload { empty, .. } | Self::Filling { empty, .. } => *empty,
-            Self::Harmonic { mean, .. } => *mean,
+            Self::Harmonic { mean, .. } | Self::Breathing { mean, .. } => *mean,
         }
     }
 }

@@ -160,6 +160,7 @@ impl Train {
         for (body, inertia) in self.inertias.iter().enumerate() {
             let velocity = state.velocities[body];
             efforts[body] -= 0.5 * inertia.slope(state.positions[body]) * velocity * velocity;
+            efforts[body] -= inertia.rate(state.time_s) * velocity;
         }
         efforts
     }
@@ -319,6 +320,23 @@ mod tests {
         assert!((energy(&state) / start - 1.0).abs() < 1.0e-3);
         // Inertia from 1 to 3: velocity by its root.
         assert!((fastest / slowest - 3.0_f64.sqrt()).abs() < 1.0e-2);
+    }
+
+    #[test]
+    fn a_skater_keeps_the_momentum_while_the_arms_come_and_go() {
+        let mut train = free(2.0);
+        train.inertias[0] = Inertia::Breathing {
+            mean: 2.0,
+            share: 0.4,
+            frequency_hz: 0.5,
+        };
+        let mut state = train.at_rest(0.0);
+        state.velocities[0] = 3.0;
+        for _ in 0..50_000 {
+            train.step(&mut state, 0.0, 1.0e-5);
+        }
+        // 2·3 over 2·1.4 after a quarter of a period
+        assert!((state.velocities[0] - 6.0 / 2.8).abs() < 1.0e-3);
     }
 
     #[test]
