@@ -33,15 +33,37 @@ impl Estimate {
 }
 
 impl Estimate {
-    /// The estimate of a quantity that is more than this one by a known amount.
+    /// A value with the half width of its interval.
     #[must_use]
-    pub fn moved(&self, by: f64) -> Self {
+    pub fn about(value: f64, half_width: f64, unit: &str) -> Self {
         Self {
-            value: self.value + by,
-            unit: self.unit.clone(),
-            low: self.low + by,
-            high: self.high + by,
+            value,
+            unit: unit.into(),
+            low: value - half_width,
+            high: value + half_width,
         }
+    }
+
+    /// Half of the interval's width.
+    #[must_use]
+    pub const fn half_width(&self) -> f64 {
+        0.5 * (self.high - self.low)
+    }
+
+    /// The sum with so many times another one that errs apart from this one.
+    #[must_use]
+    pub fn plus(&self, times: f64, other: &Self) -> Self {
+        let half_width = self.half_width().hypot(times * other.half_width());
+        Self::about(self.value + times * other.value, half_width, &self.unit)
+    }
+
+    /// The share of another one that errs apart from this one.
+    #[must_use]
+    pub fn over(&self, other: &Self, unit: &str) -> Self {
+        let value = self.value / other.value;
+        let half_width =
+            (self.half_width() / other.value).hypot(value * other.half_width() / other.value);
+        Self::about(value, half_width, unit)
     }
 }
 
@@ -65,6 +87,20 @@ impl Effect<Estimate> {
 mod tests {
     use super::*;
     use crate::{PitchError, Stribeck};
+
+    #[test]
+    fn sums_and_shares_are_as_uncertain_as_both_of_their_parts() {
+        let [one, other] = [
+            Estimate::about(20.0, 0.3, "N"),
+            Estimate::about(-10.0, 0.2, "N"),
+        ];
+        let sum = one.plus(2.0, &other);
+        assert_eq!((sum.value, sum.unit.as_str()), (0.0, "N"));
+        assert!((sum.half_width() - 0.5).abs() < 1.0e-12);
+        let share = Estimate::about(3.0, 0.09, "N").over(&Estimate::about(10.0, 0.4, "N"), "");
+        assert!((share.value - 0.3).abs() < 1.0e-12);
+        assert!((share.half_width() - 0.3 * 0.05).abs() < 1.0e-12);
+    }
 
     #[test]
     fn what_is_stated_of_an_estimate_is_its_value_within_the_range() {
@@ -106,8 +142,5 @@ mod tests {
         let turned = force.scaled(-0.5, "N m");
         assert_eq!((turned.value, turned.low, turned.high), (-1.0, -2.0, -0.5));
         assert_eq!(turned.unit, "N m");
-        let moved = force.moved(0.5);
-        assert_eq!((moved.value, moved.low, moved.high), (2.5, 1.5, 4.5));
-        assert_eq!(moved.unit, "N");
     }
 }

@@ -12,7 +12,8 @@
 //! Friction over position that was found as a smooth curve is put as its nearest parabola: the
 //! vocabulary has no curve.
 //!
-//! An interval is scaled with its value: what is uncertain about the friction itself is left out.
+//! A share is as uncertain as both of its efforts, and what is moved to position zero as all that
+//! moves it; they are taken to err apart from each other.
 
 use std::collections::BTreeMap;
 
@@ -77,14 +78,14 @@ fn in_shares(parameters: &Table, travel: Travel) -> Table {
     parabola_of_a_curve(&mut table);
     let parameters = table.clone();
     let above_zero = |key: &str| parameters.get(key).filter(|own| own.value > 0.0);
-    let viscous = above_zero("viscous").map(|own| own.value);
+    let viscous = above_zero("viscous");
     share(
         &mut table,
         "viscous_asymmetry",
         "viscous_asymmetry",
         viscous,
     );
-    let coulomb = above_zero("coulomb").map(|own| own.value);
+    let coulomb = above_zero("coulomb");
     share(
         &mut table,
         "friction_drift_coulomb",
@@ -110,7 +111,7 @@ const BY_DIRECTION: [&str; 2] = [
 
 /// A fall or a drift that differs by direction says of an offset that it is an asymmetry of the
 /// friction.
-fn by_direction(table: &mut Table, coulomb: Option<f64>) {
+fn by_direction(table: &mut Table, coulomb: Option<&Estimate>) {
     let differs = BY_DIRECTION.map(|key| table.remove(key).is_some());
     if differs.contains(&true) {
         share(table, "offset", "coulomb_asymmetry", coulomb);
@@ -118,10 +119,10 @@ fn by_direction(table: &mut Table, coulomb: Option<f64>) {
 }
 
 /// Replaces an effort by its share of another.
-fn share(table: &mut Table, effort: &str, share: &str, of: Option<f64>) {
+fn share(table: &mut Table, effort: &str, share: &str, of: Option<&Estimate>) {
     let own = table.remove(effort);
     if let (Some(own), Some(of)) = (own, of) {
-        table.insert(share.into(), own.scaled(1.0 / of, ""));
+        table.insert(share.into(), own.over(of, ""));
     }
 }
 
@@ -130,27 +131,28 @@ const QUADRATIC: &str = "position_dependent_friction_quadratic";
 
 /// From a polynomial about the middle of the travel to one about position zero, in shares of the
 /// level there.
-fn over_position(table: &mut Table, coulomb: Option<f64>, travel: Travel) {
+fn over_position(table: &mut Table, coulomb: Option<&Estimate>, travel: Travel) {
     let (middle, half) = travel.middle_and_half;
     let (Some(a), b) = (table.remove(LINEAR), table.remove(QUADRATIC)) else {
         return;
     };
-    let (curve, at_zero) = (b.as_ref().map_or(0.0, |b| b.value), -middle / half);
-    let level = coulomb.map(|coulomb| coulomb + a.value * at_zero + curve * at_zero * at_zero);
-    let Some(level) = level.filter(|level| *level > 0.0) else {
+    let at_zero = -middle / half;
+    let with_curve = |of: Estimate, times: f64| match &b {
+        Some(b) => of.plus(times, b),
+        None => of,
+    };
+    let level = coulomb.map(|coulomb| with_curve(coulomb.plus(at_zero, &a), at_zero * at_zero));
+    let Some(level) = level.filter(|level| level.value > 0.0) else {
         return;
     };
-    if let Some(coulomb) = table.get_mut("coulomb") {
-        *coulomb = coulomb.moved(level - coulomb.value);
-    }
-    let slope = a.value + 2.0 * curve * at_zero;
-    let moved = a.moved(slope - a.value);
     let unit = |power: &str| format!("1/{}{power}", travel.unit);
-    table.insert(LINEAR.into(), moved.scaled(1.0 / (half * level), &unit("")));
+    let slope = with_curve(a, 2.0 * at_zero).scaled(1.0 / half, "");
+    table.insert(LINEAR.into(), slope.over(&level, &unit("")));
     if let Some(b) = b {
-        let b = b.scaled(1.0 / (half * half * level), &unit("2"));
-        table.insert(QUADRATIC.into(), b);
+        let b = b.scaled(1.0 / (half * half), "");
+        table.insert(QUADRATIC.into(), b.over(&level, &unit("2")));
     }
+    table.insert("coulomb".into(), level);
 }
 
 /// Replaces the knots of a curve by the parabola that is nearest to them, without its constant:
@@ -178,10 +180,11 @@ fn parabola_of_a_curve(table: &mut Table) {
     let curvature = mean(&|u, y| bend(u) * y) / mean(&|u, _| bend(u).powi(2));
     let level = mean(&|_, y| y) - curvature * square;
     if let Some(coulomb) = table.get_mut("coulomb") {
-        *coulomb = coulomb.moved(level);
+        *coulomb = Estimate::about(coulomb.value + level, coulomb.half_width(), &coulomb.unit);
     }
     for (name, value) in [(LINEAR, slope), (QUADRATIC, curvature)] {
-        table.insert(name.into(), first.moved(value - first.value));
+        let nearest = Estimate::about(value, first.half_width(), &first.unit);
+        table.insert(name.into(), nearest);
     }
 }
 
@@ -380,8 +383,10 @@ mod tests {
         else {
             panic!("a drift");
         };
-        assert!((drift.gain.low - 0.395).abs() < 1.0e-12 && drift.gain.unit.is_empty());
-        assert!((drift.gain.high - 0.405).abs() < 1.0e-12);
+        // 80 ± 1 of 200 ± 1 N.
+        let half_width = 0.4 * f64::hypot(1.0 / 80.0, 1.0 / 200.0);
+        assert!((drift.gain.half_width() - half_width).abs() < 1.0e-12);
+        assert!(drift.gain.unit.is_empty());
     }
 
     #[test]
