@@ -14,12 +14,18 @@ pub(crate) struct Delay;
 
 /// A delay below this is not worth a name, s: a tenth of the cycle of the axes that were recorded.
 const SHORTEST_S: f64 = 1.0e-4;
-/// Longest delay that is searched, s.
+/// Longest delay that is searched: so much, or so many rows of a slow record.
 const LONGEST_S: f64 = 6.0e-3;
+const LONGEST_ROWS: f64 = 6.0;
 /// Grid and first value of the search, s.
 const GRID_S: f64 = 2.5e-4;
 /// First step of the descent, s.
 const STEP_S: f64 = 1.0e-4;
+
+/// Longest delay that is searched on a record, s: the dead time of a bus is some of its cycles.
+fn longest_s(motion: &Kinematics) -> f64 {
+    LONGEST_S.max(LONGEST_ROWS * motion.period_s)
+}
 
 impl Effect for Delay {
     fn called(&self) -> Called {
@@ -55,8 +61,9 @@ impl Effect for Delay {
     }
 
     /// A delay that would have to act before its cause is in the grid: it must not be the best.
-    fn grid(&self, _: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
-        (-8..=24).map(|i| GRID_S * f64::from(i)).collect()
+    fn grid(&self, motion: &Kinematics, _: &Setting<'_>) -> Vec<f64> {
+        let late = (longest_s(motion) / GRID_S).round() as i32;
+        (-8..=late).map(|i| GRID_S * f64::from(i)).collect()
     }
 
     fn first_step(&self, _: &Kinematics, _: f64) -> f64 {
@@ -71,8 +78,8 @@ impl Effect for Delay {
         1.0e-5
     }
 
-    fn bounds(&self, _: &Kinematics) -> (f64, f64) {
-        (-LONGEST_S, LONGEST_S)
+    fn bounds(&self, motion: &Kinematics) -> (f64, f64) {
+        (-longest_s(motion), longest_s(motion))
     }
 
     fn is_physical(&self, fitted: &Fitted<'_>) -> bool {
