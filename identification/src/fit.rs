@@ -6,6 +6,7 @@ pub(crate) mod fitted;
 #[cfg(test)]
 pub(crate) mod made;
 pub(crate) mod plain;
+pub(crate) mod primes;
 pub(crate) mod rows;
 pub(crate) mod search;
 pub(crate) mod side_by_side;

@@ -39,12 +39,33 @@ pub fn identify(
     dataset: &Dataset,
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
-    identify_excerpt(dataset, EXCERPT, progress)
+    identify_excerpt(dataset, EXCERPT, Search::Whole, progress)
+}
+
+/// Fits a dataset with what it declares: the effort is not asked what else acts on it.
+///
+/// # Errors
+/// Where the record leaves nothing to fit.
+pub fn fit_declared(
+    dataset: &Dataset,
+    progress: &mut dyn FnMut(&Step),
+) -> Result<Identification, IdentificationError> {
+    identify_excerpt(dataset, EXCERPT, Search::Nothing, progress)
+}
+
+/// What the effort is asked beside what is declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Search {
+    /// All effects of the library.
+    Whole,
+    /// None.
+    Nothing,
 }
 
 fn identify_excerpt(
     dataset: &Dataset,
     size: ExcerptSize,
+    search: Search,
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     plausibility::check_rows(dataset)?;
@@ -63,7 +84,7 @@ fn identify_excerpt(
             bench: &bench,
             low: &low,
         };
-        let findings = findings(pair, &motions, progress);
+        let findings = findings(pair, &motions, search, progress);
         let is_declared = |name: &&EffectName| fitted_on.declares(**name);
         let declared = findings.found.names().iter().filter(is_declared);
         let before = brought_back.len();
@@ -83,6 +104,7 @@ fn identify_excerpt(
 fn findings<'a>(
     pair: Pair<'a>,
     motions: &'a Motions,
+    search: Search,
     progress: &mut dyn FnMut(&Step),
 ) -> Findings<'a> {
     let (bench, dataset) = (pair.bench, pair.bench.dataset);
@@ -90,9 +112,9 @@ fn findings<'a>(
     let declared = declared(pair);
     progress(&Step::Candidates);
     let other = Bench::new(dataset, &motions.validate);
-    let mut effort = on_effort(pair, &declared, &other, progress);
+    let mut effort = on_effort(pair, &declared, &other, search, progress);
     progress(&Step::MotorAndLoad);
-    let difference = beside_the_load(pair, &other, &declared, &mut effort, progress);
+    let difference = beside_the_load(pair, &other, &declared, search, &mut effort, progress);
     let fitted = bench.fit(&effort.model);
     let reversals = ReversalStage::of([bench, &other], &fitted, difference.as_ref(), progress);
     let mut stages = Stages {
@@ -122,18 +144,26 @@ fn on_effort(
     pair: Pair<'_>,
     declared: &Model,
     other: &Bench<'_>,
+    search: Search,
     progress: &mut dyn FnMut(&Step),
 ) -> Selection {
     let start = effort::with_declared_load(pair.bench, declared);
-    selected(pair, &start, other, progress)
+    selected(pair, &start, other, search, progress)
 }
 
 fn selected(
     pair: Pair<'_>,
     start: &Model,
     other: &Bench<'_>,
+    search: Search,
     progress: &mut dyn FnMut(&Step),
 ) -> Selection {
+    if search == Search::Nothing {
+        return Selection {
+            model: start.clone(),
+            ..Selection::default()
+        };
+    }
     let mut selected = effort::select(pair, start, progress);
     veto(pair.bench, other, &mut selected);
     selected
@@ -145,6 +175,7 @@ fn beside_the_load(
     pair: Pair<'_>,
     other: &Bench<'_>,
     declared: &Model,
+    search: Search,
     effort: &mut Selection,
     progress: &mut dyn FnMut(&Step),
 ) -> Option<Difference> {
@@ -156,7 +187,7 @@ fn beside_the_load(
     if difference.moves_apart() {
         if effort::lacks_load_inertia(bench, &effort.model) {
             let start = effort::with_load(bench, declared);
-            *effort = selected(pair, &start, other, progress);
+            *effort = selected(pair, &start, other, search, progress);
             effort.model = effort::without_load(&effort.model);
         }
         effort::remove_beside_load(bench, &mut effort.model);
@@ -283,7 +314,7 @@ mod tests {
             rows,
             windows: 3,
         };
-        identify_excerpt(&dataset(), size, &mut |_| ()).unwrap()
+        identify_excerpt(&dataset(), size, Search::Whole, &mut |_| ()).unwrap()
     }
 
     #[test]

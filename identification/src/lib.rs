@@ -33,7 +33,7 @@ mod report;
 mod simulate;
 
 pub use error::IdentificationError;
-pub use identify::{declared_coulomb, identify};
+pub use identify::{declared_coulomb, fit_declared, identify};
 pub use progress::Step;
 pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};

@@ -18,6 +18,7 @@ mod carried;
 mod columns;
 mod edges;
 mod flanks;
+mod intervals;
 mod known;
 mod left;
 mod load;
@@ -32,7 +33,7 @@ use axis_model::EffectName;
 pub(crate) use self::by_the_load::ByTheLoad;
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
-use self::flanks::Judged;
+use self::flanks::{Balance, Judged};
 pub(crate) use self::known::Known;
 use self::left::Left;
 use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
@@ -71,11 +72,11 @@ pub(crate) struct Difference {
     /// Rms that the extended model leaves.
     pub after_um: f64,
     /// Width of the gap, if one was found.
-    pub gap: Option<f64>,
+    pub gap: Option<Known>,
     /// Stiffness, if compliance was found or declared: effort per length.
-    pub stiffness: Option<f64>,
-    /// Half width of its interval; zero where there is none.
-    pub stiffness_half_width: f64,
+    pub stiffness: Option<Known>,
+    /// Amplitude and wave number of the pitch error, if one was found or declared.
+    pub pitch: Option<(Known, Known)>,
     /// What the load's own motion tells, where it explains the wind-up better than the effort.
     pub by_the_load: Option<ByTheLoad>,
     /// The largest structure that no accepted effect explains, beyond the counts.
@@ -126,10 +127,9 @@ pub(crate) fn settled(
     let unit = dataset.kind.moving_velocity();
     let refitted = |fitted: &FittedWays| {
         let carried = carried::instead(&apart, &fitted.ways(), unit);
-        carried.map_or_else(
-            || fitted.clone(),
-            |ways| apart.where_known(&ways).fit(&ways),
-        )
+        let ways = carried.unwrap_or_else(|| fitted.ways());
+        let ways = intervals::with_wave_numbers(&apart, ways);
+        apart.where_known(&ways).fit(&ways)
     };
     let is_same = difference.declared.ways() == difference.extended.ways();
     difference.extended = refitted(&difference.extended);
@@ -142,9 +142,10 @@ pub(crate) fn settled(
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
     let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place));
     let told = told.filter(|told| difference.agrees_with(told));
+    difference.know(&apart);
     if let Some(told) = told {
-        difference.stiffness = Some(told.stiffness.value);
-        difference.gap = told.gap.map(|gap| gap.value).or(difference.gap);
+        difference.stiffness = Some(told.stiffness);
+        difference.gap = told.gap.or(difference.gap);
     } else {
         difference.doubt_stiffness(&apart);
     }
@@ -455,11 +456,11 @@ impl Difference {
             scored,
             before_um: 0.0,
             after_um: 0.0,
-            gap: gap.map(|(way, own)| parameter(way, own)),
+            gap: gap.map(|(way, own)| Known::new(parameter(way, own), 0.0)),
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
-                .map(|(way, own)| stiffness(gap, way, own)),
-            stiffness_half_width: 0.0,
+                .map(|(way, own)| Known::new(stiffness(gap, way, own), 0.0)),
+            pitch: None,
             by_the_load: None,
             left: None,
             declared,
@@ -473,6 +474,33 @@ impl Difference {
         self.gap.is_some() || self.stiffness.is_some()
     }
 
+    /// How well the sizes of what was fitted are known. Those of springy flanks are known by the
+    /// motor's balance, as they were found.
+    fn know(&mut self, apart: &Apart<'_>) {
+        let half_widths = intervals::half_widths(apart, &self.extended);
+        for (place, half_widths) in half_widths.iter().enumerate() {
+            let Some((way, own)) = self.extended.at(place) else {
+                continue;
+            };
+            let searched = half_widths.searched.unwrap_or(0.0);
+            match way {
+                Way::Play(behind) => self.gap = Some(Known::new(behind.gap, searched)),
+                Way::Flanks(flanks) => {
+                    let (gap, stiffness) = Balance::of(apart).known(flanks);
+                    self.gap = Some(gap);
+                    self.stiffness = self.stiffness.map(|_| stiffness);
+                }
+                Way::Pitch { per_length } => {
+                    let size = own[0].hypot(own[1]);
+                    let off = (own[0] * half_widths.own[0]).hypot(own[1] * half_widths.own[1]);
+                    let amplitude = Known::new(size, off / size.max(f64::MIN_POSITIVE));
+                    self.pitch = Some((amplitude, Known::new(per_length, searched)));
+                }
+                Way::Constant | Way::WindUp { .. } | Way::HalfOf { .. } | Way::Carried(_) => {}
+            }
+        }
+    }
+
     /// How far the stiffness of a spring without a gap is known: as far as the rows in which the
     /// motor moves give the same. Where they do not tell it, it may be anything up to twice what it
     /// was taken for.
@@ -481,15 +509,16 @@ impl Difference {
         let Some(stiffness) = self.stiffness.filter(|_| !has(&ways, EffectName::Backlash)) else {
             return;
         };
+        let stiffness = stiffness.value;
         let seen = spring::on_moving_rows(apart, &ways);
         let half_width = |seen: Known| seen.half_width + (seen.value - stiffness).abs();
-        self.stiffness_half_width = seen.map_or(stiffness, half_width);
+        self.stiffness = Some(Known::new(stiffness, seen.map_or(stiffness, half_width)));
     }
 
     /// Whether the stiffness may be anything from zero up.
     #[must_use]
     pub(crate) fn hardly_knows_the_stiffness(&self) -> bool {
-        let is_vague = |stiffness: f64| self.stiffness_half_width >= stiffness;
+        let is_vague = |stiffness: Known| stiffness.half_width >= stiffness.value;
         self.stiffness.is_some_and(is_vague)
     }
 
@@ -507,7 +536,7 @@ impl Difference {
     /// Whether the load's motion tells the stiffness that the effort told. Where a loop bounces
     /// between its flanks it does not, and neither is right.
     fn agrees_with(&self, told: &ByTheLoad) -> bool {
-        let stiffness = self.stiffness.unwrap_or(f64::NAN);
+        let stiffness = self.stiffness.map_or(f64::NAN, |known| known.value);
         (told.stiffness.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
     }
 
@@ -517,13 +546,6 @@ impl Difference {
             Some((Way::Play(behind), _)) => self.after_um <= 1.0e6 * IMPACTS * behind.gap,
             _ => false,
         }
-    }
-
-    /// Amplitude and wave number of the pitch error, if one was found.
-    #[must_use]
-    pub(crate) fn pitch(&self) -> Option<(f64, f64)> {
-        let (way, own) = self.extended.of(EffectName::PitchError)?;
-        Some((own[0].hypot(own[1]), parameter(way, own)))
     }
 
     /// Rms on another record: declared, extended; µm.
@@ -558,6 +580,10 @@ mod tests {
     }
 
     const COUNT: f64 = 1.0e-7;
+
+    fn values((amplitude, per_length): (Known, Known)) -> (f64, f64) {
+        (amplitude.value, per_length.value)
+    }
 
     /// A motor with a load that is late by what is told of row, position and effort.
     fn axis(lag: impl Fn(&[f64], usize) -> f64) -> Axis {
@@ -606,11 +632,11 @@ mod tests {
             let mut axis = axis(|x, row| 1.0e-6 * error(x[row]));
             axis.dataset.lead_m_per_rev = Some(lead);
             let difference = judged(&axis);
-            (difference.found.clone(), difference.pitch())
+            (difference.found.clone(), difference.pitch)
         };
         let (names, pitch) = found(&|x| 3.0 * (TAU * x / lead + 0.4).cos());
         assert_eq!(names, [EffectName::PitchError]);
-        let (amplitude, per_length) = pitch.unwrap();
+        let (amplitude, per_length) = pitch.map(values).unwrap();
         assert!((amplitude / 3.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
         assert!((per_length * lead - 1.0).abs() < 1.0e-9, "{per_length}");
         let u = |x: f64| 2.0 * x / travel;
@@ -628,7 +654,7 @@ mod tests {
         let difference = judged(&axis(|_, _| 0.0));
         assert!(difference.found.is_empty() && !difference.moves_apart());
         assert_eq!(
-            (difference.gap, difference.stiffness, difference.pitch()),
+            (difference.gap, difference.stiffness, difference.pitch),
             (None, None, None)
         );
         assert!(difference.after_um < 0.03, "{}", difference.after_um);
@@ -639,7 +665,7 @@ mod tests {
         let axis = axis(|x, row| 2.0e-6 * (TAU * 500.0 * x[row] + 0.4).cos());
         let difference = judged(&axis);
         assert_eq!(difference.found, [EffectName::PitchError]);
-        let (amplitude, per_length) = difference.pitch().unwrap();
+        let (amplitude, per_length) = difference.pitch.map(values).unwrap();
         assert!((amplitude / 2.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
         assert!((per_length / 500.0 - 1.0).abs() < 0.01, "{per_length}");
         // 2 µm of amplitude are 1.4 µm rms.
@@ -670,7 +696,14 @@ mod tests {
         let lag = behind.follow(&two_sines(6000), 1.0e-3);
         let difference = judged(&axis(|_, row| lag[row]));
         assert_eq!(difference.found.first(), Some(&EffectName::Backlash));
-        let gap = difference.gap.unwrap();
+        let Known {
+            value: gap,
+            half_width,
+        } = difference.gap.unwrap();
+        assert!(
+            (gap - 20.0e-6).abs() < half_width && half_width < 0.5e-6,
+            "{gap} {half_width}"
+        );
         assert!((gap / 20.0e-6 - 1.0).abs() < 0.02, "{gap}");
         assert!(difference.moves_apart() && difference.stiffness.is_none());
     }
@@ -694,9 +727,11 @@ mod tests {
             .for_each(|(x, force)| *x += force / 5.0e6);
         let difference = judged(&wound);
         assert_eq!(difference.found, [EffectName::Compliance]);
-        let stiffness = difference.stiffness.unwrap();
+        let Known {
+            value: stiffness,
+            half_width,
+        } = difference.stiffness.unwrap();
         assert!((stiffness / 5.0e6 - 1.0).abs() < 0.02, "{stiffness}");
-        let half_width = difference.stiffness_half_width;
         assert!((stiffness - 5.0e6).abs() < half_width, "{half_width}");
         assert!(!difference.hardly_knows_the_stiffness(), "{half_width}");
         assert!(difference.moves_apart() && difference.gap.is_none());
@@ -724,7 +759,7 @@ mod tests {
         axis.dataset.declared.push(EffectName::PitchError);
         let difference = judged(&axis);
         assert!(difference.found.is_empty());
-        assert!(difference.before_um < 0.3 && difference.pitch().is_some());
+        assert!(difference.before_um < 0.3 && difference.pitch.is_some());
     }
 
     fn output(axis: &Axis, count: f64) -> MotorLoad<'_> {

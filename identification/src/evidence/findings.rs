@@ -109,6 +109,8 @@ pub(crate) struct Findings<'a> {
     pub dataset: &'a Dataset,
     /// Motion of the training record.
     pub motion: &'a Kinematics,
+    /// The same at the lower cut-off.
+    pub low: &'a Kinematics,
     /// Motion of the validation record.
     pub validation: &'a Kinematics,
     /// What each stage said.
@@ -170,6 +172,7 @@ impl<'a> Findings<'a> {
         Self {
             dataset,
             motion,
+            low,
             validation,
             stages,
             models,

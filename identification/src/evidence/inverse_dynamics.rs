@@ -5,13 +5,20 @@
 //! columns, not the list of parts. So a fitted structure sees every record through
 //! [`InverseDynamics::motion`].
 
+use crate::evidence::difference::Known;
 use crate::evidence::reversal::{self, bristle};
 use crate::fit::bench::Bench;
-use crate::fit::fitted::Fitted;
+use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::{self, Pair};
+use crate::model::effects::by_motion::place_among_usual;
 use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
+
+/// Step of the derivative by a deflection, as a share of it.
+const DEFLECTION_STEP: f64 = 0.02;
+/// As far as a deflection is moved to see what becomes of the coefficients, as a share of it.
+const MOST_OF_A_DEFLECTION: f64 = 0.5;
 
 /// One quantity of the declared model beside that of the extended model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,6 +95,57 @@ impl InverseDynamics {
             || motion.clone(),
             |deflection| bristle::motion(motion, deflection),
         )
+    }
+
+    /// The deflection with its interval: as moving samples and those about reversals tell it.
+    pub(crate) fn known_deflection(&self, dataset: &Dataset, motion: &Kinematics) -> Option<Known> {
+        let deflection = self.deflection?;
+        let step = DEFLECTION_STEP * deflection;
+        let [below, above] = [deflection - step, deflection + step].map(|deflection| {
+            let seen = bristle::motion(motion, deflection);
+            Bench::new(dataset, &seen).predict_lp(&self.fitted)
+        });
+        let pairs = below.iter().zip(&above);
+        let slope = pairs.map(|(below, above)| (above - below) / (2.0 * step));
+        let seen = self.motion(motion);
+        let both = seen.fitted.iter().zip(&seen.slow);
+        let mask: Vec<bool> = both.map(|(fitted, slow)| *fitted || *slow).collect();
+        let bench = Bench::new(dataset, &seen);
+        let half_width = bench.half_width_by(&self.fitted, slope.collect(), &mask);
+        Some(Known::new(deflection, half_width))
+    }
+
+    /// What was fitted with half widths of 95 % intervals, of a motion at both cut-offs. What the
+    /// deflection leaves open is in them. Noise of the positions that comes back through the
+    /// controller biases mass and friction, and much less at the lower cut-off: as far as they
+    /// differ there, they are uncertain too.
+    pub(crate) fn estimates(
+        &self,
+        dataset: &Dataset,
+        [motion, low]: [&Kinematics; 2],
+    ) -> Vec<Estimate> {
+        let of = |motion: &Kinematics| Bench::new(dataset, motion).fit(self.fitted.model());
+        let mut estimates = Bench::new(dataset, &self.motion(motion)).estimates(&self.fitted);
+        let at_low = of(&self.motion(low));
+        for (estimate, term) in estimates.iter_mut().zip(at_low.terms()) {
+            if place_among_usual(term.part.called()).is_some() {
+                let (value, half) = &mut estimate.own[0];
+                *half = half.hypot(term.own[0] - *value);
+            }
+        }
+        if let Some(known) = self.known_deflection(dataset, motion) {
+            let half_width = known.half_width.min(MOST_OF_A_DEFLECTION * known.value);
+            let ends = [known.value - half_width, known.value + half_width];
+            let [low, high] = ends.map(|deflection| of(&bristle::motion(motion, deflection)));
+            let pairs = low.terms().zip(high.terms());
+            for (estimate, (low, high)) in estimates.iter_mut().zip(pairs) {
+                let ends = low.own.iter().zip(high.own);
+                for ((_, half), (low, high)) in estimate.own.iter_mut().zip(ends) {
+                    *half = half.hypot(0.5 * (high - low));
+                }
+            }
+        }
+        estimates
     }
 
     /// Force error over the moving samples of a record, percent.
@@ -225,5 +283,30 @@ pub(crate) mod tests {
         let middle = motion.len() / 2;
         assert_near(left.residual[middle], 7.0, 1.0e-6);
         assert_near(motion.effort[middle] - left.prediction[middle], 7.0, 1.0e-6);
+    }
+
+    #[test]
+    fn a_deflection_that_is_off_has_an_interval_that_tells_it() {
+        let dataset = declared(record(Some(DEFLECTION_M)));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let known = |deflection: f64| {
+            let model = fitted(&dataset, &motion, Some(deflection));
+            let mass = model.estimates(&dataset, [&motion; 2])[0].own[0];
+            (model.known_deflection(&dataset, &motion).unwrap(), mass)
+        };
+        let (right, (mass, half)) = known(DEFLECTION_M);
+        assert_eq!(right.value, DEFLECTION_M);
+        assert!(right.half_width < 1.0e-3 * DEFLECTION_M, "{right:?}");
+        assert!((mass - 700.0).abs() < 0.01 && half < 0.1, "{mass} {half}");
+        for off in [0.85, 1.15] {
+            let (known, (mass, half)) = known(off * DEFLECTION_M);
+            let error = (known.value - DEFLECTION_M).abs();
+            assert!(error < 1.2 * known.half_width && known.half_width < 3.0 * error);
+            assert!((mass - 700.0).abs() < half, "{mass} {half}");
+        }
+        assert_eq!(
+            fitted(&dataset, &motion, None).known_deflection(&dataset, &motion),
+            None
+        );
     }
 }

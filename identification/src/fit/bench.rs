@@ -304,7 +304,9 @@ impl<'a> Bench<'a> {
     }
 
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
-    /// linearised, the nonlinear parameters, and the forms that are not the usual ones.
+    /// linearised, the nonlinear parameters, and the forms that are not the usual ones. What was
+    /// searched elsewhere (a delay, at the lower cut-off) is as uncertain besides as the least lies
+    /// away here, and the coefficients beside it are.
     #[must_use]
     pub(crate) fn estimates(&self, fitted: &Fitted) -> Vec<Estimate> {
         let model = fitted.model();
@@ -329,11 +331,32 @@ impl<'a> Bench<'a> {
         let design = self.design_about(fitted, searched);
         let blocks = self.blocks(&design);
         let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
-        let (own, others) = half_widths.split_at(design.columns.len() - searched.len());
-        fitted.estimates(own, |place, what| {
+        let of_columns = design.columns.len() - searched.len();
+        let (own, others) = half_widths.split_at(of_columns);
+        let mut least = blocks.fit().coefficients;
+        let away = least.split_off(of_columns);
+        let found = fitted.terms().flat_map(|term| term.own.iter().copied());
+        let wider = own.iter().zip(least.iter().zip(found));
+        let own: Vec<f64> = wider
+            .map(|(half, (least, found))| half.hypot(least - found))
+            .collect();
+        fitted.estimates(&own, |place, what| {
             let among = searched.iter().position(|one| *one == (place, what))?;
-            Some(others[among])
+            Some(others[among].hypot(away[among]))
         })
+    }
+
+    /// Half width of what a fit was made with, by the slope of the prediction over it: on rows of a
+    /// mask, beside the coefficients. As far as the least lies away there, it is uncertain besides.
+    #[must_use]
+    pub(crate) fn half_width_by(&self, fitted: &Fitted, slope: Vec<f64>, mask: &[bool]) -> f64 {
+        let mut design = self.design(fitted.model());
+        design.columns.push(slope);
+        let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
+        let rows = Rows::new(&columns, &design.target, mask, self.motion.period_s);
+        let blocks = Blocks::with(&rows, &[]);
+        let last = |all: Vec<f64>| all.last().copied().unwrap_or(0.0);
+        last(blocks.half_widths()).hypot(last(blocks.fit().coefficients))
     }
 
     /// Samples that are fitted, as far as the low-pass leaves them independent: two a period of its

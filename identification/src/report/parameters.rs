@@ -13,7 +13,7 @@ use axis_model::{Effect, Estimate};
 use crate::evidence::difference::{ByTheLoad, Difference, Known};
 use crate::evidence::findings::Findings;
 use crate::evidence::slow_ripple::OrderAtReversals;
-use crate::fit::bench::Bench;
+use crate::fit::primes::without_primes;
 use crate::model::effects::{Named, Naming};
 use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
@@ -194,9 +194,8 @@ fn plain(value: f64, unit: &str) -> Estimate {
 
 fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
     let extended = &findings.models.extended;
-    let seen = extended.motion(findings.motion);
-    let bench = Bench::new(findings.dataset, &seen);
-    let estimates = bench.estimates(&extended.fitted);
+    let estimates = extended.estimates(findings.dataset, [findings.motion, findings.low]);
+    let estimates = without_primes(estimates);
     let parameters = estimates.iter().flat_map(|estimate| {
         estimate.part.effect.parameters(&Naming {
             parameter: estimate.part.parameter,
@@ -216,10 +215,14 @@ fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
         let length = findings.dataset.kind.position_unit();
         let gap = findings.stages.reversals.gap_by_effort();
         // Behind a gap the bristle is stiffer than one that stands for both.
-        let bristle = gap.map(|gap| gap.deflection);
-        let bristle = bristle.or(findings.models.extended.deflection);
-        let bristle = bristle.map(|deflection| bristle_of(deflection, length));
-        let gap = gap.map(|gap| gap_of(gap.width, length));
+        let bristle = gap.map(|gap| plain(gap.deflection, length));
+        let alone = || {
+            let extended = &findings.models.extended;
+            let known = extended.known_deflection(findings.dataset, findings.motion);
+            known.map(|known| about(known.value, known.half_width, length.into()))
+        };
+        let bristle = bristle.or_else(alone).map(bristle_of);
+        let gap = gap.map(|gap| gap_of(plain(gap.width, length)));
         let shape = bristle.iter().chain(&gap).flat_map(of_an_effect);
         return (ranking::ABOUT_REVERSALS, shape.collect());
     };
@@ -228,16 +231,16 @@ fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
     (ranking::FREE_RUN, shape.collect())
 }
 
-fn bristle_of(deflection: f64, length: &str) -> Effect<Estimate> {
+fn bristle_of(deflection: Estimate) -> Effect<Estimate> {
     Effect::from(Presliding {
-        deflection: plain(deflection, length),
+        deflection,
         damping: None,
     })
 }
 
-fn gap_of(width: f64, length: &str) -> Effect<Estimate> {
+fn gap_of(gap: Estimate) -> Effect<Estimate> {
     Effect::from(Backlash {
-        gap: plain(width, length),
+        gap,
         load_share: None,
         motor_friction: None,
         restitution: None,
@@ -247,18 +250,18 @@ fn gap_of(width: f64, length: &str) -> Effect<Estimate> {
 fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {
     let length = findings.dataset.kind.position_unit();
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
-    let gap = difference.gap.map(|gap| gap_of(gap, length));
+    let known = |known: Known, unit: &str| about(known.value, known.half_width, unit.into());
+    let gap = difference.gap.map(|gap| gap_of(known(gap, length)));
     let compliance = difference.stiffness.map(|stiffness| {
-        let half_width = difference.stiffness_half_width;
         Effect::from(Compliance {
-            stiffness: about(stiffness, half_width, stiffness_unit),
+            stiffness: known(stiffness, &stiffness_unit),
             damping: None,
         })
     });
-    let pitch_error = difference.pitch().map(|(amplitude, per_length)| {
+    let pitch_error = difference.pitch.map(|(amplitude, per_length)| {
         Effect::from(PitchError {
-            amplitude: plain(amplitude, length),
-            period: plain(1.0 / per_length, length),
+            amplitude: known(amplitude, length),
+            period: known(per_length.inverse(), length),
         })
     });
     let all = gap.into_iter().chain(compliance).chain(pitch_error);

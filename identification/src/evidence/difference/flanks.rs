@@ -208,6 +208,37 @@ impl<'a> Balance<'a> {
         Blocks::new(&all, self.effort, &self.mask, self.motion.period_s)
     }
 
+    /// Width of a gap and stiffness of its flanks with their intervals, the edges linearised.
+    pub(super) fn known(&self, flanks: Flanks) -> (Known, Known) {
+        let beyond = |edge: f64, side: f64| {
+            let is_beyond = move |d: f64| side * (d - edge) > 0.0;
+            self.column(|row| f64::from(u8::from(is_beyond(self.difference[row]))))
+        };
+        let (high, low) = (beyond(flanks.high, 1.0), beyond(flanks.low, -1.0));
+        let pairs = high.iter().zip(&low);
+        let by_middle = pairs
+            .clone()
+            .map(|(high, low)| -flanks.stiffness * (high + low));
+        let by_width = pairs.map(|(high, low)| 0.5 * flanks.stiffness * (low - high));
+        let columns = [
+            by_middle.collect(),
+            self.rate(|d| flanks.touches(d)),
+            self.column(|row| flanks.wind_up(self.difference[row])),
+            by_width.collect(),
+        ];
+        let half_widths = self.blocks(&columns).half_widths();
+        let [.., stiffness, gap] = half_widths[..] else {
+            return (
+                Known::new(flanks.gap(), 0.0),
+                Known::new(flanks.stiffness, 0.0),
+            );
+        };
+        (
+            Known::new(flanks.gap(), gap),
+            Known::new(flanks.stiffness, stiffness),
+        )
+    }
+
     fn between(&self, flanks: Flanks) -> Blocks {
         self.blocks(&[
             self.column(|row| flanks.wind_up(self.difference[row])),

@@ -11,13 +11,18 @@ pub(crate) struct Known {
 
 impl Known {
     /// A value with its half width.
-    pub(super) const fn new(value: f64, half_width: f64) -> Self {
+    pub(crate) const fn new(value: f64, half_width: f64) -> Self {
         Self { value, half_width }
     }
 
     /// So many times as large.
     pub(super) fn of(self, whole: f64) -> Self {
         Self::new(self.value * whole, self.half_width * whole.abs())
+    }
+
+    /// One over it.
+    pub(crate) fn inverse(self) -> Self {
+        Self::new(1.0 / self.value, self.half_width / self.value.powi(2))
     }
 
     /// The product with another.
@@ -30,6 +35,13 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_inverse_is_as_uncertain_in_shares_as_the_value() {
+        let inverse = Known::new(-4.0, 0.2).inverse();
+        assert_eq!(inverse.value, -0.25);
+        assert!((inverse.half_width / 0.25 - 0.05).abs() < 1.0e-12);
+    }
 
     #[test]
     fn a_product_is_as_uncertain_as_both_its_factors() {
