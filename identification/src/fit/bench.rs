@@ -303,6 +303,19 @@ impl<'a> Bench<'a> {
         design
     }
 
+    /// How far the nonlinear parameters of parts, by their places, have to go to leave the least,
+    /// linearised about a fit: all of them and the coefficients together (Gauss and Newton).
+    #[must_use]
+    pub(crate) fn step_about(&self, fitted: &Fitted, places: &[usize]) -> Vec<f64> {
+        let searched: Vec<_> = places
+            .iter()
+            .map(|place| (*place, Searched::Parameter))
+            .collect();
+        let design = self.design_about(fitted, &searched);
+        let mut coefficients = self.blocks(&design).fit().coefficients;
+        coefficients.split_off(design.columns.len() - places.len())
+    }
+
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
     /// linearised, the nonlinear parameters, and the forms that are not the usual ones. What was
     /// searched elsewhere (a delay, at the lower cut-off) is as uncertain besides as the least lies

@@ -24,8 +24,14 @@ pub(crate) const SMOOTH_DEGREE: f64 = 4.0;
 /// A smooth function beside a wave that is declared is a spring where it removes this share of what
 /// the wave leaves alone: waves of less than a period within the travel need none.
 const WORTH_A_SPRING: f64 = 0.05;
-/// Rounds of the joint refinement.
+/// Rounds of the refinement of one parameter after the other.
 const ROUNDS: usize = 2;
+/// Most steps of all parameters together.
+const MOST_STEPS: usize = 8;
+/// Parts of a step that are tried, the largest first.
+const FACTORS: [f64; 3] = [1.0, 0.5, 0.1];
+/// There are no more steps where the last one removed less than this share of what was left.
+const WORTH_A_STEP: f64 = 1.0e-3;
 
 /// The cut-off for the delay search at a sample period.
 #[must_use]
@@ -208,6 +214,60 @@ pub(crate) fn refine(pair: Pair<'_>, model: &mut Model) {
         }
         *model = told::of_the_others(pair.bench, std::mem::take(model));
     }
+    if model.delay_s() != 0.0 {
+        together(pair.low, model, &|part| {
+            part.effect.stage() != Stage::Actuator
+        });
+    }
+    together(pair.bench, model, &|part| {
+        part.effect.stage() != Stage::Time
+    });
+}
+
+/// All nonlinear parameters at once, of the parts that are meant, from where each was refined by
+/// itself: that stops short of the least, and two of them that stand for each other creep along
+/// their valley. A part of a step is taken where all of it does not leave less.
+fn together(bench: &Bench<'_>, model: &mut Model, is_meant: &dyn Fn(&Part) -> bool) {
+    let is_searched =
+        |part: &Part| is_meant(part) && part.effect.is_tuned() && later_step(bench, part) > 0.0;
+    let places: Vec<usize> = (0..model.parts.len())
+        .filter(|place| is_searched(&model.parts[*place]))
+        .collect();
+    if places.is_empty() {
+        return;
+    }
+    let mut left = bench.sse(model);
+    for _ in 0..MOST_STEPS {
+        let step = bench.step_about(&bench.fit(model), &places);
+        let after = |factor: f64| {
+            let mut moved = model.clone();
+            for (place, step) in places.iter().zip(&step) {
+                let Part {
+                    effect, parameter, ..
+                } = moved.parts[*place];
+                let (low, high) = effect.bounds(bench.motion);
+                let parameter = (parameter + factor * step).clamp(low, high);
+                moved = settled(bench, moved.with_parameter(*place, parameter), effect);
+            }
+            told::of_the_others(bench, moved)
+        };
+        let tried = FACTORS
+            .into_iter()
+            .map(after)
+            .map(|moved| (bench.sse(&moved), moved));
+        let Some((sse, moved)) = tried.into_iter().find(|(sse, _)| *sse < left) else {
+            return;
+        };
+        *model = moved;
+        if sse > (1.0 - WORTH_A_STEP) * left {
+            return;
+        }
+        left = sse;
+    }
+}
+
+fn later_step(bench: &Bench<'_>, part: &Part) -> f64 {
+    part.effect.later_step(bench.motion, part.parameter)
 }
 
 fn refine_one(pair: Pair<'_>, model: &mut Model, place: usize) {
@@ -460,5 +520,35 @@ mod tests {
         refine(pair, &mut model);
         let delay_s = model.parts[5].parameter;
         assert!((delay_s - 4.0e-3).abs() < 5.0e-5, "{delay_s}");
+    }
+
+    #[test]
+    fn parameters_that_stand_for_each_other_are_found_together() {
+        // Late by 2.37 rows, and two ripples that are a twelfth of a period apart over the travel.
+        let (delay_s, waves) = (2.37e-3, [(400.0, 3.0), (407.0, 1.5)]);
+        let axis = axis(|motion, row| {
+            let at = |row: usize| {
+                let ripple =
+                    |(k, size): &(f64, f64)| size * (TAU * k * motion.position_lp[row]).cos();
+                usual(motion, row) + waves.iter().map(ripple).sum::<f64>()
+            };
+            let [near, far] = [2, 3].map(|late| at((row + late).min(motion.len() - 1)));
+            0.63 * near + 0.37 * far
+        });
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let mut model = model(&DECLARED)
+            .with(found(Delay, 2.0e-3))
+            .with(found(TorqueRipple, 399.0))
+            .with(found(TorqueRipple, 408.5));
+        refine(pair, &mut model);
+        let parameters: Vec<f64> = model.parts[4..].iter().map(|part| part.parameter).collect();
+        assert!((parameters[0] - delay_s).abs() < 2.0e-6, "{parameters:?}");
+        for (found, (wanted, _)) in parameters[1..].iter().zip(waves) {
+            assert!((found / wanted - 1.0).abs() < 2.0e-4, "{parameters:?}");
+        }
     }
 }
