@@ -101,8 +101,27 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             format!("{effort} s/{position}"),
         ),
     ];
-    all.extend(rig.known.clone());
+    all.extend(rig.known.iter().map(|known| Known {
+        value: if known.name == "logged_late" {
+            stands_for(rig, known.value)
+        } else {
+            known.value
+        },
+        ..known.clone()
+    }));
     all
+}
+
+/// How late a log is that is read so late: what it reads is held over a tick of the controller. A
+/// command is stated as held from its row on, a current as that of its instant, which in the mean
+/// is the middle of the tick.
+fn stands_for(rig: &Rig, late_s: f64) -> f64 {
+    let tick_s = rig.controller.period_s;
+    let begun_s = (late_s / tick_s).ceil() * tick_s;
+    match rig.sensing.effort.source {
+        Source::Command => begun_s,
+        Source::Current => begun_s - 0.5 * tick_s,
+    }
 }
 
 /// Text of `dataset.toml`.
