@@ -225,7 +225,7 @@ pub(crate) fn reversals(
         accepted = scene.with_both(accepted, both.tried(rigid, size));
     }
     let something_left = rigid.all > VISIBLE_ROUNDINGS * rounding(dataset.resolution);
-    Some(Reversals {
+    let reversals = Reversals {
         controller,
         drive: judge.drive,
         rigid: shapes.rigid,
@@ -235,7 +235,8 @@ pub(crate) fn reversals(
         accepted,
         alone: accepted,
         something_left,
-    })
+    };
+    Some(reversals.asked_on(&dataset.validate, judge.travel))
 }
 
 /// What was tried at reversals beside each other.
@@ -443,6 +444,25 @@ impl Judged {
 }
 
 impl Reversals {
+    /// What is accepted after a look at another record.
+    fn asked_on(mut self, other: &Record, travel: f64) -> Self {
+        if self.accepted.backlash {
+            let left = |judged: &Judged| {
+                let run = simulate(&judged.model, &self.drive, other);
+                let all = position_rms(&run, other, &|_| true);
+                if strays(&run, other, travel) {
+                    f64::INFINITY
+                } else {
+                    all
+                }
+            };
+            let [shape, rigid] = [self.best(), &self.rigid].map(left);
+            self.accepted = self.accepted.after_another_record(shape, rigid);
+            self.alone = self.accepted;
+        }
+        self
+    }
+
     /// What it says in short.
     #[must_use]
     pub(crate) fn summary(&self) -> Summary {

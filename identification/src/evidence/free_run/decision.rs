@@ -4,10 +4,10 @@
 //! encoder shows of nothing. It is *accepted* where it also leaves clearly less than its rival.
 //! Where something is seen and nothing accepted, the run is undecided. "Less" is asked twice: on
 //! the blocks that were not fitted and on the whole record. A gap must be certain over the blocks
-//! too.
+//! too, and leave no more of another record than rigid friction does.
 
 use crate::evidence::thresholds::{
-    CERTAIN_T, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS,
+    CERTAIN_T, HELPS_RATIO, RIVAL_RATIO, SHAPE_RATIO, VETO_RATIO, VISIBLE_ROUNDINGS,
 };
 
 /// What a free run accepts.
@@ -104,6 +104,21 @@ impl Scene {
             };
         }
         accepted
+    }
+}
+
+impl Accepted {
+    /// What stays of it after a look at another record, by what its shape and rigid friction leave
+    /// there: a gap that leaves more is none, and what acts is open.
+    #[must_use]
+    pub(crate) fn after_another_record(self, shape: f64, rigid: f64) -> Self {
+        if self.backlash && shape > VETO_RATIO * rigid {
+            return Self {
+                undecided: true,
+                ..Self::default()
+            };
+        }
+        self
     }
 }
 
@@ -282,6 +297,24 @@ mod tests {
             ..tried(0.3, 0.3)
         };
         assert_eq!(beside(None).with_both(before, least), both);
+    }
+
+    #[test]
+    fn a_gap_that_leaves_more_of_another_record_than_rigid_friction_is_open() {
+        let (gap, both) = (accepted(false, true, false), accepted(true, true, false));
+        let torn = accepted(false, false, true);
+        for (before, left, wanted) in [
+            (gap, (VETO_RATIO, 1.0), gap),
+            (gap, (VETO_RATIO + 0.01, 1.0), torn),
+            (both, (VETO_RATIO + 0.01, 1.0), torn),
+            (gap, (f64::INFINITY, 1.0), torn),
+            (gap, (1.0, f64::INFINITY), gap),
+            (gap, (f64::INFINITY, f64::INFINITY), gap),
+        ] {
+            assert_eq!(before.after_another_record(left.0, left.1), wanted);
+        }
+        let bristle = accepted(true, false, false);
+        assert_eq!(bristle.after_another_record(2.0, 1.0), bristle);
     }
 
     #[test]
