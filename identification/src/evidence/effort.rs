@@ -25,8 +25,8 @@ use std::cmp::Ordering;
 
 use axis_model::EffectName;
 
+use crate::evidence::few_periods::{beats_smooth, unearned};
 use crate::evidence::forms::{self, beats};
-use crate::evidence::known_orders::{beats_smooth, unearned};
 use crate::evidence::look_alikes::{as_look_alikes, looks_like_another};
 use crate::evidence::selection::{
     self, Candidate, Output, Scored, Selection, is_enough, is_large_outside,
@@ -53,7 +53,7 @@ struct Effort<'a> {
     pair: Pair<'a>,
     /// When the nearest outsiders may come in.
     outsiders: Outsiders,
-    /// Effects that may not come in at known orders: they have not earned their names.
+    /// Effects that may not come in with few periods: they have not earned their names.
     closed: Vec<Called>,
     /// Effects that may not come in at all: something that looks like them is as good.
     refused: Vec<Called>,
@@ -137,6 +137,15 @@ fn select_on(output: &Effort<'_>, start: Model, progress: &mut dyn FnMut(&Step))
     selection
 }
 
+/// Whether what came in last need not earn its name yet. A wave of few periods whose period was
+/// searched must, at once: any curve over the position is a sum of such waves, and it takes long to
+/// refuse them together.
+fn may_wait_for_its_name(bench: &Bench<'_>, model: &Model) -> bool {
+    let effect = last(model).effect;
+    let is_searched = effect.smooth().is_some() && effect.is_tuned();
+    !is_searched || unearned(bench, model).is_none()
+}
+
 fn has_outsider(model: &Model) -> bool {
     let found = |part: &&Part| part.origin == Origin::Found;
     let mut found = model.parts.iter().filter(found);
@@ -160,10 +169,10 @@ impl Output for Effort<'_> {
         let extended = |model: &Model, effect| tuning::extended(self.pair, model, effect, &setting);
         let judged = |extended: Model| self.judged(model, &base, extended, round);
         let candidate = |effect: &&'static dyn Effect| {
-            let known = effect.at_known_orders();
-            let known = known.filter(|known| !self.closed.contains(&known.called()));
-            let both = [Some(*effect), known].into_iter().flatten();
-            let once = both.filter_map(|effect| extended(model, effect).map(judged));
+            let few = effect.with_few_periods().iter();
+            let few = few.filter(|few| !self.closed.contains(&few.called()));
+            let all = std::iter::once(effect).chain(few);
+            let once = all.filter_map(|effect| extended(model, *effect).map(judged));
             let once = once.max_by(better)?;
             let is_first = effect.comes_and_goes() && !model.has(effect.called());
             if !is_first || self.accepts(&once) {
@@ -257,7 +266,8 @@ impl Effort<'_> {
             gain,
             physical: is_physical(effect, parameter, &fitted)
                 && self.leaves_less_than_look_alikes(extended)
-                && self.beats_smooth(model, extended),
+                && self.beats_smooth(model, extended)
+                && may_wait_for_its_name(self.pair.bench, extended),
             accepted: false,
             round,
         };
@@ -608,6 +618,10 @@ mod tests {
         ))
     }
 
+    /// Turns within the travel where nothing tells how long one is: the order of a ripple is then
+    /// its number of periods.
+    const UNKNOWN: f64 = 1.0;
+
     /// What is found on an axis that turns so often within its travel, with a force over position,
     /// −1…1, and the order of each ripple.
     fn found_over(turns: f64, force: impl Fn(f64) -> f64) -> (Vec<Called>, Vec<f64>) {
@@ -624,7 +638,7 @@ mod tests {
         let noise = |row: usize| 0.2 * (0.37 * (row * row % 1013) as f64).sin();
         axis.put(|motion, row| law(motion, row, u(motion.position_lp[row])) + noise(row));
         let lead = (high - low) / turns;
-        axis.dataset.lead_m_per_rev = Some(lead);
+        axis.dataset.lead_m_per_rev = Some(lead).filter(|_| turns != UNKNOWN);
         let bench = axis.bench();
         let pair = Pair {
             bench: &bench,
@@ -711,6 +725,50 @@ mod tests {
                     "{orders:?}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn a_wave_of_three_periods_and_more_is_found_where_no_turn_is_known() {
+        for periods in [3.1, 4.4, 5.7, 7.6] {
+            for phase in [0.3, 1.9] {
+                let wave = order_of(UNKNOWN, periods, phase);
+                let (found, orders) = found_over(UNKNOWN, |u| 5.0 * wave(u));
+                assert_eq!(found, [TorqueRipple], "{periods} {phase}");
+                assert!(
+                    orders.len() == 1 && (orders[0] / periods - 1.0).abs() < 5.0e-3,
+                    "{orders:?} {periods}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn two_waves_of_few_periods_are_found_together_where_no_turn_is_known() {
+        let (one, two) = (order_of(UNKNOWN, 3.6, 0.3), order_of(UNKNOWN, 7.2, 2.1));
+        let (found, mut periods) = found_over(UNKNOWN, |u| 8.0 * one(u) + 5.0 * two(u));
+        periods.sort_by(f64::total_cmp);
+        assert_eq!(found, [TorqueRipple]);
+        let pairs = periods.iter().zip([3.6, 7.2]);
+        assert!(periods.len() == 2, "{periods:?}");
+        assert!(
+            pairs
+                .into_iter()
+                .all(|(found, is)| (found / is - 1.0).abs() < 5.0e-3),
+            "{periods:?}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_wave_is_no_ripple_where_no_turn_is_known_either() {
+        let latch = |u: f64| 40.0 * u * (0.5 - 12.5 * u * u).exp();
+        let steps = |u: f64| 6.0 * ((u - 0.3) / 0.05).tanh() + 4.0 * ((u + 0.4) / 0.1).tanh();
+        let buffers = |u: f64| 20.0 * (u - 0.7).max(0.0) - 15.0 * (-u - 0.6).max(0.0);
+        let knots = |u: f64| 6.0 * (2.3 * u + (7.0 * u).sin() * u).cos();
+        let all: [&dyn Fn(f64) -> f64; 4] = [&latch, &steps, &buffers, &knots];
+        for (place, force) in all.into_iter().enumerate() {
+            let (found, _) = found_over(UNKNOWN, force);
+            assert!(!found.contains(&TorqueRipple.into()), "{place}");
         }
     }
 

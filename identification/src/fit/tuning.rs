@@ -163,7 +163,7 @@ pub(crate) fn begin(pair: Pair<'_>, model: &mut Model) {
     }
 }
 
-/// Puts a nonlinear parameter where its grid, or that of its known orders, leaves the least beside
+/// Puts a nonlinear parameter where its grid, or one of its few periods, leaves the least beside
 /// the other parts.
 fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
     let effect = model.parts[place].effect;
@@ -177,12 +177,9 @@ fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
         let grid = effect.grid(bench.motion, &setting).into_iter();
         grid.map(move |parameter| (effect, parameter))
     };
-    let known: Vec<_> = effect
-        .at_known_orders()
-        .into_iter()
-        .flat_map(choices)
-        .collect();
-    let all: Vec<_> = choices(effect).chain(known.iter().copied()).collect();
+    let few = effect.with_few_periods().iter();
+    let few: Vec<_> = few.flat_map(|effect| choices(*effect)).collect();
+    let all: Vec<_> = choices(effect).chain(few.iter().copied()).collect();
     if all.len() < 2 {
         return;
     }
@@ -195,7 +192,7 @@ fn start(pair: Pair<'_>, model: &mut Model, place: usize) {
         return;
     };
     // A spring that is not in the model must not decide which order is the declared one.
-    if let Some(smooth) = known.first().and_then(|(known, _)| known.smooth()) {
+    if let Some(smooth) = few.first().and_then(|(few, _)| few.smooth()) {
         let beside = |choice| bench.sse(&at(choice).with(Part::found(smooth, SMOOTH_DEGREE)));
         let other = smallest(&all, &beside).unwrap_or(best);
         if beside(other) < (1.0 - WORTH_A_SPRING) * alone(best) {

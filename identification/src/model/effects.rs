@@ -16,10 +16,10 @@ pub(crate) mod by_motion;
 pub(crate) mod coulomb;
 pub(crate) mod curve;
 pub(crate) mod delay;
+pub(crate) mod few_periods;
 pub(crate) mod friction_drift;
 pub(crate) mod hum;
 pub(crate) mod inertia;
-pub(crate) mod known_order;
 pub(crate) mod load_dependent_friction;
 pub(crate) mod load_inertia;
 pub(crate) mod logged_late;
@@ -268,14 +268,13 @@ pub(crate) trait Effect: Sync {
         0.0
     }
 
-    /// The same effect at the integer orders per revolution that have too few periods within the
-    /// travel for their period to be found ([`known_order`]).
-    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
-        None
+    /// The same effect with fewer periods within the travel than tell themselves ([`few_periods`]).
+    fn with_few_periods(&self) -> &'static [&'static dyn Effect] {
+        &[]
     }
 
-    /// What it must not be taken for where its nonlinear parameter is known and not found: the same
-    /// with a polynomial over position, whose nonlinear parameter is the degree.
+    /// What it must not be taken for where it has few periods within the travel: the same with a
+    /// polynomial over position, whose nonlinear parameter is the degree.
     fn smooth(&self) -> Option<&'static dyn Effect> {
         None
     }

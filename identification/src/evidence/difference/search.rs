@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::columns::{Apart, FittedWays, Way};
-use crate::evidence::known_orders::degree_beside;
+use crate::evidence::few_periods::degree_beside;
 use crate::evidence::selection::is_certain;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
 use crate::fit::blocks::Gain;

@@ -96,7 +96,7 @@ impl Effect for PositionDependentInertia {
         let acceleration = motion.low_passed(&motion.acceleration);
         let by_row = |row: usize| weight(motion, &acceleration, row);
         let slow = SLOW.map(|periods| wave::of_periods(motion, periods));
-        let fast = wave::strongest(motion, setting, SCANNED_FROM, by_row);
+        let fast = wave::strongest(motion, setting, SCANNED_FROM..f64::INFINITY, by_row);
         slow.into_iter().chain(fast).collect()
     }
 

@@ -12,7 +12,7 @@
 use axis_model::EffectName;
 
 use super::by_motion::{ByMotion, Others, Usual};
-use super::known_order::KnownOrder;
+use super::few_periods::{FewPeriods, WaveNumbers};
 use super::position_dependent_inertia::PositionDependentInertia;
 use super::torque_ripple::TorqueRipple;
 use super::wave::{self, Names, Weight};
@@ -39,12 +39,13 @@ const FEWEST_PERIODS: f64 = 3.0;
 
 /// The orders with fewer periods. A wave of the same period that is a force, an inertia or friction
 /// is no torque constant's.
-static AT_KNOWN_ORDERS: KnownOrder = KnownOrder {
+static AT_KNOWN_ORDERS: [&dyn Effect; 1] = [&FewPeriods {
     of: &TorqueConstantRipple,
     below_periods: FEWEST_PERIODS,
+    wave_numbers: WaveNumbers::KnownOrders,
     smooth: &SmoothTorqueConstant,
     look_alikes: &[&TorqueRipple, &PositionDependentInertia, &FrictionWave],
-};
+}];
 /// Half the torque: no motor is made so.
 const LARGEST: f64 = 0.5;
 /// Rounds in which the effort and its wave are made to agree: each leaves a tenth of the error, as
@@ -123,8 +124,8 @@ impl Effect for TorqueConstantRipple {
         true
     }
 
-    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
-        Some(&AT_KNOWN_ORDERS)
+    fn with_few_periods(&self) -> &'static [&'static dyn Effect] {
+        &AT_KNOWN_ORDERS
     }
 
     fn acts_on_motor(&self) -> bool {
@@ -157,9 +158,11 @@ impl Effect for TorqueConstantRipple {
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
         let efforts = ByMotion::of(motion).efforts();
-        wave::strongest(motion, setting, FEWEST_PERIODS, |row| Weight {
-            wave: -efforts[row],
-            half_slope: 0.0,
+        wave::strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY, |row| {
+            Weight {
+                wave: -efforts[row],
+                half_slope: 0.0,
+            }
         })
     }
 

@@ -1,12 +1,12 @@
 //! Torque ripple: a force periodic in motor position, `a cos(2π k x) + b sin(2π k x)`.
 //!
 //! The period is searched, so the lead need not be known; where it is, the order per revolution is
-//! reported. An integer order per revolution with fewer periods within the travel than a search
-//! needs is a candidate too ([`KnownOrder`]): cogging on half a turn, a weight off the centre.
+//! reported. Fewer periods within the travel than tell themselves must earn the name
+//! ([`FewPeriods`]): cogging on half a turn, the magnets of a short linear motor.
 
 use axis_model::EffectName;
 
-use super::known_order::KnownOrder;
+use super::few_periods::{FewPeriods, WaveNumbers};
 use super::spring::SmoothForce;
 use super::wave::{self, Names, Weight};
 use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
@@ -16,17 +16,23 @@ use crate::record::dataset::Dataset;
 /// Cosine and sine of position.
 pub(crate) struct TorqueRipple;
 
-/// At least so many periods within the travel for a period that is searched: fewer are position
-/// dependence, unless the order is known.
+/// At least so many periods within the travel: fewer may be position dependence.
 const FEWEST_PERIODS: f64 = 8.0;
 
-/// The orders with fewer periods.
-static AT_KNOWN_ORDERS: KnownOrder = KnownOrder {
-    of: &TorqueRipple,
-    below_periods: FEWEST_PERIODS,
-    smooth: &SmoothForce,
-    look_alikes: &[],
-};
+const fn few_periods(wave_numbers: WaveNumbers) -> FewPeriods {
+    FewPeriods {
+        of: &TorqueRipple,
+        below_periods: FEWEST_PERIODS,
+        wave_numbers,
+        smooth: &SmoothForce,
+        look_alikes: &[],
+    }
+}
+
+static WITH_FEW_PERIODS: [&dyn Effect; 2] = [
+    &const { few_periods(WaveNumbers::KnownOrders) },
+    &const { few_periods(WaveNumbers::Searched) },
+];
 
 impl Effect for TorqueRipple {
     fn called(&self) -> Called {
@@ -49,8 +55,8 @@ impl Effect for TorqueRipple {
         true
     }
 
-    fn at_known_orders(&self) -> Option<&'static dyn Effect> {
-        Some(&AT_KNOWN_ORDERS)
+    fn with_few_periods(&self) -> &'static [&'static dyn Effect] {
+        &WITH_FEW_PERIODS
     }
 
     fn acts_on_motor(&self) -> bool {
@@ -74,7 +80,9 @@ impl Effect for TorqueRipple {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        wave::strongest(motion, setting, FEWEST_PERIODS, |_| Weight::PLAIN)
+        wave::strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY, |_| {
+            Weight::PLAIN
+        })
     }
 
     fn first_step(&self, motion: &Kinematics, _: f64) -> f64 {

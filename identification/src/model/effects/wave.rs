@@ -9,6 +9,7 @@
 //! pass over the samples for each k. The least squares of the whole model decide between the best.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use super::turning::{RENEWED, Turning, wave};
 use super::{Kinematics, Named, Naming, Setting};
@@ -126,11 +127,7 @@ pub(crate) fn periods(motion: &Kinematics, k: f64) -> f64 {
 /// Wave numbers of the integer orders per revolution with so many periods within the travel; none
 /// where the revolution is not known.
 #[must_use]
-pub(crate) fn of_orders(
-    motion: &Kinematics,
-    dataset: &Dataset,
-    shown: std::ops::Range<f64>,
-) -> Vec<f64> {
+pub(crate) fn of_orders(motion: &Kinematics, dataset: &Dataset, shown: Range<f64>) -> Vec<f64> {
     let Some(revolution) = dataset.revolution() else {
         return Vec::new();
     };
@@ -140,18 +137,18 @@ pub(crate) fn of_orders(
         .collect()
 }
 
-/// Wave numbers about those with the strongest projection of the residual, from so many periods
-/// within the travel on.
+/// Wave numbers about those with the strongest projection of the residual, of so many periods
+/// within the travel.
 pub(crate) fn strongest(
     motion: &Kinematics,
     setting: &Setting<'_>,
-    fewest_periods: f64,
+    shown: Range<f64>,
     weight: impl Fn(usize) -> Weight,
 ) -> Vec<f64> {
     let step = of_periods(motion, 1.0 / STEPS_PER_PERIOD);
     let mut samples = samples(motion, setting, step, weight);
-    let from = of_periods(motion, fewest_periods);
-    let Some(to) = shortest(&samples, setting) else {
+    let [from, most] = [shown.start, shown.end].map(|periods| of_periods(motion, periods));
+    let Some(to) = shortest(&samples, setting).map(|to| to.min(most)) else {
         return Vec::new();
     };
     let count = ((to - from) / step).clamp(0.0, MOST_SCANNED) as usize;

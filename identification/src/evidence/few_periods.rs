@@ -1,19 +1,19 @@
-//! Whether waves of known orders have earned their name.
+//! Whether waves of few periods have earned their name.
 //!
-//! A wave that comes back once or twice within the travel ([`KnownOrder`]) looks like any smooth
+//! A wave that comes back once or twice within the travel ([`FewPeriods`]) looks like any smooth
 //! function of the position: a spring, a cable, a latch. What tells it from them is that it needs
 //! two coefficients where they need many. So the waves of an effect that were found must together
 //! beat, as an effect beats no effect, a polynomial that has as many turns within the travel as the
-//! fastest of them, and two degrees more for each of them. A structure without a name over the
+//! fastest of them, and two degrees more for each of them, or three where its period was searched. A structure without a name over the
 //! position that is in the model is a part of any polynomial: its columns do not count against it.
 //!
-//! Where they do not beat it, the selection is done again without known orders of this effect. What
+//! Where they do not beat it, the selection is done again without few periods of this effect. What
 //! the axis has over its position is then found without a name, or seen in the residual.
 //!
 //! Two degrees for each wave are what keeps latches, steps and random smooth curves out. What else
 //! was tried stands in docs/design-history.md.
 //!
-//! [`KnownOrder`]: crate::model::effects::known_order::KnownOrder
+//! [`FewPeriods`]: crate::model::effects::few_periods::FewPeriods
 
 use crate::evidence::selection::is_enough;
 use crate::evidence::thresholds::EFFORT_SHARE;
@@ -27,16 +27,16 @@ use crate::motion::kinematics::Kinematics;
 /// Degrees of the polynomial for each wave: as many as it has columns.
 const DEGREES_PER_WAVE: usize = 2;
 
-/// An effect whose waves of known orders do not beat a smooth function of the position.
+/// An effect whose waves of few periods do not beat a smooth function of the position.
 pub(crate) fn unearned(bench: &Bench<'_>, model: &Model) -> Option<Called> {
     let is_declared = |part: &Part| part.called().is_declared_in(bench.dataset);
     let mut found = model
         .parts
         .iter()
-        .filter(|part| is_known(part) && !is_declared(part));
+        .filter(|part| has_few(part) && !is_declared(part));
     let is_unearned = |part: &&Part| {
         let called = part.called();
-        let waves = |part: &&Part| is_known(part) && part.called() == called;
+        let waves = |part: &&Part| has_few(part) && part.called() == called;
         let waves: Vec<&Part> = model.parts.iter().filter(waves).collect();
         let rest = waves
             .iter()
@@ -57,8 +57,8 @@ pub(crate) fn beats_smooth(bench: &Bench<'_>, model: &Model, smooth: &Model) -> 
     is_enough(&Gain::of(&smooth, &waves)) && waves.sse <= (1.0 - EFFORT_SHARE) * smooth.sse
 }
 
-/// Whether a part was found at a known order.
-fn is_known(part: &Part) -> bool {
+/// Whether a part was found with few periods.
+fn has_few(part: &Part) -> bool {
     part.origin == Origin::Found && part.effect.smooth().is_some()
 }
 
@@ -80,7 +80,8 @@ fn degree(motion: &Kinematics, waves: &[&Part], rest: &Model) -> usize {
         |part: &&Part| part.called().name().is_none() && part.effect.against() == Against::Position;
     let nameless = rest.parts.iter().filter(is_nameless);
     let covered: usize = nameless.map(Part::width).sum();
-    degree_beside(most, waves.len()) + covered
+    let searched = waves.iter().filter(|part| part.effect.is_tuned()).count();
+    degree_beside(most, waves.len()) + searched + covered
 }
 
 #[cfg(test)]
@@ -99,8 +100,7 @@ mod tests {
     }
 
     fn known() -> &'static dyn Effect {
-        let ripple = find(TorqueRipple).and_then(Effect::at_known_orders);
-        ripple.unwrap()
+        find(TorqueRipple).unwrap().with_few_periods()[0]
     }
 
     /// Whether a wave of 2.6 periods has earned its name on an axis with a force over position.
