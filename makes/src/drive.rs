@@ -56,6 +56,8 @@ pub enum Flaw {
     Patch(f64, f64, f64),
     /// The last command stays for so long, s, at the end of every period, s: telegrams are lost.
     Silence(f64, f64),
+    /// The current grows and falls by no more than this in a second, N/s or N m/s.
+    Ramp(f64),
 }
 
 /// Where and when a drive works.
@@ -107,6 +109,7 @@ pub struct DriveState {
     rate: f64,
     played: f64,
     heard: f64,
+    ramped: f64,
 }
 
 /// What a drive gives.
@@ -129,6 +132,7 @@ impl Drive {
     ) -> Delivered {
         let heard = self.heard(state, rounded(command, self.quantum), place.time_s);
         let due = self.waited(state, heard, step_s);
+        let due = self.ramped(state, due, step_s);
         let current = self.follow(state, due, step_s);
         let drooped = current / (1.0 + self.droop * current.abs());
         let ripple = self.ripple.map_or(0.0, |wave| {
@@ -156,6 +160,15 @@ impl Drive {
         } else {
             0.0
         }
+    }
+
+    fn ramped(&self, state: &mut DriveState, due: f64, step_s: f64) -> f64 {
+        let Some(Flaw::Ramp(per_s)) = self.flaw else {
+            return due;
+        };
+        let most = per_s * step_s;
+        state.ramped += (due - state.ramped).clamp(-most, most);
+        state.ramped
     }
 
     fn follow(&self, state: &mut DriveState, due: f64, step_s: f64) -> f64 {
@@ -189,7 +202,7 @@ pub fn rounded(value: f64, quantum: f64) -> f64 {
 fn flawed(flaw: Option<Flaw>, effort: f64, place: Place, played: &mut f64) -> f64 {
     let time_s = place.time_s;
     match flaw {
-        None | Some(Flaw::Silence(..)) => effort,
+        None | Some(Flaw::Silence(..) | Flaw::Ramp(_)) => effort,
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
         Some(Flaw::Stronger(share, from_s)) if time_s >= from_s => effort * (1.0 + share),
         Some(Flaw::Stronger(..)) => effort,
@@ -289,6 +302,17 @@ mod tests {
             time_s,
             ..Place::default()
         }
+    }
+
+    #[test]
+    fn on_a_ramp_of_a_hundred_a_second_a_command_of_ten_takes_a_tenth_of_a_second() {
+        let drive = Drive {
+            current_loop: CurrentLoop::Ideal,
+            flaw: Some(Flaw::Ramp(100.0)),
+            ..Drive::default()
+        };
+        assert!((after(&drive, 10.0, 5_000).effort - 5.0).abs() < 1.0e-9);
+        assert!((after(&drive, 10.0, 10_001).effort - 10.0).abs() < 1.0e-9);
     }
 
     #[test]

@@ -16,7 +16,8 @@
 //! | [`mod@make::unseen`], [`outside::unseen`] | those written after them, to be run once |
 //! | [`mod@make::untried`], [`outside::untried`] | those written after these, to be run once |
 //! | [`mod@make::unmet`], [`outside::unmet`] | those written after them, to be run once |
-//! | [`mod@make::unforeseen`], [`outside::unforeseen`] | those written after all of these |
+//! | [`mod@make::unforeseen`], [`outside::unforeseen`] | those written after them too |
+//! | [`mod@make::unexpected`], [`outside::unexpected`] | those written after all of these |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -44,7 +45,7 @@ pub mod truth;
 /// How one record is made, without making it.
 pub struct Recipe {
     /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`,
-    /// `unforeseen`, `clean`, `outside` or `spoilt`.
+    /// `unforeseen`, `unexpected`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -83,7 +84,7 @@ pub struct Apart {
 
 /// What was written apart, in the order in which it was.
 #[must_use]
-pub fn written_apart() -> [Apart; 5] {
+pub fn written_apart() -> [Apart; 6] {
     [
         Apart {
             table: "held-back",
@@ -109,6 +110,11 @@ pub fn written_apart() -> [Apart; 5] {
             table: "unforeseen",
             makes: make::unforeseen(),
             outside: outside::unforeseen::UNFORESEEN,
+        },
+        Apart {
+            table: "unexpected",
+            makes: make::unexpected(),
+            outside: outside::unexpected::UNEXPECTED,
         },
     ]
 }

@@ -13,6 +13,7 @@ pub mod held_back;
 pub mod logs;
 pub mod loops;
 pub mod screws;
+pub mod unexpected;
 pub mod unforeseen;
 pub mod unmet;
 pub mod unseen;
@@ -193,6 +194,13 @@ pub fn unforeseen() -> Vec<Make> {
     unforeseen::FAMILIES.concat()
 }
 
+/// Makes that are written after those of [`unforeseen()`] had been run and had become known. They
+/// are a table of their own.
+#[must_use]
+pub fn unexpected() -> Vec<Make> {
+    unexpected::FAMILIES.concat()
+}
+
 /// All makes but those that are held back.
 #[must_use]
 pub fn all() -> Vec<Make> {
@@ -229,6 +237,7 @@ pub(crate) fn rig(kind: Kind, train: Train, controller: Controller, encoder: f64
             steps_per_row: steps,
             motor: Encoder::of(encoder, Rounding::Down),
             load: None,
+            growth: None,
             reference: true,
             velocity: None,
             effort: EffortLog::of(Source::Command, 0.0),

@@ -5,6 +5,7 @@
 //! right. The rest has no name at all.
 
 pub mod held_back;
+pub mod unexpected;
 pub mod unforeseen;
 pub mod unmet;
 pub mod unseen;

@@ -168,6 +168,22 @@ pub struct Trace {
     pub current: Vec<f64>,
 }
 
+/// What a screw grows by from the start of the record while it warms up: the load is further from
+/// zero than the motor says by share · (1 − exp(−t/τ)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// Share in the end.
+    pub share: f64,
+    /// Time constant, s.
+    pub time_constant_s: f64,
+}
+
+impl Growth {
+    fn factor(&self, time_s: f64) -> f64 {
+        1.0 + self.share * (1.0 - libm::exp(-time_s / self.time_constant_s))
+    }
+}
+
 /// What is recorded, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensing {
@@ -177,6 +193,8 @@ pub struct Sensing {
     pub motor: Encoder,
     /// Scale of the load.
     pub load: Option<Encoder>,
+    /// How the load moves away from the motor, where it does.
+    pub growth: Option<Growth>,
     /// Whether the setpoint is recorded.
     pub reference: bool,
     /// Resolution of the recorded velocity, where it is.
@@ -223,9 +241,21 @@ impl Sensing {
                 .then(|| rows.iter().map(|row| trace.reference[*row]).collect()),
             position: seen(&trace.motor, &self.motor),
             velocity: self.velocity.map(velocity),
-            load: self.load.as_ref().map(|scale| seen(&trace.load, scale)),
+            load: self
+                .load
+                .as_ref()
+                .map(|scale| self.load(trace, scale, &rows)),
             effort: self.effort.logged(trace, &rows, draw),
         }
+    }
+
+    fn load(&self, trace: &Trace, scale: &Encoder, rows: &[usize]) -> Vec<f64> {
+        let grown = |row: usize| {
+            let time_s = row as f64 * trace.step_s;
+            self.growth.map_or(1.0, |growth| growth.factor(time_s))
+        };
+        let shown = |row: &usize| scale.read(grown(*row) * trace.load[*row]);
+        rows.iter().map(shown).collect()
     }
 
     /// Which steps are recorded.
@@ -326,6 +356,16 @@ mod tests {
         assert!((scale.read(0.01) - 0.01).abs() < 1.0e-9);
     }
 
+    #[test]
+    fn a_screw_has_grown_by_63_percent_of_its_share_after_the_time_constant() {
+        let growth = Growth {
+            share: 1.0e-4,
+            time_constant_s: 2.0,
+        };
+        assert_eq!(growth.factor(0.0), 1.0);
+        assert!((growth.factor(2.0) - 1.000_063_21).abs() < 1.0e-8);
+    }
+
     /// A ramp of effort, 10 steps of 0.1 ms to a row.
     fn trace() -> Trace {
         let ramp: Vec<f64> = (0..100_000).map(f64::from).collect();
@@ -345,6 +385,7 @@ mod tests {
             steps_per_row: 10,
             motor: Encoder::of(1.0, Rounding::Down),
             load: None,
+            growth: None,
             reference: false,
             velocity: None,
             effort,

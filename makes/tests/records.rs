@@ -4,10 +4,13 @@ mod common;
 
 use common::{some_of, some_outside};
 use makes::draw::Draw;
-use makes::make::{Form, Make, Presence, all, held_back, unforeseen, unmet, unseen, untried};
+use makes::make::{
+    Form, Make, Presence, all, held_back, unexpected, unforeseen, unmet, unseen, untried,
+};
 use makes::motion::Motion;
 use makes::outside::OUTSIDE;
 use makes::outside::held_back::HELD_BACK;
+use makes::outside::unexpected::UNEXPECTED;
 use makes::outside::unforeseen::UNFORESEEN;
 use makes::outside::unmet::UNMET;
 use makes::outside::unseen::UNSEEN;
@@ -248,6 +251,19 @@ fn the_unforeseen_makes_hide_every_name_of_an_effect_one_two_or_three_at_once() 
         let with = makes.iter().filter(|make| make.hides.len() == count);
         assert!(with.count() >= 2, "{count}");
     }
+}
+
+#[test]
+fn most_of_the_unexpected_makes_hide_one_effect_and_together_they_hide_every_name() {
+    let makes = unexpected();
+    for effect in NAMES {
+        let hidden = makes.iter().any(|make| make.hides.contains(&effect));
+        assert!(hidden, "{effect:?}");
+    }
+    assert!(makes.len() == 16 && UNEXPECTED.len() == 4);
+    assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
+    let several = makes.iter().filter(|make| make.hides.len() > 1).count();
+    assert!((5..=6).contains(&several), "{several}");
 }
 
 #[test]

@@ -6,12 +6,12 @@
 //! motion of the run. What these leave on the machine with one effect alone is put beside what they
 //! leave on the machine without any. An effect between motor and load shows in their distance.
 //!
-//! Of an untried, unmet or unforeseen make more is asked: an effect shows in the validation record
-//! as in the training record, what is left with it is half as much again as what is left without
-//! it, and no two effects of a make leave the same.
+//! Of a make of a later table (untried, unmet, unforeseen, unexpected) more is asked: an effect
+//! shows in the validation record as in the training record, what is left with it is half as much
+//! again as what is left without it, and no two effects of a make leave the same.
 
 use makes::draw::Draw;
-use makes::make::{Make, Presence, unforeseen, unmet, unseen, untried};
+use makes::make::{Make, Presence, unexpected, unforeseen, unmet, unseen, untried};
 use makes::motion::Motion;
 use makes::rig::Rig;
 use makes::sensing::{Source, Trace};
@@ -31,8 +31,8 @@ const SHARE_OF_EFFORT: f64 = 0.005;
 /// Growth of the distance between motor and load, in counts of the load's scale.
 const COUNTS: f64 = 5.0;
 
-/// An effect of an untried, unmet or unforeseen make takes this share of what is left without its
-/// name: a factor of one and a half.
+/// An effect of a make of a later table takes this share of what is left without its name: a factor
+/// of one and a half.
 const UNTRIED_SHARE_OF_LEFT: f64 = 1.0 / 3.0;
 /// Cosine of what two effects of a make leave.
 const ALIKE: f64 = 0.75;
@@ -265,4 +265,9 @@ fn each_effect_of_an_unmet_make_shows_in_both_records_and_is_like_no_other() {
 #[test]
 fn each_effect_of_an_unforeseen_make_shows_in_both_records_and_is_like_no_other() {
     assert_each_shows_in_both_records_and_is_like_no_other("unforeseen", &unforeseen());
+}
+
+#[test]
+fn each_effect_of_an_unexpected_make_shows_in_both_records_and_is_like_no_other() {
+    assert_each_shows_in_both_records_and_is_like_no_other("unexpected", &unexpected());
 }

@@ -337,6 +337,13 @@ pub enum Scale {
         /// From one time to the next, s.
         period_s: f64,
     },
+    /// 1 + share · what has gone of every period: a lubricator gives oil at its start.
+    Oiled {
+        /// Share at the end of a period.
+        share: f64,
+        /// From one shot of oil to the next, s.
+        period_s: f64,
+    },
 }
 
 /// Where and how a surface slides.
@@ -400,6 +407,7 @@ impl Scale {
                 let is_there = at.time_s.rem_euclid(period_s) < lasts_s;
                 if is_there { share } else { 0.0 }
             }
+            Self::Oiled { share, period_s } => share * at.time_s.rem_euclid(period_s) / period_s,
         };
         (1.0 + change).max(0.0)
     }
@@ -619,6 +627,10 @@ mod tests {
             lasts_s,
             period_s: 4.0,
         };
+        let oiled = Scale::Oiled {
+            share: 0.6,
+            period_s: 4.0,
+        };
         let table = [
             (pulsed(2.5), 0.7),
             (pulsed(1.5), 1.0),
@@ -633,6 +645,7 @@ mod tests {
             (Scale::Chain(0.5), 0.9),
             (Scale::During(0.3, 9.0, 11.0), 1.3),
             (Scale::During(0.3, 11.0, 12.0), 1.0),
+            (oiled, 1.3),
         ];
         for (scale, factor) in table {
             assert!(

@@ -6,6 +6,8 @@
 //!   Bird, Armstrong and Hassager, Dynamics of Polymeric Liquids, 1987, ch. 4).
 //! - A flap in water that opens one way: quadratic·v² in positive motion, nothing in negative
 //!   (Newman, Marine Hydrodynamics, 1977, ch. 2, for the plate).
+//! - A centrifugal brake: quadratic·(v² − v_c²) above v_c, nothing below it (Shigley's Mechanical
+//!   Engineering Design, 2011, ch. 16).
 
 /// A law of resistance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,13 @@ pub enum Resistance {
     /// A flap that opens in negative motion: quadratic drag in positive motion, N s²/m² or
     /// N m s²/rad².
     Flap(f64),
+    /// A centrifugal brake.
+    Centrifugal {
+        /// Growth with velocity squared, N s²/m² or N m s²/rad².
+        quadratic: f64,
+        /// Velocity above which it drags.
+        velocity: f64,
+    },
 }
 
 impl Resistance {
@@ -46,6 +55,13 @@ impl Resistance {
                 exponent,
             } => (consistency * libm::pow(velocity.abs(), exponent)).copysign(velocity),
             Self::Flap(quadratic) => quadratic * velocity.max(0.0) * velocity.max(0.0),
+            Self::Centrifugal {
+                quadratic,
+                velocity: sets_in,
+            } => {
+                let pressed = quadratic * (velocity * velocity - sets_in * sets_in);
+                pressed.max(0.0).copysign(velocity)
+            }
         }
     }
 }
@@ -79,5 +95,17 @@ mod tests {
     fn a_flap_drags_with_velocity_squared_one_way_only() {
         let flap = Resistance::Flap(40.0);
         assert_eq!([0.5, -0.5].map(|v| flap.against(v)), [10.0, 0.0]);
+    }
+
+    #[test]
+    fn a_centrifugal_brake_drags_above_its_velocity_only() {
+        let brake = Resistance::Centrifugal {
+            quadratic: 100.0,
+            velocity: 0.5,
+        };
+        assert_eq!(
+            [0.4, 1.0, -1.0].map(|v| brake.against(v)),
+            [0.0, 75.0, -75.0]
+        );
     }
 }
