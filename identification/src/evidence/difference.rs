@@ -85,6 +85,13 @@ pub(crate) struct Difference {
     extended: FittedWays,
 }
 
+/// What a gap by the motion leaves of motor − load over what one by the force does, sums of squares,
+/// below which the force has not shown it. Chosen: half the rms.
+const MUCH_LESS: f64 = 0.25;
+
+/// Rounds in which a pitch error and what the flanks do beside it settle.
+const PITCH_ROUNDS: usize = 3;
+
 /// Judges the difference of a training record; `None` where there is no load scale.
 #[must_use]
 pub(crate) fn difference(
@@ -92,9 +99,25 @@ pub(crate) fn difference(
     motion: &Kinematics,
     path: Path<'_>,
 ) -> Option<Difference> {
+    let apart = Apart::on(motion, path)?;
+    let mut difference = judged(dataset, apart.seen(apart.raw));
+    // The force of wound-up flanks goes with motor − load, and a pitch error is none of it.
+    for _ in 1..PITCH_ROUNDS {
+        if !difference.has_pitch_beside_flanks() {
+            break;
+        }
+        let ways = intervals::with_wave_numbers(&apart, difference.extended.ways());
+        let raw = apart.cleared(&apart.where_known(&ways).fit(&ways));
+        difference = judged(dataset, apart.seen(&raw));
+    }
+    Some(difference)
+}
+
+fn judged(dataset: &Dataset, apart: Apart<'_>) -> Difference {
+    let motion = apart.motion;
     let mut output = MotorLoad {
         inertia: Plain::fit(motion).inertia,
-        apart: Apart::on(motion, path)?,
+        apart,
         count: dataset.resolution.max(dataset.load_resolution),
         before: 0.0,
         springy: OnceCell::new(),
@@ -110,7 +133,7 @@ pub(crate) fn difference(
     let selection = selection::select(&output, declared.clone(), &mut |_| ());
     let fit = |ways: &Vec<Way>| output.apart.where_known(ways).fit(ways);
     let fits = [&declared, &selection.model].map(fit);
-    Some(Difference::of(fits, selection.scored))
+    Difference::of(fits, selection.scored)
 }
 
 /// What motor − load keeps of a judged difference. The wind-up is that by the load's own motion
@@ -124,6 +147,8 @@ pub(crate) fn settled(
     let Some(apart) = Apart::on(motion, path) else {
         return difference;
     };
+    let raw = apart.cleared(&difference.extended);
+    let apart = apart.seen(&raw);
     let unit = dataset.kind.moving_velocity();
     let refitted = |fitted: &FittedWays| {
         let carried = carried::instead(&apart, &fitted.ways(), unit);
@@ -223,12 +248,27 @@ impl Output for MotorLoad<'_> {
 impl MotorLoad<'_> {
     /// The ways that a dataset declares, in the order compliance, backlash, pitch error.
     fn declared(&self, dataset: &Dataset) -> Vec<Way> {
+        let names = EFFECTS.into_iter().filter(|name| dataset.declares(*name));
         let mut ways = vec![Way::Constant];
-        for name in EFFECTS.into_iter().filter(|name| dataset.declares(*name)) {
+        for name in names.clone() {
             let way = self.best(name, &ways);
             ways.extend(way);
         }
+        // What came first did not know what came after it.
+        if ways.len() > 2 {
+            ways = names.fold(ways, |ways, name| self.anew(name, ways));
+        }
         self.refined(ways)
+    }
+
+    /// Ways with the one of an effect looked for once more, beside all others.
+    fn anew(&self, name: EffectName, mut ways: Vec<Way>) -> Vec<Way> {
+        if let Some(place) = ways.iter().position(|way| way.called() == name) {
+            let before = ways.remove(place);
+            let way = self.best(name, &ways).unwrap_or(before);
+            ways.insert(place, way);
+        }
+        ways
     }
 
     /// The way of an effect that leaves least beside others.
@@ -272,13 +312,22 @@ impl MotorLoad<'_> {
         }
     }
 
-    /// A gap beside other ways: where the flanks wind up, and the force shows them, by the force.
+    /// A gap beside other ways: where the flanks wind up, and the force shows them, by the force,
+    /// unless the motion shows it much better. Where the force of wound-up flanks goes as closely
+    /// with the motion as the motor's own, what it shows is any width.
     fn best_gap(&self, ways: &[Way]) -> Way {
+        let by_motion = || best_gap(&self.apart, ways, self.count);
         let springy = self.springy().filter(|_| has(ways, EffectName::Compliance));
-        springy.map_or_else(
-            || best_gap(&self.apart, ways, self.count),
-            |judged| Way::Flanks(judged.flanks),
-        )
+        let Some(judged) = springy else {
+            return by_motion();
+        };
+        let left = |way: Way| self.apart.blocks(&[ways, &[way]].concat()).fit().sse;
+        let [by_force, by_motion] = [Way::Flanks(judged.flanks), by_motion()];
+        if left(by_motion) < MUCH_LESS * left(by_force) {
+            by_motion
+        } else {
+            by_force
+        }
     }
 
     /// A pitch error beside other ways: of the strongest period within the travel, of an integer
@@ -474,6 +523,13 @@ impl Difference {
         self.gap.is_some() || self.stiffness.is_some()
     }
 
+    /// Whether there is a pitch error beside what goes with motor − load itself.
+    fn has_pitch_beside_flanks(&self) -> bool {
+        let ways = self.extended.ways();
+        let is_wound = has(&ways, EffectName::Compliance) || has(&ways, EffectName::Backlash);
+        is_wound && has(&ways, EffectName::PitchError)
+    }
+
     /// How well the sizes of what was fitted are known. Those of springy flanks are known by the
     /// motor's balance, as they were found.
     fn know(&mut self, apart: &Apart<'_>) {
@@ -484,7 +540,7 @@ impl Difference {
             };
             let searched = half_widths.searched.unwrap_or(0.0);
             match way {
-                Way::Play(behind) => self.gap = Some(Known::new(behind.gap, searched)),
+                Way::Play(behind) => self.know_rigid(apart, behind.gap, searched),
                 Way::Flanks(flanks) => {
                     let (gap, stiffness) = Balance::of(apart).known(flanks);
                     self.gap = Some(gap);
@@ -499,6 +555,19 @@ impl Difference {
                 Way::Constant | Way::WindUp { .. } | Way::HalfOf { .. } | Way::Carried(_) => {}
             }
         }
+    }
+
+    /// How well a gap that the motion tells is known. A spring beside it is not known by the force:
+    /// what the load's friction winds up by may as well be a part of the gap.
+    fn know_rigid(&mut self, apart: &Apart<'_>, gap: f64, half_width: f64) {
+        self.stiffness = self
+            .stiffness
+            .map(|known| Known::new(known.value, known.value));
+        let coulomb = Plain::fit(apart.motion).coulomb.max(0.0);
+        let wound = self
+            .stiffness
+            .map_or(0.0, |known| 2.0 * coulomb / known.value);
+        self.gap = Some(Known::new(gap, half_width.hypot(wound)));
     }
 
     /// How far the stiffness of a spring without a gap is known: as far as the rows in which the
@@ -552,6 +621,8 @@ impl Difference {
     #[must_use]
     pub(crate) fn on(&self, motion: &Kinematics, path: Path<'_>) -> Option<(f64, f64)> {
         let apart = Apart::on(motion, path)?;
+        let raw = apart.cleared(&self.extended);
+        let apart = apart.seen(&raw);
         Some((apart.rms_um(&self.declared), apart.rms_um(&self.extended)))
     }
 }
@@ -706,6 +777,40 @@ mod tests {
         );
         assert!((gap / 20.0e-6 - 1.0).abs() < 0.02, "{gap}");
         assert!(difference.moves_apart() && difference.stiffness.is_none());
+    }
+
+    #[test]
+    fn a_gap_beside_a_declared_spring_and_a_pitch_error_is_found_by_the_motion() {
+        let behind = Behind {
+            gap: 20.0e-6,
+            coulomb: 25.0 / 36.0,
+            viscous: 200.0 / 36.0,
+            restitution: 0.0,
+        };
+        let lag = behind.follow(&two_sines(6000), 1.0e-3);
+        let pitch = |x: f64| 6.0e-6 * (TAU * 500.0 * x + 0.4).cos();
+        let mut axis = axis(|x, row| lag[row] + pitch(x[row]));
+        for declared in [
+            vec![EffectName::Compliance],
+            vec![
+                EffectName::Compliance,
+                EffectName::Backlash,
+                EffectName::PitchError,
+            ],
+        ] {
+            let usual = axis.dataset.declared.clone();
+            axis.dataset.declared.extend(declared.iter().copied());
+            let difference = judged(&axis);
+            axis.dataset.declared = usual;
+            let has = |name| declared.contains(&name) || difference.found.contains(&name);
+            assert!(has(EffectName::Backlash) && has(EffectName::PitchError));
+            let gap = difference.gap.unwrap();
+            assert!((gap.value / 20.0e-6 - 1.0).abs() < 0.1, "{gap:?}");
+            assert!((gap.value - 20.0e-6).abs() < gap.half_width, "{gap:?}");
+            let (amplitude, _) = difference.pitch.map(values).unwrap();
+            assert!((amplitude / 6.0e-6 - 1.0).abs() < 0.03, "{amplitude}");
+            assert!(difference.after_um < 1.0, "{}", difference.after_um);
+        }
     }
 
     #[test]

@@ -9,8 +9,10 @@
 //!
 //! A gap has the lag of the load in it as its column: between rigid flanks that of a load that
 //! coasts ([`Behind`]), beside wind-up the part of motor − load that the flanks leave ([`Flanks`]).
-//! A pitch error is a cosine and a sine of position.
+//! A pitch error is a cosine and a sine of position. It winds nothing up and is no way across a gap:
+//! whatever depends on motor − load itself sees it without its pitch error ([`Apart::cleared`]).
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use axis_model::EffectName;
@@ -181,9 +183,9 @@ pub(crate) struct Apart<'a> {
     pub motion: &'a Kinematics,
     /// Position and transmitted force.
     pub path: Path<'a>,
-    /// Motor − load, raw.
+    /// Motor − load at the rows, without what is known of its pitch error.
     pub raw: &'a [f64],
-    /// Motor − load, low-passed.
+    /// Motor − load, low-passed, with its pitch error.
     pub target: Vec<f64>,
     /// The samples that are judged: moving ones and those about reversals.
     pub mask: Vec<bool>,
@@ -201,6 +203,33 @@ impl<'a> Apart<'a> {
             target: motion.low_passed(raw),
             mask: pairs.map(|(moving, slow)| *moving || *slow).collect(),
         })
+    }
+
+    /// Motor − load at the rows without the pitch error of fitted ways.
+    pub(super) fn cleared(&self, fitted: &FittedWays) -> Cow<'a, [f64]> {
+        let Some((Way::Pitch { per_length }, own)) = fitted.of(EffectName::PitchError) else {
+            return Cow::Borrowed(self.raw);
+        };
+        let wave = |x: f64| {
+            let (sin, cos) = (TAU * per_length * x).sin_cos();
+            own[0] * cos + own[1] * sin
+        };
+        let rows = self.raw.iter().zip(self.path.position);
+        rows.map(|(apart, x)| apart - wave(*x)).collect()
+    }
+
+    /// The same with such a motor − load at the rows.
+    pub(super) fn seen<'b>(&self, raw: &'b [f64]) -> Apart<'b>
+    where
+        'a: 'b,
+    {
+        Apart {
+            raw,
+            target: self.target.clone(),
+            mask: self.mask.clone(),
+            motion: self.motion,
+            path: self.path,
+        }
     }
 
     /// The same, judged where the motor moves: at rest its friction is whatever holds.
