@@ -4,8 +4,9 @@
 //! function of the position: a spring, a cable, a latch. What tells it from them is that it needs
 //! two coefficients where they need many. So the waves of an effect that were found must together
 //! beat, as an effect beats no effect, a polynomial that has as many turns within the travel as the
-//! fastest of them, and two degrees more for each of them, or three where its period was searched. A structure without a name over the
-//! position that is in the model is a part of any polynomial: its columns do not count against it.
+//! fastest of them, and two degrees more for each of them, or three where its period was searched.
+//! A structure without a name over the position that is in the model is a part of any polynomial:
+//! its columns do not count against it.
 //!
 //! Where they do not beat it, the selection is done again without few periods of this effect. What
 //! the axis has over its position is then found without a name, or seen in the residual.
