@@ -9,8 +9,9 @@
 //!
 //! A gap has the lag of the load in it as its column: between rigid flanks that of a load that
 //! coasts ([`Behind`]), beside wind-up the part of motor − load that the flanks leave ([`Flanks`]).
-//! A pitch error is a cosine and a sine of position. It winds nothing up and is no way across a gap:
-//! whatever depends on motor − load itself sees it without its pitch error ([`Apart::cleared`]).
+//! A pitch error is a cosine and a sine of position. It winds nothing up and is no way across a
+//! gap: whatever depends on motor − load itself sees it without its pitch error
+//! ([`Apart::cleared`]).
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
