@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::time::{Duration, Instant};
 
+use bus::CanPort;
 use hil_tests::rig::shared_bus;
 use hil_tests::{Scope, program};
-use protocol::message::{Decoded, decode};
+use protocol::message::{Decoded, NmtState, decode};
 use protocol::{Fault, Message};
 use quadrant_host::Pace;
 use workbench::compensation::AxisCompensation;
@@ -128,23 +129,14 @@ struct Nodes(Vec<Child>);
 
 impl Nodes {
     fn start(setup: Setup<'_>) -> Self {
-        let before = kernel_frames();
+        let listener = CanPort::open("vcan0", &[]).unwrap();
         let nodes = Self(vec![
             setup.node(&["plant", "--node", "0x11"]),
             setup.node(&["servo", "--node", "1", "--plant-node", "0x11"]),
             setup.node(&["plant", "--node", "0x12"]),
             setup.node(&["servo", "--node", "2", "--plant-node", "0x12"]),
         ]);
-        // Each says that it has booted, and nothing more before it is asked. A busy machine takes
-        // longer than any fixed time.
-        let waiting = Instant::now();
-        while kernel_frames() < before + nodes.0.len() as u64 {
-            assert!(
-                waiting.elapsed() < LONGEST_BOOT,
-                "not every node has booted"
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        await_boot_ups(&listener);
         nodes
     }
 
@@ -166,6 +158,25 @@ impl Nodes {
                 .success()
         );
         node.wait().unwrap()
+    }
+}
+
+/// Hears the boot-up of every node of both axes. Counting frames would not do: a node that has
+/// booted begins its heartbeats while others are still being loaded.
+fn await_boot_ups(listener: &CanPort) {
+    let boot_ups = |axis| {
+        let ids = axis_ids(axis).unwrap();
+        [
+            Message::PlantHeartbeat(NmtState::Initialising).encode(ids),
+            Message::ServoHeartbeat(NmtState::Initialising).encode(ids),
+        ]
+    };
+    let mut missing = [boot_ups(0), boot_ups(1)].concat();
+    let mut left = LONGEST_BOOT;
+    while !missing.is_empty() {
+        let heard = listener.receive_within(&mut left).unwrap();
+        let heard = heard.unwrap_or_else(|| panic!("no boot-up: {missing:?}"));
+        missing.retain(|boot_up| *boot_up != heard);
     }
 }
 
