@@ -42,13 +42,18 @@ pub(crate) fn fit_cutoff_hz(dataset: &Dataset, record: &Record) -> f64 {
 
 /// Zero-phase low-pass.
 #[derive(Clone, Debug)]
-pub(crate) struct LowPass(Butterworth);
+pub(crate) struct LowPass {
+    filter: Butterworth,
+    /// Its cut-off.
+    pub cutoff_hz: f64,
+}
 
 impl LowPass {
     /// A low-pass for a sample period; `None` where the cut-off is not below half the sample rate.
     #[must_use]
     pub(crate) fn new(period_s: f64, cutoff_hz: f64) -> Option<Self> {
-        Butterworth::new(1.0 / period_s, cutoff_hz).map(Self)
+        let filter = Butterworth::new(1.0 / period_s, cutoff_hz)?;
+        Some(Self { filter, cutoff_hz })
     }
 
     /// The filtered signal, of the same length.
@@ -57,7 +62,7 @@ impl LowPass {
     /// records.
     #[must_use]
     pub(crate) fn apply(&self, signal: &[f64]) -> Vec<f64> {
-        let [signal] = self.0.both_ways([signal]);
+        let [signal] = self.filter.both_ways([signal]);
         signal
     }
 
@@ -65,7 +70,7 @@ impl LowPass {
     #[must_use]
     pub(crate) fn apply_to_all(&self, signals: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let pairs = signals.chunks(2).flat_map(|pair| match pair {
-            [one, other] => self.0.both_ways([one, other]).to_vec(),
+            [one, other] => self.filter.both_ways([one, other]).to_vec(),
             rest => rest.iter().map(|one| self.apply(one)).collect(),
         });
         pairs.collect()

@@ -47,8 +47,8 @@ pub(crate) struct Kinematics {
     pub difference: Option<Vec<f64>>,
     /// Moving samples: the ones that errors are defined on.
     pub moving: Vec<bool>,
-    /// Moving samples, of motor and load, whose effort is known and not at its limit: the ones that
-    /// are fitted.
+    /// Moving samples, of motor and load, clear of rest, whose effort is known and not at its
+    /// limit: the ones that are fitted.
     pub fitted: Vec<bool>,
     /// Samples about reversals and rests.
     pub slow: Vec<bool>,
@@ -98,8 +98,9 @@ impl Kinematics {
         let (moving, slow) = mask::moving_and_slow(&motor_lp, limit, period_s);
         let spoilt = mask::spoilt(record, dataset.effort_limit);
         // Where the motor crosses a gap the load may stand: no law of moving samples is seen there.
-        let (load_moves, _) = mask::moving_and_slow(&velocity_lp, limit, period_s);
-        let both_move = mask::both(&moving, &load_moves);
+        // Nor is one where the low-pass has mixed in what holds the axis at rest.
+        let clear = |velocity| mask::clear_of_rest(velocity, limit, period_s, filter.cutoff_hz);
+        let both_move = mask::both(&clear(&motor_lp), &clear(&velocity_lp));
         Self {
             period_s,
             time_s: record.time_s.clone(),

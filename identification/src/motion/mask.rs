@@ -5,9 +5,13 @@ use std::ops::Range;
 use crate::motion::filter::trim;
 use crate::record::samples::Record;
 
-/// Slow and spoilt samples take their neighbours within this time with them: about two periods of
-/// the low-pass's cut-off, over which it mixes them.
+/// Slow and spoilt samples take their neighbours within this time with them: two periods of the
+/// low-pass's cut-off at 1 kHz, over which it mixes them.
 const MARGIN_S: f64 = 0.020;
+/// The same in periods of any cut-off.
+const PERIODS_OF_CUTOFF: f64 = 2.0;
+/// Least share of the moving samples that has to be clear of rest: else all of them are fitted.
+const CLEAR_SHARE: f64 = 0.5;
 /// Share of the limit from which an effort counts as limited.
 const LIMITED: f64 = 0.999;
 
@@ -28,8 +32,37 @@ pub(crate) fn moving_and_slow(
     limit: f64,
     period_s: f64,
 ) -> (Vec<bool>, Vec<bool>) {
+    moving_and_slow_within(MARGIN_S, velocity_lp, limit, period_s)
+}
+
+/// Moving samples of one piece into which a low-pass of this cut-off has not mixed what holds the
+/// axis at rest; all moving samples where too few are so far from rest.
+#[must_use]
+pub(crate) fn clear_of_rest(
+    velocity_lp: &[f64],
+    limit: f64,
+    period_s: f64,
+    cutoff_hz: f64,
+) -> Vec<bool> {
+    let margin_s = MARGIN_S.max(PERIODS_OF_CUTOFF / cutoff_hz);
+    let (moving, _) = moving_and_slow(velocity_lp, limit, period_s);
+    let (clear, _) = moving_and_slow_within(margin_s, velocity_lp, limit, period_s);
+    let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
+    if count(&clear) >= CLEAR_SHARE * count(&moving) {
+        clear
+    } else {
+        moving
+    }
+}
+
+fn moving_and_slow_within(
+    margin_s: f64,
+    velocity_lp: &[f64],
+    limit: f64,
+    period_s: f64,
+) -> (Vec<bool>, Vec<bool>) {
     let is_slow = velocity_lp.iter().map(|velocity| velocity.abs() <= limit);
-    let slow = widened(is_slow, period_s);
+    let slow = widened(is_slow, margin_s, period_s);
     let all = 0..velocity_lp.len();
     let with = |wanted: bool| -> Vec<bool> {
         let rows = slow.iter().enumerate();
@@ -46,7 +79,7 @@ pub(crate) fn spoilt(record: &Record, limit: Option<f64>) -> Vec<bool> {
     let limited = |effort: &f64| limit.is_some_and(|limit| effort.abs() >= LIMITED * limit);
     let rows = record.effort.iter().zip(&record.interpolated);
     let bad = rows.map(|(effort, hole)| *hole || limited(effort));
-    widened(bad, record.period_s)
+    widened(bad, MARGIN_S, record.period_s)
 }
 
 /// The samples of a mask without those of another.
@@ -64,8 +97,8 @@ pub(crate) fn both(one: &[bool], other: &[bool]) -> Vec<bool> {
 }
 
 /// A mask with the margin about each of its samples; each row is written once.
-fn widened(mask: impl ExactSizeIterator<Item = bool>, period_s: f64) -> Vec<bool> {
-    let (rows, margin) = (mask.len(), (MARGIN_S / period_s).round() as usize);
+fn widened(mask: impl ExactSizeIterator<Item = bool>, margin_s: f64, period_s: f64) -> Vec<bool> {
+    let (rows, margin) = (mask.len(), (margin_s / period_s).round() as usize);
     let mut wide = vec![false; rows];
     let mut until = 0;
     for (row, _) in mask.enumerate().filter(|(_, inside)| *inside) {
@@ -96,6 +129,26 @@ mod tests {
         let (moving, slow) = moving_and_slow(&velocity, 1.0e-3, 1.0e-3);
         assert!(!moving.contains(&true));
         assert_eq!(slow.iter().filter(|slow| **slow).count(), 600);
+    }
+
+    #[test]
+    fn what_a_low_cut_off_mixes_with_rest_is_not_clear_of_it() {
+        let at = |row: i32| if row == 1000 { 0.0 } else { 0.1 };
+        let velocity: Vec<f64> = (0..2000).map(at).collect();
+        let left_out = |cutoff_hz| {
+            let clear = clear_of_rest(&velocity, 1.0e-3, 1.0e-3, cutoff_hz);
+            clear[200..1800].iter().filter(|clear| !**clear).count()
+        };
+        assert_eq!([100.0, 50.0, 20.0].map(left_out), [41, 81, 201]);
+    }
+
+    #[test]
+    fn all_moving_samples_are_taken_where_few_are_clear_of_rest() {
+        let at = |row: i32| if row % 150 == 0 { 0.0 } else { 0.1 };
+        let velocity: Vec<f64> = (0..2000).map(at).collect();
+        let clear = |cutoff_hz| clear_of_rest(&velocity, 1.0e-3, 1.0e-3, cutoff_hz);
+        let (moving, _) = moving_and_slow(&velocity, 1.0e-3, 1.0e-3);
+        assert!(clear(20.0) == moving && clear(50.0) != moving);
     }
 
     fn record(effort: Vec<f64>) -> Record {

@@ -172,8 +172,7 @@ impl Motion {
         let fitted = Bench::new(dataset, &self.motion).fit(&self.declared(dataset));
         let [wide, narrow] =
             [&self.motion, lower].map(|motion| Signals::of(dataset, motion, &fitted));
-        let counts = |row: &usize| self.motion.fitted[*row] && lower.fitted[*row];
-        let rows = (0..self.motion.len()).filter(counts);
+        let rows = (0..self.motion.len()).filter(|row| self.motion.fitted[*row]);
         let sums = rows.fold([0.0; 2], |[left, there], row| {
             let effort = wide.effort[row] - narrow.effort[row];
             let predicted = wide.predicted[row] - narrow.predicted[row];
