@@ -31,14 +31,16 @@ use worth::WORTH_A_CAUSE;
 /// A rigid axis that leaves so much of the effort has nothing to do with it.
 const STRANGE: f64 = 0.5;
 
-/// The causes that both records show, `found` being the effects that were named.
-pub(crate) fn of(dataset: &Dataset, found: &[EffectName]) -> Vec<String> {
+/// The causes that both records show, `found` being the effects that were named, and `by_model` the
+/// share of the effort's variance that the model with them leaves at the cut-off of the delay
+/// search.
+pub(crate) fn of(dataset: &Dataset, found: &[EffectName], by_model: f64) -> Vec<String> {
     let Some(motion) = slow_motion(dataset, &dataset.train) else {
         return Vec::new();
     };
     let rigid = Rigid::of(dataset, &motion);
     let mut causes: Vec<String> = load::cause(dataset, &motion).into_iter().collect();
-    causes.extend(of_effort(dataset, &rigid, found));
+    causes.extend(of_effort(dataset, &rigid, found, by_model));
     if causes.is_empty() && !dataset.held_back {
         let other = slow_motion(dataset, &dataset.validate);
         let other = other.map(|motion| Rigid::of(dataset, &motion));
@@ -53,7 +55,12 @@ fn slow_motion(dataset: &Dataset, record: &Record) -> Option<Kinematics> {
     Kinematics::with_cutoff(dataset, record, cutoff_hz)
 }
 
-fn of_effort(dataset: &Dataset, rigid: &Rigid, found: &[EffectName]) -> Option<String> {
+fn of_effort(
+    dataset: &Dataset,
+    rigid: &Rigid,
+    found: &[EffectName],
+    by_model: f64,
+) -> Option<String> {
     let left = rigid.fit()?.left;
     if left < WORTH_A_CAUSE {
         return None;
@@ -61,9 +68,8 @@ fn of_effort(dataset: &Dataset, rigid: &Rigid, found: &[EffectName]) -> Option<S
     let shifts = found.contains(&EffectName::Delay) || dataset.declares(EffectName::Delay);
     let column = dataset.effort.column();
     let mut readings = times::readings(rigid);
-    if shifts {
-        readings.clear();
-    }
+    // A bristle gives way before it slips, which is a lag too: where that explains more, it is that.
+    readings.retain(|reading| reading.left < by_model && !shifts);
     readings.extend(of_setpoint(dataset));
     limit::cause(rigid, &dataset.train.effort, column)
         .or_else(|| times::cause(readings, left, column))
@@ -104,7 +110,7 @@ mod tests {
     fn named(axis: &Axis, found: &[EffectName]) -> Vec<String> {
         let mut dataset = axis.dataset.clone();
         dataset.validate = dataset.train.clone();
-        of(&dataset, found)
+        of(&dataset, found, 1.0)
     }
 
     fn causes(axis: &Axis) -> Vec<String> {
@@ -154,5 +160,15 @@ mod tests {
             causes(&late)
         );
         assert!(named(&late, &[EffectName::Delay]).is_empty());
+    }
+
+    #[test]
+    fn a_shift_that_leaves_more_than_the_model_does_is_no_cause() {
+        let late = axis(|motion, row| usual(motion, row.saturating_sub(40)));
+        let rigid = Rigid::of(&late.dataset, &late.motion);
+        let readings = times::readings(&rigid).into_iter();
+        let left = readings.map(|reading| reading.left).fold(1.0, f64::min);
+        let causes = |by_model: f64| of_effort(&late.dataset, &rigid, &[], by_model);
+        assert!(causes(1.1 * left).is_some() && causes(0.9 * left).is_none());
     }
 }

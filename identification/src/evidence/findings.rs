@@ -147,7 +147,8 @@ impl<'a> Findings<'a> {
         let residual = ResidualStructure::of(dataset, [motion, low], &models, scored);
         let has_gap = dataset.declares(EffectName::Backlash) || found.has(EffectName::Backlash);
         // What has happened to the record says why everything after it is there.
-        let causes = causes::of(dataset, found.names()).into_iter();
+        let by_model = (0.01 * models.extended.on(dataset, low).force_percent).powi(2);
+        let causes = causes::of(dataset, found.names(), by_model).into_iter();
         let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
         reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
