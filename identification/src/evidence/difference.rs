@@ -321,9 +321,16 @@ impl MotorLoad<'_> {
         let Some(judged) = springy else {
             return by_motion();
         };
-        let left = |way: Way| self.apart.blocks(&[ways, &[way]].concat()).fit().sse;
+        let left = |more: &[Way]| self.apart.blocks(&[ways, more].concat()).fit().sse;
         let [by_force, by_motion] = [Way::Flanks(judged.flanks), by_motion()];
-        if left(by_motion) < MUCH_LESS * left(by_force) {
+        // What lies between flanks is taken from motor − load itself: it leaves little however wide
+        // they are, unless the force has shown them.
+        let rival = if is_enough(&judged.gain) {
+            left(&[by_force])
+        } else {
+            left(&[])
+        };
+        if left(&[by_motion]) < MUCH_LESS * rival {
             by_motion
         } else {
             by_force
@@ -384,7 +391,33 @@ impl MotorLoad<'_> {
             let base = self.apart.where_known(&model).cross_validate(ways);
             return Some(self.scored(model, &base, round));
         }
-        Some(self.scored(model, base, round))
+        let candidate = self.scored(model, base, round);
+        if name == EffectName::Backlash && !candidate.scored.physical {
+            return Some(self.without_motor_friction(ways, base, candidate));
+        }
+        Some(candidate)
+    }
+
+    /// Another candidate for a gap, instead of one that cannot be: beside a motor that rubs nowhere.
+    /// Its friction holds the load back at each reversal too.
+    fn without_motor_friction(
+        &self,
+        ways: &[Way],
+        base: &Fit,
+        candidate: Candidate<Vec<Way>>,
+    ) -> Candidate<Vec<Way>> {
+        let plain = |way: &Way| match way {
+            Way::WindUp { .. } => Way::WindUp {
+                motor_friction: false,
+            },
+            other => *other,
+        };
+        let plain: Vec<Way> = ways.iter().map(plain).collect();
+        if plain == ways {
+            return candidate;
+        }
+        let model = [&plain[..], &[self.best_gap(&plain)]].concat();
+        self.scored(model, base, candidate.scored.round)
     }
 
     /// Whether the way that came in last belongs to a springy gap that matters to the effort: how
