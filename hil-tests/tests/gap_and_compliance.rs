@@ -210,7 +210,10 @@ fn a_gap_is_told_from_the_compliance_beside_it_on_every_machine() {
     for seed in seeds {
         let all = cases(*seed);
         let found = found_on(Scope::now().rows("gaps beside compliance", &all, 1, 1));
-        wrong.extend(found.iter().filter_map(Found::wrong));
+        let of_machine: Vec<String> = found.iter().filter_map(Found::wrong).collect();
+        let right = found.len() - of_machine.len();
+        eprintln!("machine {seed}: {right} of {} right", found.len());
+        wrong.extend(of_machine.into_iter().inspect(|wrong| eprintln!("{wrong}")));
         let first = found.iter().take(usize::from(*seed == 0));
         for found in first {
             rows.extend(found.rows());
