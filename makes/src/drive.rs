@@ -58,6 +58,9 @@ pub enum Flaw {
     Silence(f64, f64),
     /// The current grows and falls by no more than this in a second, N/s or N m/s.
     Ramp(f64),
+    /// A battery that sags under load and recovers: the delivered effort falls by a share per
+    /// effort, of what has been asked for of late: share, 1/N or 1/(N m), and time constant, s.
+    Sag(f64, f64),
 }
 
 /// Where and when a drive works.
@@ -110,6 +113,7 @@ pub struct DriveState {
     played: f64,
     heard: f64,
     ramped: f64,
+    asked: f64,
 }
 
 /// What a drive gives.
@@ -138,7 +142,7 @@ impl Drive {
         let ripple = self.ripple.map_or(0.0, |wave| {
             wave.share * libm::cos(wave.waves * place.position + wave.phase)
         });
-        let given = drooped * (1.0 + ripple);
+        let given = drooped * (1.0 + ripple) * self.sagged(state, current, step_s);
         let effort = flawed(self.flaw, given, place, &mut state.played);
         Delivered { current, effort }
     }
@@ -169,6 +173,15 @@ impl Drive {
         let most = per_s * step_s;
         state.ramped += (due - state.ramped).clamp(-most, most);
         state.ramped
+    }
+
+    fn sagged(&self, state: &mut DriveState, current: f64, step_s: f64) -> f64 {
+        let Some(Flaw::Sag(per_effort, time_constant_s)) = self.flaw else {
+            return 1.0;
+        };
+        let share = 1.0 - libm::exp(-step_s / time_constant_s);
+        state.asked += (current.abs() - state.asked) * share;
+        (1.0 - per_effort * state.asked).max(0.0)
     }
 
     fn follow(&self, state: &mut DriveState, due: f64, step_s: f64) -> f64 {
@@ -202,7 +215,7 @@ pub fn rounded(value: f64, quantum: f64) -> f64 {
 fn flawed(flaw: Option<Flaw>, effort: f64, place: Place, played: &mut f64) -> f64 {
     let time_s = place.time_s;
     match flaw {
-        None | Some(Flaw::Silence(..) | Flaw::Ramp(_)) => effort,
+        None | Some(Flaw::Silence(..) | Flaw::Ramp(_) | Flaw::Sag(..)) => effort,
         Some(Flaw::DeadZone(half)) => effort - effort.clamp(-half, half),
         Some(Flaw::Stronger(share, from_s)) if time_s >= from_s => effort * (1.0 + share),
         Some(Flaw::Stronger(..)) => effort,
@@ -313,6 +326,18 @@ mod tests {
         };
         assert!((after(&drive, 10.0, 5_000).effort - 5.0).abs() < 1.0e-9);
         assert!((after(&drive, 10.0, 10_001).effort - 10.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn a_battery_sags_by_63_percent_of_its_share_after_the_time_constant() {
+        let drive = Drive {
+            current_loop: CurrentLoop::Ideal,
+            flaw: Some(Flaw::Sag(0.003, 0.5)),
+            ..Drive::default()
+        };
+        let effort = |command, steps| after(&drive, command, steps).effort;
+        assert!((effort(-100.0, 50_000) + 81.036).abs() < 1.0e-3);
+        assert!((effort(100.0, 1_000_000) - 70.0).abs() < 1.0e-6);
     }
 
     #[test]

@@ -18,6 +18,7 @@
 //! | [`mod@make::unmet`], [`outside::unmet`] | those written after them, to be run once |
 //! | [`mod@make::unforeseen`], [`outside::unforeseen`] | those written after them too |
 //! | [`mod@make::unexpected`], [`outside::unexpected`] | those written after all of these |
+//! | [`mod@make::unsought`], [`outside::unsought`] | those written last |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -45,7 +46,7 @@ pub mod truth;
 /// How one record is made, without making it.
 pub struct Recipe {
     /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`,
-    /// `unforeseen`, `unexpected`, `clean`, `outside` or `spoilt`.
+    /// `unforeseen`, `unexpected`, `unsought`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -84,7 +85,7 @@ pub struct Apart {
 
 /// What was written apart, in the order in which it was.
 #[must_use]
-pub fn written_apart() -> [Apart; 6] {
+pub fn written_apart() -> [Apart; 7] {
     [
         Apart {
             table: "held-back",
@@ -115,6 +116,11 @@ pub fn written_apart() -> [Apart; 6] {
             table: "unexpected",
             makes: make::unexpected(),
             outside: outside::unexpected::UNEXPECTED,
+        },
+        Apart {
+            table: "unsought",
+            makes: make::unsought(),
+            outside: outside::unsought::UNSOUGHT,
         },
     ]
 }

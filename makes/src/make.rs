@@ -17,6 +17,7 @@ pub mod unexpected;
 pub mod unforeseen;
 pub mod unmet;
 pub mod unseen;
+pub mod unsought;
 pub mod untried;
 pub mod vertical;
 
@@ -199,6 +200,13 @@ pub fn unforeseen() -> Vec<Make> {
 #[must_use]
 pub fn unexpected() -> Vec<Make> {
     unexpected::FAMILIES.concat()
+}
+
+/// Makes that are written after those of [`unexpected()`] had been run and had become known. They
+/// are a table of their own.
+#[must_use]
+pub fn unsought() -> Vec<Make> {
+    unsought::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.

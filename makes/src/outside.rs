@@ -9,6 +9,7 @@ pub mod unexpected;
 pub mod unforeseen;
 pub mod unmet;
 pub mod unseen;
+pub mod unsought;
 pub mod untried;
 
 use std::f64::consts::TAU;

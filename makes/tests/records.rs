@@ -5,7 +5,7 @@ mod common;
 use common::{some_of, some_outside};
 use makes::draw::Draw;
 use makes::make::{
-    Form, Make, Presence, all, held_back, unexpected, unforeseen, unmet, unseen, untried,
+    Form, Make, Presence, all, held_back, unexpected, unforeseen, unmet, unseen, unsought, untried,
 };
 use makes::motion::Motion;
 use makes::outside::OUTSIDE;
@@ -14,6 +14,7 @@ use makes::outside::unexpected::UNEXPECTED;
 use makes::outside::unforeseen::UNFORESEEN;
 use makes::outside::unmet::UNMET;
 use makes::outside::unseen::UNSEEN;
+use makes::outside::unsought::UNSOUGHT;
 use makes::outside::untried::UNTRIED;
 use makes::rig::{Kind, Rig};
 use makes::sensing::Stamps;
@@ -261,6 +262,19 @@ fn most_of_the_unexpected_makes_hide_one_effect_and_together_they_hide_every_nam
         assert!(hidden, "{effect:?}");
     }
     assert!(makes.len() == 16 && UNEXPECTED.len() == 4);
+    assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
+    let several = makes.iter().filter(|make| make.hides.len() > 1).count();
+    assert!((5..=6).contains(&several), "{several}");
+}
+
+#[test]
+fn most_of_the_unsought_makes_hide_one_effect_and_together_they_hide_every_name() {
+    let makes = unsought();
+    for effect in NAMES {
+        let hidden = makes.iter().any(|make| make.hides.contains(&effect));
+        assert!(hidden, "{effect:?}");
+    }
+    assert!(makes.len() == 14 && UNSOUGHT.len() == 4);
     assert!(makes.iter().all(|make| (1..=3).contains(&make.hides.len())));
     let several = makes.iter().filter(|make| make.hides.len() > 1).count();
     assert!((5..=6).contains(&several), "{several}");

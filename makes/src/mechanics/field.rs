@@ -1,8 +1,8 @@
 //! Forces of place and time, and drag: what acts on a body beside joints and friction.
 //!
 //! Drag is c·v + q·v·|v| + d·v³ against motion, c by direction, and c may fall while oil warms up;
-//! what is no polynomial is in [`resistance`](super::resistance). A field is a force along positive
-//! motion, a function of position and time.
+//! what is no polynomial is in [`resistance`](super::resistance). All of it may grow with position.
+//! A field is a force along positive motion, a function of position and time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -40,6 +40,8 @@ pub struct Drag {
     pub oil: Option<WarmOil>,
     /// What it has beside the polynomial.
     pub resistance: Option<Resistance>,
+    /// Growth of all of it with position, as a share per m or rad: a dashpot whose groove narrows.
+    pub taper: f64,
 }
 
 impl Drag {
@@ -67,6 +69,12 @@ impl Drag {
         let other = self.resistance.map_or(0.0, |law| law.against(velocity));
         (linear * oil + per_velocity) * velocity + other
     }
+
+    /// The factor of its taper at a position.
+    #[must_use]
+    pub fn narrowed(&self, position: f64) -> f64 {
+        (1.0 + self.taper * position).max(0.0)
+    }
 }
 
 /// A force along positive motion.
@@ -80,6 +88,18 @@ pub enum Field {
         amplitude: f64,
         /// Wave number, rad per unit.
         waves: f64,
+        /// Phase at position zero, rad.
+        phase: f64,
+    },
+    /// amplitude · sin(waves · x · (1 + stretch · x) + phase): a worm whose pitch changes on its
+    /// way.
+    Scroll {
+        /// Amplitude.
+        amplitude: f64,
+        /// Wave number at position zero, rad per unit.
+        waves: f64,
+        /// Half of what it grows by, as a share per unit.
+        stretch: f64,
         /// Phase at position zero, rad.
         phase: f64,
     },
@@ -163,6 +183,15 @@ impl Field {
                 waves,
                 phase,
             } => amplitude * libm::sin(waves * position + phase),
+            Self::Scroll {
+                amplitude,
+                waves,
+                stretch,
+                phase,
+            } => {
+                let angle = waves * position * (1.0 + stretch * position) + phase;
+                amplitude * libm::sin(angle)
+            }
             Self::Spring { stiffness, rest } => -stiffness * (position - rest),
             Self::DiscSprings { stiffness, knee } => {
                 let ratio = position / knee;
@@ -231,6 +260,30 @@ mod tests {
         };
         assert_eq!(drag.against(1.0, 0.0), 3.0);
         assert!((drag.against(1.0, 8.0) - 2.368).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn a_groove_that_narrows_drags_more_the_farther_it_goes() {
+        let drag = Drag {
+            taper: 2.0,
+            ..Drag::viscous(0, 5.0)
+        };
+        assert_eq!([-0.6, 0.0, 0.25].map(|x| drag.narrowed(x)), [0.0, 1.0, 1.5]);
+        assert_eq!(Drag::viscous(0, 5.0).narrowed(-7.0), 1.0);
+    }
+
+    #[test]
+    fn the_waves_of_a_scroll_get_closer() {
+        let worm = Field::Scroll {
+            amplitude: 3.0,
+            waves: TAU,
+            stretch: 0.5,
+            phase: 0.0,
+        };
+        // One wave ends at √3 − 1, the second at √5 − 1.
+        for end in [0.0, 3.0_f64.sqrt() - 1.0, 5.0_f64.sqrt() - 1.0] {
+            assert!(worm.at(end, 0.0).abs() < 1.0e-9 && worm.at(end + 0.01, 0.0) > 0.1);
+        }
     }
 
     #[test]

@@ -8,6 +8,8 @@
 //!   (Newman, Marine Hydrodynamics, 1977, ch. 2, for the plate).
 //! - A centrifugal brake: quadratic·(v² − v_c²) above v_c, nothing below it (Shigley's Mechanical
 //!   Engineering Design, 2011, ch. 16).
+//! - A foil athwart the way: quadratic·v² to one side, whichever way it goes (Newman, Marine
+//!   Hydrodynamics, 1977, ch. 5, for the lift).
 
 /// A law of resistance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +38,8 @@ pub enum Resistance {
         /// Velocity above which it drags.
         velocity: f64,
     },
+    /// A foil that is pushed in negative direction on either way, N s²/m² or N m s²/rad².
+    Foil(f64),
 }
 
 impl Resistance {
@@ -62,6 +66,7 @@ impl Resistance {
                 let pressed = quadratic * (velocity * velocity - sets_in * sets_in);
                 pressed.max(0.0).copysign(velocity)
             }
+            Self::Foil(quadratic) => quadratic * velocity * velocity,
         }
     }
 }
@@ -107,5 +112,11 @@ mod tests {
             [0.4, 1.0, -1.0].map(|v| brake.against(v)),
             [0.0, 75.0, -75.0]
         );
+    }
+
+    #[test]
+    fn a_foil_is_pushed_to_one_side_on_either_way() {
+        let foil = Resistance::Foil(3.0);
+        assert_eq!([-2.0, 0.0, 2.0].map(|v| foil.against(v)), [12.0, 0.0, 12.0]);
     }
 }

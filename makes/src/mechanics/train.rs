@@ -152,7 +152,9 @@ impl Train {
         state.transmitted[0] = drive;
         self.add_joints(state, &mut efforts, step_s);
         for drag in &self.drags {
-            efforts[drag.body] -= drag.against(state.velocities[drag.body], state.time_s);
+            let narrowed = drag.narrowed(state.positions[drag.body]);
+            let against = drag.against(state.velocities[drag.body], state.time_s);
+            efforts[drag.body] -= narrowed * against;
         }
         for (body, field) in &self.fields {
             efforts[*body] += field.at(state.positions[*body], state.time_s);
