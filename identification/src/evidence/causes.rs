@@ -68,7 +68,8 @@ fn of_effort(
     let shifts = found.contains(&EffectName::Delay) || dataset.declares(EffectName::Delay);
     let column = dataset.effort.column();
     let mut readings = times::readings(rigid);
-    // A bristle gives way before it slips, which is a lag too: where that explains more, it is that.
+    // A bristle gives way before it slips, which is a lag too: where that explains more, it is
+    // that.
     readings.retain(|reading| reading.left < by_model && !shifts);
     readings.extend(of_setpoint(dataset));
     limit::cause(rigid, &dataset.train.effort, column)

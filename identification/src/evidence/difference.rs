@@ -398,8 +398,8 @@ impl MotorLoad<'_> {
         Some(candidate)
     }
 
-    /// Another candidate for a gap, instead of one that cannot be: beside a motor that rubs nowhere.
-    /// Its friction holds the load back at each reversal too.
+    /// Another candidate for a gap, instead of one that cannot be: beside a motor that rubs
+    /// nowhere. Its friction holds the load back at each reversal too.
     fn without_motor_friction(
         &self,
         ways: &[Way],
