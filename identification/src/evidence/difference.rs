@@ -85,8 +85,9 @@ pub(crate) struct Difference {
     extended: FittedWays,
 }
 
-/// What a gap by the motion leaves of motor − load over what one by the force does, as sums of
-/// squares, below which the force has not shown it. Chosen: half the rms.
+/// What a gap by the motion leaves of motor − load over what one by the force does, or no gap where
+/// the force speaks for none: as sums of squares, below which the motion judges. Chosen: half the
+/// rms.
 const MUCH_LESS: f64 = 0.25;
 
 /// Rounds in which a pitch error and what the flanks do beside it settle.

@@ -99,8 +99,14 @@ impl Kinematics {
         let spoilt = mask::spoilt(record, dataset.effort_limit);
         // Where the motor crosses a gap the load may stand: no law of moving samples is seen there.
         // Nor is one where the low-pass has mixed in what holds the axis at rest.
-        let clear = |velocity| mask::clear_of_rest(velocity, limit, period_s, filter.cutoff_hz);
-        let both_move = mask::both(&clear(&motor_lp), &clear(&velocity_lp));
+        let (load_moves, _) = mask::moving_and_slow(&velocity_lp, limit, period_s);
+        let clear = |moving: &[bool], velocity_lp: &[f64]| {
+            mask::clear_of_rest(moving, velocity_lp, limit, period_s, filter.cutoff_hz)
+        };
+        let both_move = mask::both(
+            &clear(&moving, &motor_lp),
+            &clear(&load_moves, &velocity_lp),
+        );
         Self {
             period_s,
             time_s: record.time_s.clone(),

@@ -39,19 +39,22 @@ pub(crate) fn moving_and_slow(
 /// axis at rest; all moving samples where too few are so far from rest.
 #[must_use]
 pub(crate) fn clear_of_rest(
+    moving: &[bool],
     velocity_lp: &[f64],
     limit: f64,
     period_s: f64,
     cutoff_hz: f64,
 ) -> Vec<bool> {
-    let margin_s = MARGIN_S.max(PERIODS_OF_CUTOFF / cutoff_hz);
-    let (moving, _) = moving_and_slow(velocity_lp, limit, period_s);
+    let margin_s = PERIODS_OF_CUTOFF / cutoff_hz;
+    if margin_s <= MARGIN_S {
+        return moving.to_vec();
+    }
     let (clear, _) = moving_and_slow_within(margin_s, velocity_lp, limit, period_s);
     let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
-    if count(&clear) >= CLEAR_SHARE * count(&moving) {
+    if count(&clear) >= CLEAR_SHARE * count(moving) {
         clear
     } else {
-        moving
+        moving.to_vec()
     }
 }
 
@@ -135,8 +138,9 @@ mod tests {
     fn what_a_low_cut_off_mixes_with_rest_is_not_clear_of_it() {
         let at = |row: i32| if row == 1000 { 0.0 } else { 0.1 };
         let velocity: Vec<f64> = (0..2000).map(at).collect();
+        let (moving, _) = moving_and_slow(&velocity, 1.0e-3, 1.0e-3);
         let left_out = |cutoff_hz| {
-            let clear = clear_of_rest(&velocity, 1.0e-3, 1.0e-3, cutoff_hz);
+            let clear = clear_of_rest(&moving, &velocity, 1.0e-3, 1.0e-3, cutoff_hz);
             clear[200..1800].iter().filter(|clear| !**clear).count()
         };
         assert_eq!([100.0, 50.0, 20.0].map(left_out), [41, 81, 201]);
@@ -146,8 +150,8 @@ mod tests {
     fn all_moving_samples_are_taken_where_few_are_clear_of_rest() {
         let at = |row: i32| if row % 150 == 0 { 0.0 } else { 0.1 };
         let velocity: Vec<f64> = (0..2000).map(at).collect();
-        let clear = |cutoff_hz| clear_of_rest(&velocity, 1.0e-3, 1.0e-3, cutoff_hz);
         let (moving, _) = moving_and_slow(&velocity, 1.0e-3, 1.0e-3);
+        let clear = |cutoff_hz| clear_of_rest(&moving, &velocity, 1.0e-3, 1.0e-3, cutoff_hz);
         assert!(clear(20.0) == moving && clear(50.0) != moving);
     }
 
