@@ -856,23 +856,34 @@ mod tests {
         assert!(!moves_otherwise(&gain(0.5, 9.0, 0.99)));
     }
 
+    /// Share of an effect that one axis shows; another one is its record at the lower cut-off.
+    fn share_at_both([usual, lower]: [&Axis; 2], part: Part) -> f64 {
+        let (bench, low) = (usual.bench(), lower.bench());
+        let output = effort(Pair {
+            bench: &bench,
+            low: &low,
+        });
+        let declared = model(&DECLARED);
+        let base = bench.cross_validate(&declared);
+        let judged = output.judged(&declared, &base, declared.with(part), 2);
+        assert_eq!((judged.scored.round, judged.scored.accepted), (2, false));
+        judged.scored.gain.share
+    }
+
     #[test]
-    fn a_delay_gains_no_more_than_it_does_at_the_lower_cutoff() {
+    fn a_delay_and_a_drift_gain_no_more_than_they_do_at_the_lower_cutoff() {
         // What is commanded acts three rows later: the effort is early.
         let late = axis(|motion, row| usual(motion, (row + 3).min(motion.len() - 1)));
-        let prompt = axis(usual);
-        let (bench, other) = (late.bench(), prompt.bench());
-        let declared = model(&DECLARED);
-        let share = |low: &Bench<'_>| {
-            let output = effort(Pair { bench: &bench, low });
-            let extended = declared.with(found(Delay, 3.0e-3));
-            let base = bench.cross_validate(&declared);
-            let judged = output.judged(&declared, &base, extended, 2);
-            assert_eq!((judged.scored.round, judged.scored.accepted), (2, false));
-            judged.scored.gain.share
-        };
-        assert!(share(&bench) > 0.9, "{}", share(&bench));
-        assert!(share(&other) < 0.1, "{}", share(&other));
+        let cold = axis(|motion, row| {
+            let fall = (-motion.time_s[row] / 10.0).exp();
+            usual(motion, row) + 10.0 * fall * motion.direction[row]
+        });
+        let neither = axis(usual);
+        for (shown, effect, parameter) in [(&late, Delay, 3.0e-3), (&cold, FrictionDrift, 10.0)] {
+            let share = |low: &Axis| share_at_both([shown, low], found(effect, parameter));
+            assert!(share(shown) > 0.9, "{effect} {}", share(shown));
+            assert!(share(&neither) < 0.1, "{effect} {}", share(&neither));
+        }
     }
 
     fn candidate(effect: EffectName, share: f64, t: f64, physical: bool) -> Candidate<Model> {

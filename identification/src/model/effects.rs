@@ -299,8 +299,8 @@ pub(crate) trait Effect: Sync {
         Stage::Force
     }
 
-    /// Whether it must hold at the lower cut-off too: quantisation that comes back through the loop
-    /// imitates it at the higher one.
+    /// Whether it must hold at the lower cut-off too: what comes back through the loop (rounding of
+    /// an encoder, blows of a gap) imitates it at the higher one.
     fn is_judged_slow_too(&self) -> bool {
         false
     }
