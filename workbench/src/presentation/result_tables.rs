@@ -56,7 +56,11 @@ pub fn error_table(result: &Identification) -> TextTable {
         &format!("after, {unit}"),
     ])];
     if has_difference {
-        rows[0].extend(head(["motor − load before, µm", "after, µm"]));
+        let unit = position_error_unit(result);
+        rows[0].extend(head([
+            &format!("motor − load before, {unit}"),
+            &format!("after, {unit}"),
+        ]));
     }
     let row = |name: &str, errors: &Errors| error_row(name, errors, has_difference);
     rows.push(row("training", &report.train));
