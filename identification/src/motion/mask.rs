@@ -10,7 +10,7 @@ use crate::record::samples::Record;
 const MARGIN_S: f64 = 0.020;
 /// The same in periods of any cut-off.
 const PERIODS_OF_CUTOFF: f64 = 2.0;
-/// Least share of the moving samples that has to be clear of rest: else all of them are fitted.
+/// Least share of the samples that has to be clear of rest, or of strikes: else all are fitted.
 const CLEAR_SHARE: f64 = 0.5;
 /// Share of the limit from which an effort counts as limited.
 const LIMITED: f64 = 0.999;
@@ -50,12 +50,18 @@ pub(crate) fn clear_of_rest(
         return moving.to_vec();
     }
     let (clear, _) = moving_and_slow_within(margin_s, velocity_lp, limit, period_s);
-    let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
-    if count(&clear) >= CLEAR_SHARE * count(moving) {
+    if is_most(&clear, moving) {
         clear
     } else {
         moving.to_vec()
     }
+}
+
+/// Whether enough of the samples of a mask are left that others need not be taken with them.
+#[must_use]
+pub(crate) fn is_most(left: &[bool], of: &[bool]) -> bool {
+    let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
+    count(left) >= CLEAR_SHARE * count(of)
 }
 
 fn moving_and_slow_within(
@@ -99,8 +105,13 @@ pub(crate) fn both(one: &[bool], other: &[bool]) -> Vec<bool> {
     pairs.map(|(one, other)| *one && *other).collect()
 }
 
-/// A mask with the margin about each of its samples; each row is written once.
-fn widened(mask: impl ExactSizeIterator<Item = bool>, margin_s: f64, period_s: f64) -> Vec<bool> {
+/// A mask with a margin about each of its samples; each row is written once.
+#[must_use]
+pub(crate) fn widened(
+    mask: impl ExactSizeIterator<Item = bool>,
+    margin_s: f64,
+    period_s: f64,
+) -> Vec<bool> {
     let (rows, margin) = (mask.len(), (margin_s / period_s).round() as usize);
     let mut wide = vec![false; rows];
     let mut until = 0;

@@ -59,7 +59,11 @@ fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
         Blocks::with(&rows, &rubbed).fit().sse
     };
     let friction = descended(start(unit, &left), unit, &left);
-    Carried { friction, flanks }
+    Carried {
+        friction,
+        flanks,
+        strike: unit * apart.motion.period_s,
+    }
 }
 
 /// The best of a grid.

@@ -324,14 +324,24 @@ impl<'a> Apart<'a> {
             .collect()
     }
 
-    /// Rms of what fitted ways leave where their states are known, µm (µrad).
+    /// The rows at which the states of such ways are known and no flanks strike.
+    fn where_quiet(&self, ways: &[Way]) -> Vec<bool> {
+        let known = self.where_known(ways).mask;
+        let carried = ways.iter().find_map(|way| match way {
+            Way::Carried(carried) => Some(carried),
+            _ => None,
+        });
+        carried.map_or_else(
+            || known.clone(),
+            |carried| carried.quiet(self.motion, self.raw, &known),
+        )
+    }
+
+    /// Rms of what fitted ways leave where their states are known and no flanks strike, µm (µrad).
     pub(crate) fn rms_um(&self, fitted: &FittedWays) -> f64 {
         let residual = self.residual(fitted);
-        let known = self.where_known(&fitted.ways());
-        let inside = residual
-            .iter()
-            .zip(&known.mask)
-            .filter(|(_, inside)| **inside);
+        let quiet = self.where_quiet(&fitted.ways());
+        let inside = residual.iter().zip(&quiet).filter(|(_, inside)| **inside);
         let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (left, _)| {
             (sum + left.powi(2), count + 1.0)
         });

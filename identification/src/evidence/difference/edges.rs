@@ -41,6 +41,18 @@ impl Flanks {
         (d - self.high).max(0.0) + (d - self.low).min(0.0)
     }
 
+    /// Rows at which they meet or part while motor − load changes by at least a step from one row
+    /// to the next.
+    pub(super) fn strikes(self, difference: &[f64], step: f64) -> Vec<bool> {
+        let before = difference.iter().take(1).chain(difference);
+        let pairs = before.zip(difference);
+        pairs
+            .map(|(before, at)| {
+                self.touches(*before) != self.touches(*at) && (at - before).abs() >= step
+            })
+            .collect()
+    }
+
     /// Whether they are in contact.
     pub(super) fn touches(self, d: f64) -> bool {
         !(self.low..self.high).contains(&d)

@@ -15,6 +15,7 @@ use std::ops::Range;
 use super::edges::Flanks;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
+use crate::motion::mask::{is_most, widened, without};
 use crate::simulate::friction::bend_after;
 
 /// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
@@ -142,6 +143,8 @@ pub(crate) struct Carried {
     pub friction: LoadFriction,
     /// The flanks of a gap; without one everything that is between motor and load is wound up.
     pub flanks: Option<Flanks>,
+    /// Motor − load that changes by so much within a row where flanks meet: a strike.
+    pub strike: f64,
 }
 
 impl Carried {
@@ -169,6 +172,23 @@ impl Carried {
         load.plain().into_iter().chain(rubbed).collect()
     }
 
+    /// The rows of a mask without those about strikes: nobody recorded when flanks struck between
+    /// two rows, and the contact rings faster than the low-pass lets through. They stay where few
+    /// others are left.
+    pub(super) fn quiet(self, motion: &Kinematics, apart: &[f64], mask: &[bool]) -> Vec<bool> {
+        let Some(flanks) = self.flanks else {
+            return mask.to_vec();
+        };
+        let strikes = flanks.strikes(apart, self.strike).into_iter();
+        let mixed_s = 1.0 / motion.filter.cutoff_hz;
+        let quiet = without(mask, &widened(strikes, mixed_s, motion.period_s));
+        if is_most(&quiet, mask) {
+            quiet
+        } else {
+            mask.to_vec()
+        }
+    }
+
     /// The rows of a mask at which the bend is known: nobody recorded it at the start of a piece.
     pub(super) fn known(
         self,
@@ -194,7 +214,7 @@ impl Carried {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::difference::carried::tests::{FRICTION, apart, axis};
+    use crate::evidence::difference::carried::tests::{FRICTION, UNIT, apart, axis};
     use crate::simulate::made::two_sines;
 
     #[test]
@@ -240,6 +260,7 @@ mod tests {
         let carried = Carried {
             friction: FRICTION,
             flanks: None,
+            strike: UNIT * 1.0e-3,
         };
         let apart = apart(&axis);
         let mask = vec![true; 6000];
@@ -251,5 +272,35 @@ mod tests {
         assert!((load[first] - load[0]).abs() >= travel);
         assert!((load[first - 1] - load[0]).abs() < travel);
         assert!(known[first..].iter().all(|known| *known));
+    }
+
+    #[test]
+    fn rows_about_strikes_are_not_quiet_unless_few_others_are_left() {
+        let axis = axis(|_| 0.0);
+        let carried = Carried {
+            friction: FRICTION,
+            flanks: Some(Flanks {
+                low: -1.0e-5,
+                high: 1.0e-5,
+                ..Flanks::default()
+            }),
+            strike: 2.0e-6,
+        };
+        let mask = vec![true; 6000];
+        let left_out = |apart: &dyn Fn(usize) -> f64| {
+            let apart: Vec<f64> = (0..6000).map(apart).collect();
+            let quiet = carried.quiet(&axis.motion, &apart, &mask);
+            quiet.iter().filter(|quiet| !**quiet).count()
+        };
+        // A period of 100 Hz on either side of the row; slower than a strike, nothing.
+        let met = |by: f64| move |row: usize| if row < 3000 { 9.0e-6 } else { 9.0e-6 + by };
+        assert_eq!(left_out(&met(2.1e-6)), 21);
+        assert_eq!(left_out(&met(1.9e-6)), 0);
+        assert_eq!(left_out(&|row| if row % 20 < 10 { 0.0 } else { 1.1e-5 }), 0);
+        let rigid = Carried {
+            flanks: None,
+            ..carried
+        };
+        assert_eq!(rigid.quiet(&axis.motion, &vec![0.0; 6000], &mask), mask);
     }
 }
