@@ -50,18 +50,18 @@ pub(crate) fn clear_of_rest(
         return moving.to_vec();
     }
     let (clear, _) = moving_and_slow_within(margin_s, velocity_lp, limit, period_s);
-    if is_most(&clear, moving) {
-        clear
-    } else {
-        moving.to_vec()
-    }
+    unless_few(clear, moving)
 }
 
-/// Whether enough of the samples of a mask are left that others need not be taken with them.
+/// What is left of a mask, or all of it where that is too little.
 #[must_use]
-pub(crate) fn is_most(left: &[bool], of: &[bool]) -> bool {
+pub(crate) fn unless_few(left: Vec<bool>, of: &[bool]) -> Vec<bool> {
     let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
-    count(left) >= CLEAR_SHARE * count(of)
+    if count(&left) >= CLEAR_SHARE * count(of) {
+        left
+    } else {
+        of.to_vec()
+    }
 }
 
 fn moving_and_slow_within(

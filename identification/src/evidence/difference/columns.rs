@@ -326,15 +326,13 @@ impl<'a> Apart<'a> {
 
     /// The rows at which the states of such ways are known and no flanks strike.
     fn where_quiet(&self, ways: &[Way]) -> Vec<bool> {
-        let known = self.where_known(ways).mask;
-        let carried = ways.iter().find_map(|way| match way {
-            Way::Carried(carried) => Some(carried),
-            _ => None,
-        });
-        carried.map_or_else(
-            || known.clone(),
-            |carried| carried.quiet(self.motion, self.raw, &known),
-        )
+        let mut mask = self.where_known(ways).mask;
+        for way in ways {
+            if let Way::Carried(carried) = way {
+                mask = carried.quiet(self.motion, self.raw, &mask);
+            }
+        }
+        mask
     }
 
     /// Rms of what fitted ways leave where their states are known and no flanks strike, µm (µrad).

@@ -15,7 +15,7 @@ use std::ops::Range;
 use super::edges::Flanks;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
-use crate::motion::mask::{is_most, widened, without};
+use crate::motion::mask::{unless_few, widened, without};
 use crate::simulate::friction::bend_after;
 
 /// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
@@ -182,11 +182,7 @@ impl Carried {
         let strikes = flanks.strikes(apart, self.strike).into_iter();
         let mixed_s = 1.0 / motion.filter.cutoff_hz;
         let quiet = without(mask, &widened(strikes, mixed_s, motion.period_s));
-        if is_most(&quiet, mask) {
-            quiet
-        } else {
-            mask.to_vec()
-        }
+        unless_few(quiet, mask)
     }
 
     /// The rows of a mask at which the bend is known: nobody recorded it at the start of a piece.
