@@ -117,7 +117,7 @@ pub(crate) fn difference(
 fn judged(dataset: &Dataset, apart: Apart<'_>) -> Difference {
     let motion = apart.motion;
     let mut output = MotorLoad {
-        inertia: Plain::fit(motion).inertia,
+        inertia: Plain::moved_mass(motion),
         apart,
         count: dataset.resolution.max(dataset.load_resolution),
         before: 0.0,

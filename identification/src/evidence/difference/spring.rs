@@ -32,7 +32,7 @@ pub(super) fn on_moving_rows(apart: &Apart<'_>, ways: &[Way]) -> Option<Known> {
         return None;
     };
     let motor_mass = -inertia / softness;
-    let masses = 0.0..Plain::fit(apart.motion).inertia;
+    let masses = 0.0..Plain::moved_mass(apart.motion);
     let can_be = softness > 0.0 && masses.contains(&motor_mass) && friction <= 0.0;
     let column: usize = ways[..place].iter().map(|way| way.width()).sum();
     let half_width = moving.blocks(&ways).half_widths()[column];
