@@ -40,7 +40,7 @@ use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
     DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,
-    FEWEST_COUNTS, GAP_FACTOR, IMPACTS, STIFFNESS_AGREES,
+    FEWEST_COUNTS, FORCE_LARGE, GAP_FACTOR, IMPACTS, STIFFNESS_AGREES,
 };
 use crate::evidence::verdict::Reason;
 use crate::fit::blocks::{Fit, Gain};
@@ -221,9 +221,15 @@ impl Output for MotorLoad<'_> {
         let removed_rms = (gain.removed.max(0.0) / rows.max(1.0)).sqrt();
         let is_relevant = self.shows_in_force(&candidate.model)
             || gain.removed >= DIFFERENCE_SHARE_OF_ALL * self.before;
+        let is_by_force = matches!(candidate.model.last(), Some(Way::Flanks(_)));
+        let is_certain = if is_by_force {
+            is_certain_by_force(gain)
+        } else {
+            gain.t >= DIFFERENCE_T
+        };
         *physical
             && gain.share >= DIFFERENCE_SHARE
-            && gain.t >= DIFFERENCE_T
+            && is_certain
             && is_relevant
             && removed_rms >= DIFFERENCE_RMS_COUNTS * self.count
     }
@@ -506,7 +512,14 @@ fn has(ways: &[Way], name: EffectName) -> bool {
 
 /// Whether the force speaks for a gap between springy flanks.
 fn is_enough(gain: &Gain) -> bool {
-    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T && gain.percent >= EFFORT_PERCENT
+    gain.share >= DIFFERENCE_SHARE && is_certain_by_force(gain) && gain.percent >= EFFORT_PERCENT
+}
+
+/// Whether a gain that the force shows is certain. Where a loop rings in a few seconds of a record
+/// the gain sits there, and its t is small however large it is.
+fn is_certain_by_force(gain: &Gain) -> bool {
+    let (share, t) = FORCE_LARGE;
+    gain.t >= DIFFERENCE_T || (gain.share >= share && gain.t >= t)
 }
 
 /// The quantity for people: width, stiffness, wave number.
@@ -711,6 +724,20 @@ mod tests {
         };
         let difference = difference(&axis.dataset, &axis.motion, path).unwrap();
         settled(difference, &axis.dataset, &axis.motion, path)
+    }
+
+    #[test]
+    fn a_large_share_of_the_force_is_certain_with_a_small_t() {
+        let certain = |share: f64, t: f64| {
+            is_certain_by_force(&Gain {
+                removed: 1.0,
+                percent: 1.0,
+                share,
+                t,
+            })
+        };
+        assert!(certain(0.1, 2.0) && certain(0.3, 1.0));
+        assert!(!certain(0.29, 1.9) && !certain(0.9, 0.9));
     }
 
     #[test]
