@@ -10,7 +10,7 @@ use crate::record::samples::Record;
 const MARGIN_S: f64 = 0.020;
 /// The same in periods of any cut-off.
 const PERIODS_OF_CUTOFF: f64 = 2.0;
-/// Least share of the samples that has to be clear of rest, or of strikes: else all are fitted.
+/// Least share of the samples that has to be clear of rest: else all are fitted.
 const CLEAR_SHARE: f64 = 0.5;
 /// Share of the limit from which an effort counts as limited.
 const LIMITED: f64 = 0.999;
@@ -50,14 +50,14 @@ pub(crate) fn clear_of_rest(
         return moving.to_vec();
     }
     let (clear, _) = moving_and_slow_within(margin_s, velocity_lp, limit, period_s);
-    unless_few(clear, moving)
+    unless_few(clear, moving, CLEAR_SHARE)
 }
 
-/// What is left of a mask, or all of it where that is too little.
+/// What is left of a mask, or all of it where that is less than a share.
 #[must_use]
-pub(crate) fn unless_few(left: Vec<bool>, of: &[bool]) -> Vec<bool> {
+pub(crate) fn unless_few(left: Vec<bool>, of: &[bool], share: f64) -> Vec<bool> {
     let count = |mask: &[bool]| mask.iter().filter(|inside| **inside).count() as f64;
-    if count(&left) >= CLEAR_SHARE * count(of) {
+    if count(&left) >= share * count(of) {
         left
     } else {
         of.to_vec()

@@ -22,6 +22,10 @@ use crate::simulate::friction::bend_after;
 /// less than a hundredth of it is left.
 const SETTLED: f64 = 5.0;
 
+/// Least share of the samples that has to be clear of strikes: else all are counted. Chosen: a loop
+/// that rings between its flanks leaves a third, and a tenth of a record still is thousands.
+const QUIET_SHARE: f64 = 0.1;
+
 /// Friction on the load over its own displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoadFriction {
@@ -61,6 +65,8 @@ impl LoadFriction {
 /// The load's motion at the rows.
 pub(super) struct LoadMotion {
     position: Vec<f64>,
+    /// Not low-passed: a load that rings faster than that turns over all the same.
+    raw_velocity: Vec<f64>,
     /// Low-passed.
     velocity: Vec<f64>,
     /// Low-passed.
@@ -82,15 +88,16 @@ impl LoadMotion {
         let position = minus(position, apart);
         let by_piece = |signal: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>| -> Vec<f64> {
             let pieces = motion.pieces.iter().cloned();
-            let raw: Vec<f64> = pieces
+            pieces
                 .flat_map(|piece| derivative(&signal[piece], motion.period_s))
-                .collect();
-            motion.low_passed(&raw)
+                .collect()
         };
+        let raw_velocity = by_piece(&position, slope);
         Self {
-            velocity: by_piece(&position, slope),
-            acceleration: by_piece(&position, bow),
-            rate: by_piece(&wound, slope),
+            velocity: motion.low_passed(&raw_velocity),
+            acceleration: motion.low_passed(&by_piece(&position, bow)),
+            rate: motion.low_passed(&by_piece(&wound, slope)),
+            raw_velocity,
             position,
         }
     }
@@ -98,7 +105,10 @@ impl LoadMotion {
     /// The bend and its rate, low-passed.
     pub(super) fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
         let of_piece = |piece: &Range<usize>| {
-            let bend = friction.bend(&self.position[piece.clone()], &self.velocity[piece.clone()]);
+            let bend = friction.bend(
+                &self.position[piece.clone()],
+                &self.raw_velocity[piece.clone()],
+            );
             let rate = slope(&bend, motion.period_s);
             (bend, rate)
         };
@@ -182,7 +192,7 @@ impl Carried {
         let strikes = flanks.strikes(apart, self.strike).into_iter();
         let mixed_s = 1.0 / motion.filter.cutoff_hz;
         let quiet = without(mask, &widened(strikes, mixed_s, motion.period_s));
-        unless_few(quiet, mask)
+        unless_few(quiet, mask, QUIET_SHARE)
     }
 
     /// The rows of a mask at which the bend is known: nobody recorded it at the start of a piece.
