@@ -29,6 +29,7 @@ pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;
 pub(crate) mod look_alikes;
 pub(crate) mod mains;
+pub(crate) mod oscillation;
 pub(crate) mod plausibility;
 pub(crate) mod rank;
 pub(crate) mod residual;

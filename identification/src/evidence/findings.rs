@@ -14,6 +14,7 @@ use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
 use crate::evidence::mains;
+use crate::evidence::oscillation;
 use crate::evidence::rank;
 use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
@@ -150,6 +151,13 @@ impl<'a> Findings<'a> {
         let by_model = (0.01 * models.extended.on(dataset, low).force_percent).powi(2);
         let causes = causes::of(dataset, found.names(), by_model).into_iter();
         let mut reasons: Vec<Reason> = causes.map(Reason::unexplained).collect();
+        let records = [
+            ("training", motion, &dataset.train),
+            ("validation", validation, &dataset.validate),
+        ];
+        reasons.extend(records.into_iter().find_map(|(what, motion, record)| {
+            oscillation::reason(dataset, what, motion, &record.position)
+        }));
         reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));

@@ -126,6 +126,15 @@ pub(crate) const LEFT_PERCENT: f64 = 12.0;
 /// motion is slower by more than this factor.
 pub(crate) const NOISE_SLOWNESS: f64 = 2.0;
 
+/// What is faster than the low-pass is a wave where two samples leave at most this part of the next
+/// one's square: encoders' rounding leaves 0.7 and more, resonances after impacts up to 0.07, loops
+/// that oscillate 0.002 and less.
+pub(crate) const WAVE_LEFT: f64 = 0.05;
+
+/// Such a wave drives an axis from this part of the acceleration of all slower motion on. Chosen:
+/// loops that oscillate have 1.06 and more, springy flanks of 100 µm that ring up to 0.85.
+pub(crate) const OSCILLATION: f64 = 1.0;
+
 // ---- Motor − load: `difference` and its rooms ----
 
 /// Smallest share of the held-out variance that an effect between motor and load removes.

@@ -151,7 +151,8 @@ impl Steps {
             return Some(format!("says that {words} ({still} of {asked})"));
         }
         is_odd(twice).then(|| {
-            let words = "rows are missing: the position makes two steps in one row";
+            let words =
+                "rows are missing, or the loop oscillates: the position makes two steps in one row";
             format!("says that {words} ({twice} of {asked})")
         })
     }

@@ -1,0 +1,121 @@
+//! A loop that oscillates faster than the low-pass lets through.
+//!
+//! What the position has above the low-pass is a wave where two samples tell the next one,
+//! `x[k] = a·x[k−1] + b·x[k−2]` (an autoregressive process of second order: Yule, Phil. Trans. A
+//! 226, 1927); an encoder's rounding is none. A wave with more acceleration than all slower motion
+//! drives the axis: its friction turns over within the wave, and no column of the fit sees that.
+//! Nothing that is fitted on such a record holds.
+//!
+//! Units: m or rad, s.
+
+use crate::evidence::reversal::rms;
+use crate::evidence::thresholds::{OSCILLATION, WAVE_LEFT};
+use crate::evidence::verdict::Reason;
+use crate::motion::bodies::minus;
+use crate::motion::kinematics::Kinematics;
+use crate::record::dataset::Dataset;
+use std::f64::consts::TAU;
+
+/// What moves faster than the low-pass.
+#[derive(Clone, Copy, Debug)]
+struct Wave {
+    /// Frequency, Hz.
+    hz: f64,
+    /// Rms of the position.
+    rms: f64,
+    /// Part of its square that two samples do not tell of the next one.
+    left: f64,
+}
+
+impl Wave {
+    /// Of a record with such positions.
+    fn of(motion: &Kinematics, position: &[f64]) -> Option<Self> {
+        let fast = minus(position, &motion.low_passed(position));
+        let inside = |row: &usize| motion.is_inside(*row) && motion.is_inside(row - 2);
+        let rows: Vec<usize> = (2..fast.len()).filter(inside).collect();
+        let at = |lag: usize| {
+            let products = rows.iter().map(|row| fast[*row] * fast[row - lag]);
+            products.sum::<f64>() / rows.len().max(1) as f64
+        };
+        let (whole, one, two) = (at(0), at(1) / at(0), at(2) / at(0));
+        // The Yule–Walker equations of two lags.
+        let square = 1.0 - one.powi(2);
+        let [a, b] = [one * (1.0 - two), two - one.powi(2)].map(|c| c / square);
+        let turn = a / (2.0 * (-b).sqrt());
+        (whole > 0.0 && turn.abs() < 1.0).then(|| Self {
+            hz: turn.acos() / (TAU * motion.period_s),
+            rms: whole.sqrt(),
+            left: 1.0 - a * one - b * two,
+        })
+    }
+
+    fn acceleration(self) -> f64 {
+        (TAU * self.hz).powi(2) * self.rms
+    }
+}
+
+/// What is said of a record whose loop oscillates; `what` is the record.
+pub(crate) fn reason(
+    dataset: &Dataset,
+    what: &str,
+    motion: &Kinematics,
+    position: &[f64],
+) -> Option<Reason> {
+    let wave = Wave::of(motion, position)?;
+    let inside: Vec<bool> = (0..motion.len()).map(|row| motion.is_inside(row)).collect();
+    let slower = rms(&motion.low_passed(&motion.acceleration), &inside);
+    let drives = wave.left < WAVE_LEFT && wave.acceleration() > OSCILLATION * slower;
+    drives.then(|| {
+        Reason::unexplained(format!(
+            "the loop oscillates on the {what} record: {:.0} Hz, {:.2} {} rms, with more \
+             acceleration than all motion below the {:.0} Hz up to which is fitted; lower its gains \
+             and record again",
+            wave.hz,
+            1.0e6 * wave.rms,
+            dataset.kind.millionths(),
+            motion.filter.cutoff_hz
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::made::on;
+    use crate::simulate::made::{record, two_sines};
+
+    /// What is said of a motion of some 2 m/s² with something on it, at 1 kHz.
+    fn said(more: impl Fn(usize) -> f64) -> Option<String> {
+        let smooth = two_sines(6000);
+        let position: Vec<f64> = (0..6000).map(|row| smooth[row] + more(row)).collect();
+        let axis = on(record(1.0e-3, position));
+        let position = &axis.dataset.train.position;
+        let reason = reason(&axis.dataset, "training", &axis.motion, position);
+        reason
+            .inspect(|reason| assert!(reason.counts))
+            .map(|reason| reason.words)
+    }
+
+    fn wave(hz: f64, amplitude: f64) -> impl Fn(usize) -> f64 {
+        move |row| amplitude * (TAU * hz * 1.0e-3 * row as f64).sin()
+    }
+
+    #[test]
+    fn a_wave_that_drives_the_axis_is_told_with_its_frequency_and_size() {
+        let words = said(wave(150.0, 40.0e-6)).unwrap();
+        assert!(words.contains("training record: 150 Hz, 27"), "{words}");
+    }
+
+    #[test]
+    fn a_small_wave_a_slow_one_and_rounding_do_not_drive_it() {
+        assert_eq!(said(|_| 0.0), None);
+        assert_eq!(said(wave(150.0, 0.4e-6)), None);
+        assert_eq!(said(wave(30.0, 40.0e-6)), None);
+        let smooth = two_sines(6000);
+        let count = 20.0e-6;
+        assert_eq!(
+            said(|row| count * (smooth[row] / count).round() - smooth[row]),
+            None
+        );
+    }
+}
