@@ -148,6 +148,10 @@ pub(crate) const DIFFERENCE_SHARE_OF_ALL: f64 = 0.01;
 /// Smallest t over blocks, about the 95 % of a normal distribution.
 pub(crate) const DIFFERENCE_T: f64 = 2.0;
 
+/// Where the force shows a gap, a large share of the effort asks for less: as [`EFFORT_T`] does.
+/// Machines without a gap had shares of a thousandth, those with 2 µm 0.39 and more.
+pub(crate) const FORCE_LARGE: (f64, f64) = EFFORT_T[0];
+
 /// Smallest rms that an effect removes, in counts of the coarser encoder: every screw has some
 /// stiffness.
 pub(crate) const DIFFERENCE_RMS_COUNTS: f64 = 1.0;
@@ -157,10 +161,6 @@ pub(crate) const GAP_FACTOR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
 /// What impacts between rigid flanks leave of motor − load, rms, as a share of the gap: 0.01 to
 /// 0.07 on simulated records. A loop that bounces on springy flanks, taken for rigid ones, leaves
-/// Where the force shows a gap, a large share of the effort asks for less: as [`EFFORT_T`] does.
-/// Machines without a gap had shares of a thousandth, those with 2 µm 0.39 and more.
-pub(crate) const FORCE_LARGE: (f64, f64) = EFFORT_T[0];
-
 /// 0.12 and more.
 pub(crate) const IMPACTS: f64 = 0.1;
 
@@ -176,6 +176,15 @@ pub(crate) const APART_COUNTS: f64 = 3.0;
 /// And from this share of what is left on: as for the effort, three times what an accepted effect
 /// needs.
 pub(crate) const APART_SHARE: f64 = UNEXPLAINED_SHARE;
+
+/// More than this of motor − load, rms, is not left by what explains it, unless it is noise: as much
+/// as of the effort ([`LEFT_PERCENT`]).
+pub(crate) const APART_LEFT: f64 = 0.01 * LEFT_PERCENT;
+
+/// Noise has an autocorrelation as short as the low-pass makes it; that of what slips, warms or
+/// oscillates has more than so many times its square. Records with noisy encoders had up to 2.3,
+/// the steps of a coarse one 3.7, a loop that oscillates 30.
+pub(crate) const NOISE_COLOUR: f64 = 4.0;
 
 // ---- Reversals: `reversal`, `free_run`, `at_reversals`, and the amplitudes of `difference` ----
 

@@ -4,14 +4,16 @@
 //! transmitted force (a spring that stiffens, a hysteresis), the position (a screw, a scale) and
 //! the time (a coupling that slips, a part that warms). Each is a set of functions of the motion,
 //! fitted to the residual and judged on held-out blocks. What they take away there is structure, in
-//! counts of the coarser encoder. A coupling that slips in jumps is no function of time; but then
-//! most of motor − load is left, slower than noise. The time is asked where nothing else goes with
-//! it. The transmitted force is the one that winds the spring up; without a spring the one that the
+//! counts of the coarser encoder. A coupling that slips in jumps is no function of time, and neither
+//! is a loop that oscillates; but then much of motor − load is left, slower than noise or as a wave.
+//! The time is asked where nothing else goes with it. The transmitted force is the one that winds the spring up; without a spring the one that the
 //! motion predicts. A gap that a spring has swallowed shows as a step over that force.
 
 use super::columns::{Apart, of_motor};
-use crate::evidence::amount::{about_mean, slowness};
-use crate::evidence::thresholds::{APART_COUNTS, APART_SHARE, DIFFERENCE_T, NOISE_SLOWNESS};
+use crate::evidence::amount::{about_mean, colour};
+use crate::evidence::thresholds::{
+    APART_COUNTS, APART_LEFT, APART_SHARE, DIFFERENCE_T, NOISE_COLOUR,
+};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::plain::Plain;
 
@@ -104,9 +106,6 @@ fn laws_of(values: &[f64]) -> Vec<Vec<f64>> {
     laws.into_iter().map(column).collect()
 }
 
-/// Most of motor − load, rms.
-const MOST: f64 = 0.5;
-
 /// A residual of motor − load on its record.
 struct Rest<'a> {
     apart: &'a Apart<'a>,
@@ -133,14 +132,14 @@ impl Rest<'_> {
         self.structure(what, &base, &self.fit(&all))
     }
 
-    /// Structure over the time; the largest is all that is left, where that is most of it and slow.
+    /// Structure over the time; the largest is all that is left, where that is much and no noise.
     fn over_time(&self, motion: &Motion) -> Option<Left> {
         let mask = &self.apart.mask;
         let [left, all] = [self.residual, &self.apart.target].map(|x| about_mean(x, mask));
-        let is_most = left > MOST * all;
-        let is_slow = || slowness(self.apart.motion, self.residual, mask) > NOISE_SLOWNESS;
+        let is_much = left > APART_LEFT * all;
+        let is_coloured = || colour(self.apart.motion, self.residual, mask) > NOISE_COLOUR;
         let over = "the time";
-        if is_most && is_slow() {
+        if is_much && is_coloured() {
             return Some(Left { over, rms: left });
         }
         self.over(over, motion, &laws_of(&motion.time))
@@ -200,12 +199,16 @@ mod tests {
     }
 
     #[test]
-    fn what_drifts_and_what_slips_goes_with_the_time() {
+    fn what_drifts_slips_or_rings_goes_with_the_time_and_noise_with_nothing() {
         let drift = |axis: &Axis, row: usize| 1.0e-6 * axis.motion.time_s[row];
         let slip = |axis: &Axis, row: usize| 4.0e-6 * (axis.motion.time_s[row] / 0.7).floor().sin();
-        for left in [left_by(drift), left_by(slip)].map(Option::unwrap) {
+        let ring = |_: &Axis, row: usize| 4.0e-6 * (0.6 * row as f64).sin();
+        for left in [left_by(drift), left_by(slip), left_by(ring)].map(Option::unwrap) {
             assert_eq!(left.over, "the time");
             assert!((1.0e-6..4.0e-6).contains(&left.rms), "{left:?}");
         }
+        // Most of it is left, but it is noise.
+        let noise = |_: &Axis, row: usize| 4.0e-6 * (1.7 * (row * row % 1013) as f64).sin();
+        assert_eq!(left_by(noise), None);
     }
 }
