@@ -155,9 +155,11 @@ impl<'a> Findings<'a> {
             ("training", motion, &dataset.train),
             ("validation", validation, &dataset.validate),
         ];
-        reasons.extend(records.into_iter().find_map(|(what, motion, record)| {
-            oscillation::reason(dataset, what, motion, &record.position)
-        }));
+        reasons.extend(
+            records.into_iter().find_map(|(what, motion, record)| {
+                oscillation::reason(dataset, what, motion, record)
+            }),
+        );
         reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));

@@ -14,7 +14,11 @@ use crate::evidence::verdict::Reason;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
+use crate::record::samples::Record;
 use std::f64::consts::TAU;
+
+/// The setpoint asks for a wave where it has more than this part of it.
+const ASKED: f64 = 0.5;
 
 /// What moves faster than the low-pass.
 #[derive(Clone, Copy, Debug)]
@@ -54,28 +58,34 @@ impl Wave {
     }
 }
 
-/// What is said of a record whose loop oscillates; `what` is the record.
+/// What is said of a record on which a wave drives the axis; `what` is the record.
 pub(crate) fn reason(
     dataset: &Dataset,
     what: &str,
     motion: &Kinematics,
-    position: &[f64],
+    record: &Record,
 ) -> Option<Reason> {
-    let wave = Wave::of(motion, position)?;
+    let wave = Wave::of(motion, &record.position)?;
     let inside: Vec<bool> = (0..motion.len()).map(|row| motion.is_inside(row)).collect();
     let slower = rms(&motion.low_passed(&motion.acceleration), &inside);
-    let drives = wave.left < WAVE_LEFT && wave.acceleration() > OSCILLATION * slower;
-    drives.then(|| {
-        Reason::unexplained(format!(
-            "the loop oscillates on the {what} record: {:.0} Hz, {:.2} {} rms, with more \
-             acceleration than all motion below the {:.0} Hz up to which is fitted; lower its gains \
-             and record again",
-            wave.hz,
-            1.0e6 * wave.rms,
-            dataset.kind.millionths(),
-            motion.filter.cutoff_hz
-        ))
-    })
+    if wave.left >= WAVE_LEFT || wave.acceleration() <= OSCILLATION * slower {
+        return None;
+    }
+    let asked = record.reference.as_deref();
+    let asked = asked.and_then(|reference| Wave::of(motion, reference));
+    let (seen, remedy) = if asked.is_some_and(|asked| asked.rms > ASKED * wave.rms) {
+        ("the setpoint swings", "move slower")
+    } else {
+        ("the loop oscillates", "lower its gains")
+    };
+    Some(Reason::unexplained(format!(
+        "{seen} on the {what} record: {:.0} Hz, {:.2} {} rms, with more acceleration than all \
+         motion below the {:.0} Hz up to which is fitted; {remedy} and record again",
+        wave.hz,
+        1.0e6 * wave.rms,
+        dataset.kind.millionths(),
+        motion.filter.cutoff_hz
+    )))
 }
 
 #[cfg(test)]
@@ -84,16 +94,23 @@ mod tests {
     use crate::fit::made::on;
     use crate::simulate::made::{record, two_sines};
 
-    /// What is said of a motion of some 2 m/s² with something on it, at 1 kHz.
-    fn said(more: impl Fn(usize) -> f64) -> Option<String> {
+    /// What is said of a motion with something on it, at 1 kHz, and with something on its setpoint.
+    fn said_of(more: impl Fn(usize) -> f64, asked: impl Fn(usize) -> f64) -> Option<String> {
         let smooth = two_sines(6000);
-        let position: Vec<f64> = (0..6000).map(|row| smooth[row] + more(row)).collect();
-        let axis = on(record(1.0e-3, position));
-        let position = &axis.dataset.train.position;
-        let reason = reason(&axis.dataset, "training", &axis.motion, position);
-        reason
-            .inspect(|reason| assert!(reason.counts))
-            .map(|reason| reason.words)
+        let with = |more: &dyn Fn(usize) -> f64| {
+            let rows = smooth.iter().enumerate();
+            rows.map(|(row, x)| x + more(row)).collect::<Vec<f64>>()
+        };
+        let mut made = record(1.0e-3, with(&more));
+        made.reference = Some(with(&asked));
+        let axis = on(made);
+        let reason = reason(&axis.dataset, "training", &axis.motion, &axis.dataset.train)?;
+        assert!(reason.counts);
+        Some(reason.words)
+    }
+
+    fn said(more: impl Fn(usize) -> f64) -> Option<String> {
+        said_of(more, |_| 0.0)
     }
 
     fn wave(hz: f64, amplitude: f64) -> impl Fn(usize) -> f64 {
@@ -103,7 +120,12 @@ mod tests {
     #[test]
     fn a_wave_that_drives_the_axis_is_told_with_its_frequency_and_size() {
         let words = said(wave(150.0, 40.0e-6)).unwrap();
-        assert!(words.contains("training record: 150 Hz, 27"), "{words}");
+        assert!(
+            words.contains("loop oscillates on the training record: 150 Hz, 27"),
+            "{words}"
+        );
+        let words = said_of(wave(150.0, 40.0e-6), wave(150.0, 60.0e-6)).unwrap();
+        assert!(words.contains("the setpoint swings on"), "{words}");
     }
 
     #[test]
@@ -111,11 +133,8 @@ mod tests {
         assert_eq!(said(|_| 0.0), None);
         assert_eq!(said(wave(150.0, 0.4e-6)), None);
         assert_eq!(said(wave(30.0, 40.0e-6)), None);
-        let smooth = two_sines(6000);
-        let count = 20.0e-6;
-        assert_eq!(
-            said(|row| count * (smooth[row] / count).round() - smooth[row]),
-            None
-        );
+        let (smooth, count) = (two_sines(6000), 20.0e-6);
+        let rounded = |row: usize| count * (smooth[row] / count).round() - smooth[row];
+        assert_eq!(said(rounded), None);
     }
 }
