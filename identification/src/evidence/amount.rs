@@ -88,8 +88,8 @@ pub(crate) fn colour(motion: &Kinematics, signal: &[f64], mask: &[bool]) -> f64 
     of(signal, mask) / of(&impulse(motion), &vec![true; IMPULSE_ROWS])
 }
 
-/// Longest lag of [`colour`], in periods of the low-pass's cut-off: a wave that lasts for so long is
-/// no noise.
+/// Longest lag of [`colour`], in periods of the low-pass's cut-off: a wave that lasts for so long
+/// is no noise.
 const COLOUR_PERIODS: f64 = 40.0;
 
 /// Products of the samples of a mask with later ones.

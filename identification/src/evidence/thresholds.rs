@@ -177,8 +177,8 @@ pub(crate) const APART_COUNTS: f64 = 3.0;
 /// needs.
 pub(crate) const APART_SHARE: f64 = UNEXPLAINED_SHARE;
 
-/// More than this of motor − load, rms, is not left by what explains it, unless it is noise: as much
-/// as of the effort ([`LEFT_PERCENT`]).
+/// More than this of motor − load, rms, is not left by what explains it, unless it is noise: as
+/// much as of the effort ([`LEFT_PERCENT`]).
 pub(crate) const APART_LEFT: f64 = 0.01 * LEFT_PERCENT;
 
 /// Noise has an autocorrelation as short as the low-pass makes it; that of what slips, warms or

@@ -23,8 +23,8 @@ impl Plain {
     }
 
     /// The moved mass, motor and load: that of the usual model, or more where the load's own
-    /// acceleration was measured and says so. A load that waits in a gap or swings on a spring takes
-    /// a part of its mass out of what goes with the motor.
+    /// acceleration was measured and says so. A load that waits in a gap or swings on a spring
+    /// takes a part of its mass out of what goes with the motor.
     #[must_use]
     pub(crate) fn moved_mass(motion: &Kinematics) -> f64 {
         let beside = [None, motion.load_acceleration.as_deref()];

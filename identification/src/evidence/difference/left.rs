@@ -4,10 +4,11 @@
 //! transmitted force (a spring that stiffens, a hysteresis), the position (a screw, a scale) and
 //! the time (a coupling that slips, a part that warms). Each is a set of functions of the motion,
 //! fitted to the residual and judged on held-out blocks. What they take away there is structure, in
-//! counts of the coarser encoder. A coupling that slips in jumps is no function of time, and neither
-//! is a loop that oscillates; but then much of motor − load is left, slower than noise or as a wave.
-//! The time is asked where nothing else goes with it. The transmitted force is the one that winds the spring up; without a spring the one that the
-//! motion predicts. A gap that a spring has swallowed shows as a step over that force.
+//! counts of the coarser encoder. A coupling that slips in jumps is no function of time, and
+//! neither is a loop that oscillates; but then much of motor − load is left, slower than noise or
+//! as a wave. The time is asked where nothing else goes with it. The transmitted force is the one
+//! that winds the spring up; without a spring the one that the motion predicts. A gap that a spring
+//! has swallowed shows as a step over that force.
 
 use super::columns::{Apart, of_motor};
 use crate::evidence::amount::{about_mean, colour};
