@@ -66,11 +66,14 @@ pub(crate) fn about_mean(signal: &[f64], mask: &[bool]) -> f64 {
     rms(&apart, mask)
 }
 
-/// Correlation time of a low-passed signal over that of low-passed white noise.
+/// Correlation time of a low-passed signal over that of low-passed white noise: the sum of the
+/// autocorrelation up to its first zero.
 pub(crate) fn slowness(motion: &Kinematics, signal: &[f64], mask: &[bool]) -> f64 {
-    let impulse = impulse(motion);
-    let everywhere = vec![true; IMPULSE_ROWS];
-    correlation_rows(signal, mask) / correlation_rows(&impulse, &everywhere)
+    over_noise(motion, signal, mask, |signal, mask| {
+        let ratios = autocorrelation(signal, mask);
+        let positive = ratios.take_while(|ratio| *ratio > 0.0);
+        positive.sum::<f64>().max(1.0)
+    })
 }
 
 /// The sum of the squares of the autocorrelation of a low-passed signal over that of low-passed
@@ -78,55 +81,41 @@ pub(crate) fn slowness(motion: &Kinematics, signal: &[f64], mask: &[bool]) -> f6
 /// (the number of independent samples falls so: Bartlett, JRSS 98, 1935).
 pub(crate) fn colour(motion: &Kinematics, signal: &[f64], mask: &[bool]) -> f64 {
     let lags = (COLOUR_PERIODS / (motion.filter.cutoff_hz * motion.period_s)) as usize;
-    let of = |signal: &[f64], mask: &[bool]| {
-        let correlation = Autocorrelation { signal, mask };
-        let whole = correlation.at(0).max(f64::MIN_POSITIVE);
-        let lags = lags.min(signal.len() / 20).max(1);
-        let ratios = (0..lags).map(|lag| correlation.at(lag) / whole);
+    over_noise(motion, signal, mask, |signal, mask| {
+        let ratios = autocorrelation(signal, mask).take(lags.max(1));
         ratios.map(|ratio| ratio.powi(2)).sum::<f64>()
-    };
-    of(signal, mask) / of(&impulse(motion), &vec![true; IMPULSE_ROWS])
+    })
 }
 
 /// Longest lag of [`colour`], in periods of the low-pass's cut-off: a wave that lasts for so long
 /// is no noise.
 const COLOUR_PERIODS: f64 = 40.0;
 
-/// Products of the samples of a mask with later ones.
-struct Autocorrelation<'a> {
-    signal: &'a [f64],
-    mask: &'a [bool],
+/// What is measured on a signal, over the same of the impulse response of a record's low-pass: that
+/// is as slow and as coloured as white noise behind it.
+fn over_noise(
+    motion: &Kinematics,
+    signal: &[f64],
+    mask: &[bool],
+    measured: impl Fn(&[f64], &[bool]) -> f64,
+) -> f64 {
+    let mut impulse = vec![0.0; IMPULSE_ROWS];
+    impulse[IMPULSE_ROWS / 2] = 1.0;
+    let response = motion.filter.apply(&impulse);
+    measured(signal, mask) / measured(&response, &vec![true; IMPULSE_ROWS])
 }
 
-impl Autocorrelation<'_> {
-    /// The mean product over a lag.
-    fn at(&self, lag: usize) -> f64 {
-        let (signal, mask) = (self.signal, self.mask);
+/// The mean products of the samples of a mask with later ones, over those with themselves: by lag,
+/// up to a twentieth of the signal.
+fn autocorrelation(signal: &[f64], mask: &[bool]) -> impl Iterator<Item = f64> {
+    let at = |lag: usize| {
         let pairs = (0..signal.len() - lag).filter(|row| mask[*row] && mask[row + lag]);
         let products = pairs.map(|row| (signal[row] * signal[row + lag], 1.0));
         let (sum, count) = products.fold((0.0, 0.0), |(s, n), (p, one)| (s + p, n + one));
         sum / f64::max(count, 1.0)
-    }
-}
-
-/// Correlation time in rows: the sum of the autocorrelation up to its first zero.
-fn correlation_rows(signal: &[f64], mask: &[bool]) -> f64 {
-    let correlation = Autocorrelation { signal, mask };
-    let whole = correlation.at(0).max(f64::MIN_POSITIVE);
-    let longest = signal.len() / 20;
-    let ratios = (0..longest).map(|lag| correlation.at(lag) / whole);
-    ratios
-        .take_while(|ratio| *ratio > 0.0)
-        .sum::<f64>()
-        .max(1.0)
-}
-
-/// The impulse response of a record's low-pass: it is as slow and as coloured as white noise behind
-/// it.
-fn impulse(motion: &Kinematics) -> Vec<f64> {
-    let mut impulse = vec![0.0; IMPULSE_ROWS];
-    impulse[IMPULSE_ROWS / 2] = 1.0;
-    motion.filter.apply(&impulse)
+    };
+    let whole = at(0).max(f64::MIN_POSITIVE);
+    (0..signal.len() / 20).map(move |lag| at(lag) / whole)
 }
 
 /// Rows in which the impulse of a low-pass of a tenth of the sample rate, or of 20 Hz at 1 kHz, has

@@ -67,7 +67,7 @@ pub(crate) fn reason(
 ) -> Option<Reason> {
     let wave = Wave::of(motion, &record.position)?;
     let inside: Vec<bool> = (0..motion.len()).map(|row| motion.is_inside(row)).collect();
-    let slower = rms(&motion.low_passed(&motion.acceleration), &inside);
+    let slower = rms(&motion.acceleration_lp, &inside);
     if wave.left >= WAVE_LEFT || wave.acceleration() <= OSCILLATION * slower {
         return None;
     }

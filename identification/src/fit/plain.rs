@@ -27,9 +27,10 @@ impl Plain {
     /// takes a part of its mass out of what goes with the motor.
     #[must_use]
     pub(crate) fn moved_mass(motion: &Kinematics) -> f64 {
-        let beside = [None, motion.load_acceleration.as_deref()];
-        let masses = beside.map(|more| Self::beside(motion, more).inertia);
-        masses.into_iter().fold(f64::NEG_INFINITY, f64::max)
+        let usual = Self::fit(motion).inertia;
+        let own = motion.load_acceleration.as_deref();
+        let both = own.map(|own| Self::beside(motion, Some(own)).inertia);
+        both.map_or(usual, |both| both.max(usual))
     }
 
     fn beside(motion: &Kinematics, more: Option<&[f64]>) -> Self {
