@@ -1,5 +1,5 @@
-//! Writes what `commission` records of the machines with a gap beside a compliance: `cargo run -p
-//! hil-tests --example gaps -- DIR [SEED…]`.
+//! Writes what `commission` records of the machines with a gap beside a compliance, those of the
+//! grid or of any seeds: `cargo run -p hil-tests --example gaps -- DIR [SEED…]`.
 
 use std::path::PathBuf;
 
@@ -14,9 +14,15 @@ fn main() -> Outcome<()> {
         eprintln!("usage: gaps DIR [SEED…]");
         std::process::exit(2);
     };
-    let asked: Vec<u64> = arguments.filter_map(|seed| seed.parse().ok()).collect();
-    let is_asked = |seed: &u64| asked.is_empty() || asked.contains(seed);
-    for seed in SEEDS.into_iter().filter(is_asked) {
+    let seed = |text: String| {
+        text.parse().unwrap_or_else(|_| {
+            eprintln!("gaps: a seed is a whole number from 0 on, not {text}");
+            std::process::exit(2);
+        })
+    };
+    let asked: Vec<u64> = arguments.map(seed).collect();
+    let seeds = if asked.is_empty() { &SEEDS[..] } else { &asked };
+    for seed in seeds.iter().copied() {
         let machine = declaring_compliance(machine(seed, &GAPS_UM), true);
         let out = folder.join(seed.to_string());
         std::fs::create_dir_all(&out).expect("the folder can be made");
