@@ -3,6 +3,7 @@
 pub(crate) mod bodies;
 pub(crate) mod butterworth;
 pub(crate) mod derivatives;
+pub(crate) mod dot;
 pub(crate) mod excitation;
 pub(crate) mod filter;
 pub(crate) mod kinematics;

@@ -2,12 +2,14 @@
 //!
 //! A search tries hundreds of columns beside the same others. Their products with each other are
 //! the same every time, so they are summed once; a column that is tried only needs those with
-//! itself. Every entry of a Gram matrix is summed over the rows in their order, with or without
-//! company: it does not depend on what was gathered and what is tried.
+//! itself. Every entry of a Gram matrix is the dot product of two columns, with or without company:
+//! it does not depend on what was gathered and what is tried.
 
 use std::ops::Range;
 
 use nalgebra::DMatrix;
+
+use crate::motion::dot::dot;
 
 /// Length of a block, s.
 const BLOCK_S: f64 = 1.0;
@@ -19,10 +21,8 @@ pub(crate) const FOLDS: usize = 10;
 /// The rows of some columns and a target.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
-    /// Number of columns, the target included.
-    width: usize,
-    /// `[columns, target]` of the gathered rows, one row after the other.
-    values: Vec<f64>,
+    /// `[columns, target]` at the gathered rows.
+    columns: Vec<Vec<f64>>,
     /// Where the gathered rows stand in the record.
     places: Vec<usize>,
     /// The gathered rows of each block that has any.
@@ -37,15 +37,11 @@ impl Rows {
     pub(crate) fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
         let (places, blocks) = places(mask, period_s);
         let all: Vec<&[f64]> = columns.iter().copied().chain([target]).collect();
-        let (width, values) = (all.len(), gathered(&all, &places));
-        let gram = |block: &Range<usize>| {
-            let rows = &values[block.start * width..block.end * width];
-            products(rows, width, rows, width)
-        };
+        let columns = gathered(&all, &places);
+        let gram = |block: &Range<usize>| products(&columns, &columns, block);
         Self {
             grams: blocks.iter().map(gram).collect(),
-            width,
-            values,
+            columns,
             places,
             blocks,
         }
@@ -54,7 +50,7 @@ impl Rows {
     /// Number of columns, the target included.
     #[must_use]
     pub(crate) const fn width(&self) -> usize {
-        self.width
+        self.columns.len()
     }
 
     /// Gram matrices of `[columns, target]`, one per block.
@@ -67,14 +63,12 @@ impl Rows {
     #[must_use]
     pub(crate) fn grams_with(&self, more: &[Vec<f64>]) -> Vec<DMatrix<f64>> {
         let more: Vec<&[f64]> = more.iter().map(Vec::as_slice).collect();
-        let (width, values) = (more.len(), gathered(&more, &self.places));
+        let more = gathered(&more, &self.places);
         let pairs = self.blocks.iter().zip(&self.grams);
         pairs
             .map(|(block, gram)| {
-                let known = &self.values[block.start * self.width..block.end * self.width];
-                let own = &values[block.start * width..block.end * width];
-                let beside = products(own, width, known, self.width);
-                let among = products(own, width, own, width);
+                let beside = products(&more, &self.columns, block);
+                let among = products(&more, &more, block);
                 inserted(gram, &beside, &among)
             })
             .collect()
@@ -98,29 +92,17 @@ fn places(mask: &[bool], period_s: f64) -> (Vec<usize>, Vec<Range<usize>>) {
     (places, blocks)
 }
 
-/// The values of columns at some places, one row after the other.
-fn gathered(columns: &[&[f64]], places: &[usize]) -> Vec<f64> {
-    let mut values = vec![0.0; columns.len() * places.len()];
-    for (at, column) in columns.iter().enumerate() {
-        let into = values.iter_mut().skip(at).step_by(columns.len());
-        into.zip(places)
-            .for_each(|(value, place)| *value = column[*place]);
-    }
-    values
+/// The values of columns at some places.
+fn gathered(columns: &[&[f64]], places: &[usize]) -> Vec<Vec<f64>> {
+    let at_places = |column: &&[f64]| places.iter().map(|place| column[*place]).collect();
+    columns.iter().map(at_places).collect()
 }
 
-/// Sums over the rows of the product of each column of one table with each of another.
-fn products(one: &[f64], width: usize, other: &[f64], other_width: usize) -> DMatrix<f64> {
-    let mut sums = vec![0.0; width * other_width];
-    if width > 0 {
-        for (row, other) in one.chunks_exact(width).zip(other.chunks_exact(other_width)) {
-            for (value, sums) in row.iter().zip(sums.chunks_exact_mut(other_width)) {
-                let pairs = sums.iter_mut().zip(other);
-                pairs.for_each(|(sum, other)| *sum += value * other);
-            }
-        }
-    }
-    DMatrix::from_row_slice(width, other_width, &sums)
+/// Dot products, over the rows of a block, of each column of one table with each of another.
+fn products(one: &[Vec<f64>], other: &[Vec<f64>], block: &Range<usize>) -> DMatrix<f64> {
+    DMatrix::from_fn(one.len(), other.len(), |i, j| {
+        dot(&one[i][block.clone()], &other[j][block.clone()])
+    })
 }
 
 /// A Gram matrix with more columns before its last one, by their products with what is there and

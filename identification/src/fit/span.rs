@@ -4,6 +4,8 @@
 //! Mathematics with Applications 50, 2005). A column that lies in the span of earlier ones adds
 //! nothing, so equal and nearly equal columns do no harm.
 
+use crate::motion::dot::dot;
+
 /// A column of which less than this share stands outside of the span is in it.
 const OUTSIDE: f64 = 1.0e-3;
 
@@ -71,10 +73,6 @@ impl<'a> Span<'a> {
             .map(|(value, inside)| if *inside { *value } else { 0.0 })
             .collect()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn norm(signal: &[f64]) -> f64 {

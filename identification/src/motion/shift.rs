@@ -7,39 +7,28 @@ pub(crate) fn shifted(column: &[f64], by: f64) -> Vec<f64> {
     if by == 0.0 || column.len() < 4 {
         return column.to_vec();
     }
-    let rows = 0..column.len();
-    rows.map(|row| Seen::of(row, by, column.len()).value(column))
-        .collect()
+    Later::of(by).applied(column)
 }
 
 /// The same for several signals of one length.
 #[must_use]
 pub(crate) fn all_shifted(columns: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
-    let rows = columns.first().map_or(0, Vec::len);
-    if by == 0.0 || rows < 4 {
-        return columns.to_vec();
-    }
-    // The weights are the same for each.
-    let seen: Vec<Seen> = (0..rows).map(|row| Seen::of(row, by, rows)).collect();
-    let shifted = |column: &Vec<f64>| seen.iter().map(|seen| seen.value(column)).collect();
-    columns.iter().map(shifted).collect()
+    columns.iter().map(|column| shifted(column, by)).collect()
 }
 
-/// Where a row is seen: between the second and the third of four rows.
-struct Seen {
-    first: usize,
+/// Where rows are seen: between the second and the third of four rows, at the same place between
+/// them for every row.
+struct Later {
+    /// From a row to the first of the four that it is seen among.
+    first: isize,
     weights: [f64; 4],
 }
 
-impl Seen {
-    fn of(row: usize, by: f64, rows: usize) -> Self {
-        let last = rows - 3;
-        let at = (row as f64 + by).clamp(1.0, last as f64);
-        // It is at least one: the whole part is its floor.
-        let base = (at as usize).clamp(1, last);
-        let u = at - base as f64;
+impl Later {
+    fn of(by: f64) -> Self {
+        let u = by - by.floor();
         Self {
-            first: base - 1,
+            first: (by.floor() - 1.0) as isize,
             weights: [
                 -u * (u - 1.0) * (u - 2.0) / 6.0,
                 (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0,
@@ -49,8 +38,20 @@ impl Seen {
         }
     }
 
-    fn value(&self, column: &[f64]) -> f64 {
-        let near = &column[self.first..self.first + 4];
+    /// A column seen so; beyond its ends the value at the second row, or at the last but two.
+    fn applied(&self, column: &[f64]) -> Vec<f64> {
+        let rows = column.len();
+        let seen = column.array_windows().map(|near| self.value(near));
+        // Row r is seen by the window that begins at r + first; there are rows - 3 of them.
+        let before = self.first.saturating_neg().clamp(0, rows as isize) as usize;
+        let skipped = self.first.max(0) as usize;
+        let mut values = vec![column[1]; before];
+        values.extend(seen.skip(skipped).take(rows - before));
+        values.resize(rows, column[rows - 3]);
+        values
+    }
+
+    fn value(&self, near: &[f64; 4]) -> f64 {
         let [a, b, c, d] = self.weights;
         a * near[0] + b * near[1] + c * near[2] + d * near[3]
     }

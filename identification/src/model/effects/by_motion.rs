@@ -14,6 +14,7 @@ use nalgebra::DMatrix;
 use axis_model::EffectName;
 
 use crate::model::name::Called;
+use crate::motion::dot::dot;
 use crate::motion::kinematics::Kinematics;
 
 /// Number of the usual columns.
@@ -203,10 +204,6 @@ fn with_rows(column: &[f64], rows: &[Row]) -> Row {
         pairs.for_each(|(sum, other)| *sum += value * other);
     }
     sums
-}
-
-fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 /// Singular values below this share of the largest are none: rounding of a sum over 10⁵ rows.
