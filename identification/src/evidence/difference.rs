@@ -638,13 +638,14 @@ impl Difference {
         self.stiffness.is_some_and(is_vague)
     }
 
-    /// What no accepted effect explains; impacts between rigid flanks are excused.
+    /// What no accepted effect explains, with the unit of millionths of a position; impacts between
+    /// rigid flanks are excused.
     #[must_use]
-    pub(crate) fn reason(&self) -> Option<Reason> {
+    pub(crate) fn reason(&self, unit: &str) -> Option<Reason> {
         let Left { over, rms } = self.left.filter(|_| !self.is_impacts())?;
         Some(Reason::unexplained(format!(
-            "motor − load that goes with {over} ({:.2} µm rms) otherwise than by a gap, a stiffness \
-             or a pitch error",
+            "motor − load that goes with {over} ({:.2} {unit} rms) otherwise than by a gap, a \
+             stiffness or a pitch error",
             1.0e6 * rms
         )))
     }
@@ -914,7 +915,7 @@ mod tests {
             after_um,
             ..Difference::with_structure()
         };
-        let is_told = |after_um, way| left(after_um, way).reason().is_some();
+        let is_told = |after_um, way| left(after_um, way).reason("µm").is_some();
         assert!(!is_told(5.0, Way::Play(behind)) && is_told(5.1, Way::Play(behind)));
         assert!(is_told(0.1, Way::Constant));
     }

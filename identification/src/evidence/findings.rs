@@ -99,7 +99,7 @@ impl Stages {
         let doubt = self.reversals.doubtful_gap();
         reasons.extend(doubt.map(|gap| Reason::unexplained(gap.words(length))));
         let difference = self.difference.as_ref();
-        reasons.extend(difference.and_then(Difference::reason));
+        reasons.extend(difference.and_then(|difference| difference.reason(length)));
         reasons
     }
 }
