@@ -1,8 +1,8 @@
 //! Which records of unlike make a scope runs.
 //!
-//! `certify` runs all of them, `test` one of every third make with the forms in rotation and some
-//! of the other tables, `quick` a handful. One of every make would take a minute more on two cores,
-//! and `cargo test` has none to spare. Records that are held back are in none of these lists.
+//! `certify` runs all of them, `test` one of every make and form (hidden, empty and declared; with
+//! the validation record of another day every third make) and some of the other tables, `quick` a
+//! handful. Records that are held back are in none of these lists.
 
 use makes::Recipe;
 use makes::make::Form;
@@ -43,22 +43,13 @@ pub fn chosen() -> Vec<Recipe> {
 #[must_use]
 pub fn chosen_of(table: &str) -> Vec<Recipe> {
     let all = of_table(table);
-    let (quick, test) = match table {
-        "makes" => (2, all.len() / Form::ALL.len() / 3),
-        "clean" => (1, 2),
-        "outside" => (1, 3),
-        once if ONCE_HELD_BACK.contains(&once) => (1, 2),
-        _ => (2, 6),
-    };
-    let count = Scope::now().pick(quick, test, all.len());
+    let places = places(table, Scope::now(), all.len());
     println!(
-        "{table}: {count} of {} records (scope {:?})",
+        "{table}: {} of {} records (scope {:?})",
+        places.len(),
         all.len(),
         Scope::now()
     );
-    let places: Vec<usize> = (0..count)
-        .map(|row| place(table, row, count, all.len()))
-        .collect();
     let chosen = all.into_iter().enumerate();
     chosen
         .filter(|(place, _)| places.contains(place))
@@ -66,56 +57,58 @@ pub fn chosen_of(table: &str) -> Vec<Recipe> {
         .collect()
 }
 
-/// Place of the row-th of `count` records that are spread over a table. The forms of a make stand
-/// together, so that one more for each row makes them rotate.
-fn place(table: &str, row: usize, count: usize, all: usize) -> usize {
-    let spread = row * all / count;
-    let is_one_of_forms = table == "makes" && count < all;
-    spread
-        + if is_one_of_forms {
-            row % Form::ALL.len()
-        } else {
-            0
-        }
+/// Which of so many records of a table a scope runs: their places.
+fn places(table: &str, scope: Scope, all: usize) -> Vec<usize> {
+    if table == "makes" && scope == Scope::Test {
+        return (0..all).filter(|place| is_of_every_test(*place)).collect();
+    }
+    let (quick, test) = match table {
+        "makes" => (2, all),
+        "clean" => (1, 2),
+        "outside" => (1, 3),
+        once if ONCE_HELD_BACK.contains(&once) => (1, 2),
+        _ => (2, 6),
+    };
+    let count = scope.pick(quick, test, all);
+    (0..count).map(|row| row * all / count).collect()
+}
+
+/// The forms of a make stand together, another day's the last. Its training record is that of the
+/// hidden form, so every third make is enough.
+const fn is_of_every_test(place: usize) -> bool {
+    let (make, form) = (place / Form::ALL.len(), place % Form::ALL.len());
+    form + 1 < Form::ALL.len() || make.is_multiple_of(3)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
+    use makes::make;
 
     #[test]
-    fn a_record_of_every_third_make_with_the_forms_in_rotation_covers_makes_and_forms() {
+    fn a_test_runs_a_record_of_every_make_and_form_and_another_day_of_every_third_make() {
         let all = of_table("makes");
-        let makes = all.len() / 4 / 3;
-        let places: BTreeSet<usize> = (0..makes)
-            .map(|row| place("makes", row, makes, all.len()))
-            .collect();
-        assert_eq!(places.len(), makes);
-        assert_eq!(
-            places
-                .iter()
-                .map(|place| place / 4)
-                .collect::<BTreeSet<_>>()
-                .len(),
-            makes
-        );
-        assert_eq!(
-            places
-                .iter()
-                .map(|place| place % 4)
-                .collect::<BTreeSet<_>>()
-                .len(),
-            4
-        );
+        let chosen = places("makes", Scope::Test, all.len());
+        let chosen = chosen.into_iter().map(|place| all[place].name.clone());
+        let wanted = make::all()
+            .into_iter()
+            .enumerate()
+            .flat_map(|(place, make)| {
+                let forms = [Form::Hidden, Form::Empty, Form::Declared].into_iter();
+                let forms = forms.chain((place % 3 == 0).then_some(Form::AnotherDay));
+                forms.map(move |form| make.record_name(form))
+            });
+        assert_eq!(chosen.collect::<Vec<_>>(), wanted.collect::<Vec<_>>());
     }
 
     #[test]
-    fn the_whole_table_is_in_its_order() {
+    fn a_table_is_whole_where_everything_is_certified_and_spread_where_it_is_not() {
         for table in TABLES {
-            let places: Vec<usize> = (0..9).map(|row| place(table, row, 9, 9)).collect();
-            assert_eq!(places, (0..9).collect::<Vec<_>>());
+            let whole: Vec<usize> = (0..40).collect();
+            assert_eq!(places(table, Scope::Certify, 40), whole);
+            assert_eq!(places(table, Scope::Quick, 40)[0], 0);
         }
+        assert_eq!(places("clean", Scope::Test, 40), [0, 20]);
     }
 
     #[test]
