@@ -1,12 +1,14 @@
-//! How the identification scales: `cargo bench -p hil-tests --bench identification`.
+//! How the identification scales: `cargo bench -p hil-tests --bench identification [-- DIR…]`.
 //!
 //! One axis with a Stribeck fall, ripple and presliding, recorded for longer and longer: so many
 //! rows for training and as many for validation, through files, with everything written that
 //! `identify DIR --out` writes. Every candidate is scored, every shape of reversal fitted.
 //! Screening is everything on the inverse model; the whole adds the free-run fits, the judgement of
 //! all rows and the files. All cores that the process may use (`taskset -c 0,1` for two).
+//!
+//! DIR is the folder of a dataset: with any, those are measured instead.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hil_tests::records::Hidden::{Presliding, Stribeck, TorqueRipple};
@@ -18,6 +20,8 @@ const ROWS: [usize; 4] = [25_000, 100_000, 400_000, 1_000_000];
 
 /// What an identification took.
 struct Cost {
+    /// Of the training record.
+    rows: usize,
     read_s: f64,
     screening_s: f64,
     whole_s: f64,
@@ -28,24 +32,39 @@ struct Cost {
 }
 
 fn main() {
+    let arguments = std::env::args_os().skip(1);
+    let folders = arguments.filter(|argument| argument != "--bench");
+    let folders: Vec<PathBuf> = folders.map(PathBuf::from).collect();
     println!(
-        "| rows | reading, s | screening, s | whole, s | per 25 000 rows, s | all cores, s | peak memory, MB | found |\n|---|---|---|---|---|---|---|---|"
+        "| record | rows | reading, s | screening, s | whole, s | screening per 25 000 rows, s | whole per 25 000 rows, s | all cores, s | peak memory, MB | found |\n|---|---|---|---|---|---|---|---|---|---|"
     );
-    for rows in ROWS {
-        let folder = tempfile::tempdir().expect("a temporary folder can be made");
-        write_record(folder.path(), rows);
-        let cost = cost(folder.path());
-        println!(
-            "| {rows} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.0} | {} |",
-            cost.read_s,
-            cost.screening_s,
-            cost.whole_s,
-            cost.whole_s * 25_000.0 / rows as f64,
-            cost.cores_s,
-            cost.peak_mb,
-            cost.found.join(", ")
-        );
+    for folder in &folders {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        print(&name, &cost(folder));
     }
+    if folders.is_empty() {
+        for rows in ROWS {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            write_record(folder.path(), rows);
+            print("ripple and presliding", &cost(folder.path()));
+        }
+    }
+}
+
+fn print(name: &str, cost: &Cost) {
+    let of_25_000 = 25_000.0 / cost.rows as f64;
+    println!(
+        "| {name} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.0} | {} |",
+        cost.rows,
+        cost.read_s,
+        cost.screening_s,
+        cost.whole_s,
+        cost.screening_s * of_25_000,
+        cost.whole_s * of_25_000,
+        cost.cores_s,
+        cost.peak_mb,
+        cost.found.join(", ")
+    );
 }
 
 fn write_record(folder: &Path, rows: usize) {
@@ -74,7 +93,7 @@ fn write_record(folder: &Path, rows: usize) {
 fn cost(folder: &Path) -> Cost {
     forget_peak();
     let (start, cores_s) = (Instant::now(), cores_s());
-    let dataset = Dataset::read(folder, None, None).expect("the record is good");
+    let dataset = Dataset::read(folder, None, None).unwrap_or_else(|why| panic!("{why}"));
     let read_s = start.elapsed().as_secs_f64();
     let mut screening_s = 0.0;
     let result = identify(&dataset, &mut |step| {
@@ -82,9 +101,11 @@ fn cost(folder: &Path) -> Cost {
             screening_s = start.elapsed().as_secs_f64() - read_s;
         }
     })
-    .expect("the record is good");
-    write_folder(&folder.join("out"), &dataset, &result).expect("the folder can be written");
+    .unwrap_or_else(|why| panic!("{why}"));
+    let out = tempfile::tempdir().expect("a temporary folder can be made");
+    write_folder(out.path(), &dataset, &result).expect("the folder can be written");
     Cost {
+        rows: dataset.train.len(),
         read_s,
         screening_s,
         whole_s: start.elapsed().as_secs_f64(),
