@@ -76,7 +76,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
     let mut own = vec![
         (
             "load_inertia",
-            known(told.mass, format!("{effort} s^2/{length}")),
+            known(told.mass, format!("{effort} s2/{length}")),
         ),
         (
             "compliance_stiffness",

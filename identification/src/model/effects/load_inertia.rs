@@ -35,7 +35,7 @@ impl Effect for LoadInertia {
         vec![naming.coefficient(
             "load_inertia",
             0,
-            naming.effort_unit(&format!(" s^2/{}", naming.length())),
+            naming.effort_unit(&format!(" s2/{}", naming.length())),
         )]
     }
 }
