@@ -291,6 +291,7 @@ mod tests {
         Dataset {
             name: "long".into(),
             kind: AxisKind::Linear,
+            moving_velocity: 1.0e-3,
             effort: Effort::Force,
             hold: EffortHold::Instant,
             effort_lag_s: 0.0,

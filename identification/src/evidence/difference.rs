@@ -150,7 +150,7 @@ pub(crate) fn settled(
     };
     let raw = apart.cleared(&difference.extended);
     let apart = apart.seen(&raw);
-    let unit = dataset.kind.moving_velocity();
+    let unit = dataset.moving_velocity;
     let refitted = |fitted: &FittedWays| {
         let carried = carried::instead(&apart, &fitted.ways(), unit);
         let ways = carried.unwrap_or_else(|| fitted.ways());

@@ -204,7 +204,7 @@ pub(crate) fn reversals(
 ) -> Option<Reversals> {
     let controller = Controller::of(dataset);
     let judge = Judge::of(dataset, controller);
-    let unit = dataset.kind.moving_velocity();
+    let unit = dataset.moving_velocity;
     let start = |shape: Shape| Simulated::new(dataset, judge.record.period_s, fitted, shape);
     let mut shapes = judge.shapes(dataset, &start, progress)?;
     let mut accepted = shapes.scene(dataset.resolution).decide();
@@ -254,7 +254,7 @@ impl Judge<'_> {
         start: &impl Fn(Shape) -> Option<Simulated>,
         progress: &mut dyn FnMut(&Step),
     ) -> Option<Shapes> {
-        let unit = dataset.kind.moving_velocity();
+        let unit = dataset.moving_velocity;
         progress(&Step::Rigid);
         let rigid = self.fitted(&start(Shape::default())?);
         progress(&Step::Bristle);

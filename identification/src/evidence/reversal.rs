@@ -67,7 +67,7 @@ pub(crate) fn presliding(
     }
     let observed = Observed::new(bench, fitted)?;
     let rigid = stick::error(&observed);
-    let (deflection, bristle) = bristle::best(&observed, bench.dataset.kind.moving_velocity());
+    let (deflection, bristle) = bristle::best(&observed, bench.dataset.moving_velocity);
     let t = block_t(&motion.slow, &rigid, &bristle);
     let seen = Presliding {
         rigid: rms(&rigid, &motion.slow),
@@ -94,10 +94,7 @@ pub(crate) fn gap(bench: &Bench<'_>, other: &Bench<'_>, fitted: &Fitted) -> Opti
     };
     let observed = Observed::new(bench, fitted)?;
     let elsewhere = Observed::new(other, &other.fit(fitted.model()))?;
-    let (unit, count) = (
-        bench.dataset.kind.moving_velocity(),
-        bench.dataset.resolution,
-    );
+    let (unit, count) = (bench.dataset.moving_velocity, bench.dataset.resolution);
     gap::best([&observed, &elsewhere], plant, unit, count)
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn slow_ripple(
     declared: &Model,
 ) -> Option<RippleAtReversals> {
     let revolution = dataset.revolution()?;
-    let limit = dataset.kind.moving_velocity();
+    let limit = dataset.moving_velocity;
     if dwells(&moving.velocity_lp, limit, reversals(moving)) {
         return None;
     }

@@ -24,7 +24,7 @@ pub(crate) fn warnings(dataset: &Dataset, motion: &Kinematics) -> Vec<String> {
                 .into(),
         );
     }
-    let slow_limit = 10.0 * dataset.kind.moving_velocity();
+    let slow_limit = 10.0 * dataset.moving_velocity;
     if moving(&|v| v.abs() < slow_limit) * 50 < all {
         let unit = match dataset.kind {
             AxisKind::Linear => "10 mm/s",

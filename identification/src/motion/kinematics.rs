@@ -93,7 +93,7 @@ impl Kinematics {
         let friction = bodies.with_friction();
         let effort = acting_effort(&record.effort, dataset.effort_lag_s, period_s, hold);
         let velocity_lp = filter.apply(&friction.velocity);
-        let limit = dataset.kind.moving_velocity();
+        let limit = dataset.moving_velocity;
         let motor_lp = filter.apply(&bodies.motor.velocity);
         let (moving, slow) = mask::moving_and_slow(&motor_lp, limit, period_s);
         let spoilt = mask::spoilt(record, dataset.effort_limit);
@@ -249,6 +249,7 @@ mod tests {
         Dataset {
             name: "made".into(),
             kind: AxisKind::Linear,
+            moving_velocity: 1.0e-3,
             effort: Effort::Force,
             hold: EffortHold::ZeroOrder,
             effort_lag_s: 2.0e-3,

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use crate::error::IdentificationError;
 use crate::record::extent::range;
+use crate::record::form::AxisForm;
 use crate::record::samples::Record;
 use crate::record::time_base::median_step;
-use crate::record::units::{AxisKind, Effort};
+use crate::record::units::Effort;
 
 type Outcome = Result<(), IdentificationError>;
 
@@ -113,8 +114,9 @@ pub(crate) fn effort(path: &str, which: Effort, effort: &[f64]) -> Outcome {
 }
 
 /// An axis that moves.
-pub(crate) fn motion(folder: &Path, what: &str, record: &Record, kind: AxisKind) -> Outcome {
-    let limit = kind.moving_velocity() * record.period_s * MOTION_ROWS as f64;
+pub(crate) fn motion(folder: &Path, what: &str, record: &Record, axis: &AxisForm) -> Outcome {
+    let (slowest, unit) = (axis.moving_velocity(), axis.kind.position_unit());
+    let limit = slowest * record.period_s * MOTION_ROWS as f64;
     let moves = |rows: &&[f64]| (rows[MOTION_ROWS] - rows[0]).abs() > limit;
     let moving = record
         .position
@@ -125,11 +127,9 @@ pub(crate) fn motion(folder: &Path, what: &str, record: &Record, kind: AxisKind)
         return Ok(());
     }
     Err(IdentificationError::new(format!(
-        "{}: the axis hardly moves in the {what} record ({moving} of {} rows above {} {}/s); record motion, or check the unit of the position",
+        "{}: the axis hardly moves in the {what} record ({moving} of {} rows above {slowest} {unit}/s); record motion, check the unit of the position, or state moving_above_{unit}_s under [axis] for an axis that is as slow as that",
         folder.display(),
-        record.len(),
-        kind.moving_velocity(),
-        kind.position_unit()
+        record.len()
     )))
 }
 
@@ -246,10 +246,14 @@ mod tests {
     #[test]
     fn one_row_in_twenty_must_move_by_more_than_a_millimetre_a_second() {
         let checked =
-            |record: &Record| motion(Path::new("a"), "training", record, AxisKind::Linear);
+            |record: &Record| motion(Path::new("a"), "training", record, &AxisForm::default());
         assert!(checked(&record(1.1e-3, 110, 2000)).is_ok());
         assert!(checked(&record(1.1e-3, 90, 2000)).is_err());
-        assert!(checked(&record(0.9e-3, 2000, 2000)).is_err());
+        let slow = record(0.9e-3, 2000, 2000);
+        assert!(text(checked(&slow)).contains("moving_above_m_s"));
+        // An axis that is said to be as slow as that moves.
+        let stated: AxisForm = toml::from_str("moving_above_m_s = 0.8e-3").unwrap();
+        assert!(motion(Path::new("a"), "training", &slow, &stated).is_ok());
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub struct Dataset {
     pub name: String,
     /// Kind of axis.
     pub kind: AxisKind,
+    /// Velocity above which a sample counts as moving: 1 mm/s or 0.1 rad/s where nothing is stated.
+    pub moving_velocity: f64,
     /// Which effort was recorded.
     pub effort: Effort,
     /// When the effort of a row acts.
@@ -81,7 +83,7 @@ impl Dataset {
             ("training", &records.train),
             ("validation", &records.validate),
         ] {
-            checks::motion(folder, what, record, form.axis.kind)?;
+            checks::motion(folder, what, record, &form.axis)?;
         }
         let wanted = declared.or(form.declared.as_ref().map(|d| d.effects.clone()));
         let declared = declared_effects(folder, wanted)?;
@@ -103,6 +105,7 @@ impl Dataset {
         Self {
             name: form.name.unwrap_or_else(|| folder.display().to_string()),
             kind: form.axis.kind,
+            moving_velocity: form.axis.moving_velocity(),
             effort: records.effort,
             hold: form.effort_hold,
             effort_lag_s: form.effort_lag_s.unwrap_or(0.0),

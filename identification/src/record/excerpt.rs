@@ -19,7 +19,6 @@ use std::ops::Range;
 
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
-use crate::record::units::AxisKind;
 
 /// How much of a record is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +52,7 @@ const MOVING_ROWS: usize = 200;
 #[must_use]
 pub(crate) fn excerpt(dataset: &Dataset, size: ExcerptSize) -> Option<Dataset> {
     let records = [&dataset.train, &dataset.validate];
-    let windows = records.map(|record| windows(record, dataset.kind, size));
+    let windows = records.map(|record| windows(record, dataset.moving_velocity, size));
     if windows.iter().all(Option::is_none) {
         return None;
     }
@@ -91,7 +90,7 @@ pub(crate) fn note(all: &Dataset, excerpt: &Dataset) -> String {
 }
 
 /// The windows of a record; `None` where it is short enough to be fitted whole.
-fn windows(record: &Record, kind: AxisKind, size: ExcerptSize) -> Option<Vec<Range<usize>>> {
+fn windows(record: &Record, moving_velocity: f64, size: ExcerptSize) -> Option<Vec<Range<usize>>> {
     if record.len() <= size.whole {
         return None;
     }
@@ -100,7 +99,9 @@ fn windows(record: &Record, kind: AxisKind, size: ExcerptSize) -> Option<Vec<Ran
     let in_cell = |place: usize| {
         let cell = place * cell..(place + 1) * cell;
         let starts = cell.start..=cell.end - rows;
-        let start = starts.clone().find(|row| moves(record, *row, kind));
+        let start = starts
+            .clone()
+            .find(|row| moves(record, *row, moving_velocity));
         let start = start.unwrap_or(cell.start);
         start..start + rows
     };
@@ -119,10 +120,10 @@ fn window_rows(period_s: f64, size: ExcerptSize) -> usize {
 }
 
 /// Whether the axis moves from a row on.
-fn moves(record: &Record, row: usize, kind: AxisKind) -> bool {
+fn moves(record: &Record, row: usize, moving_velocity: f64) -> bool {
     let x = &record.position;
     let last = (row + MOVING_ROWS).min(x.len() - 1);
-    let way = kind.moving_velocity() * record.period_s * MOVING_ROWS as f64;
+    let way = moving_velocity * record.period_s * MOVING_ROWS as f64;
     (x[last] - x[row]).abs() > way
 }
 
@@ -158,7 +159,7 @@ mod tests {
     };
 
     fn of(rows: usize) -> Option<Vec<Range<usize>>> {
-        windows(&record(rows), AxisKind::Linear, SMALL)
+        windows(&record(rows), 1.0e-3, SMALL)
     }
 
     #[test]
@@ -193,7 +194,7 @@ mod tests {
     fn a_cell_in_which_nothing_moves_gives_its_first_rows() {
         let mut still = record(60_000);
         still.position.fill(0.0);
-        let windows = windows(&still, AxisKind::Linear, SMALL).unwrap();
+        let windows = windows(&still, 1.0e-3, SMALL).unwrap();
         assert_eq!(windows, [0..4000, 20_000..24_000, 40_000..44_000]);
     }
 

@@ -53,9 +53,21 @@ pub(crate) struct AxisForm {
     encoder_resolution_rad: Option<f64>,
     load_encoder_resolution_m: Option<f64>,
     load_encoder_resolution_rad: Option<f64>,
+    moving_above_m_s: Option<f64>,
+    moving_above_rad_s: Option<f64>,
 }
 
 impl AxisForm {
+    /// Velocity above which a sample counts as moving, in the unit of the axis: stated, or that of
+    /// its kind.
+    pub(crate) fn moving_velocity(&self) -> f64 {
+        let stated = match self.kind {
+            AxisKind::Linear => self.moving_above_m_s,
+            AxisKind::Rotary => self.moving_above_rad_s,
+        };
+        stated.unwrap_or(self.kind.moving_velocity())
+    }
+
     /// Resolution of the motor encoder and of the load scale, in the unit of the axis.
     pub(crate) fn resolutions(&self) -> (Option<f64>, Option<f64>) {
         match self.kind {
@@ -120,7 +132,7 @@ const fn number(section: &'static str, key: &'static str, low: f64, high: f64) -
 /// Every number, in the order in which they are checked. The ranges are wide: they catch a wrong
 /// unit (milliseconds, millimetres), not an unusual machine.
 #[rustfmt::skip]
-pub(crate) const NUMBERS: [Number; 14] = [
+pub(crate) const NUMBERS: [Number; 16] = [
     number("", "sample_period_s", 1.0e-6, 1.0),
     number("", "effort_lag_s", 0.0, 0.1),
     number("axis", "lead_m_per_rev", 1.0e-5, 1.0),
@@ -128,6 +140,8 @@ pub(crate) const NUMBERS: [Number; 14] = [
     number("axis", "encoder_resolution_rad", 0.0, 1.0),
     number("axis", "load_encoder_resolution_m", 0.0, 1.0e-2),
     number("axis", "load_encoder_resolution_rad", 0.0, 1.0),
+    number("axis", "moving_above_m_s", 1.0e-7, 0.1),
+    number("axis", "moving_above_rad_s", 1.0e-6, 10.0),
     number("controller", "position_gain_per_s", 0.0, 1.0e6),
     number("controller", "velocity_gain_n_s_per_m", 0.0, 1.0e12),
     number("controller", "velocity_gain_v_s_per_m", 0.0, 1.0e12),
@@ -241,6 +255,18 @@ mod tests {
     fn what_is_no_toml_is_named_with_its_line() {
         let error = form("name = \"a\"\neffort_hold = \"first\"\n").unwrap_err();
         assert!(error.to_string().contains("dataset.toml:2:"), "{error}");
+    }
+
+    #[test]
+    fn an_axis_moves_from_what_is_stated_on_or_from_what_is_usual_for_its_kind() {
+        let text = "[axis]\nmoving_above_m_s = 1e-4\nmoving_above_rad_s = 0.02\n";
+        let of = |text: &str| form(text).unwrap().0.axis.moving_velocity();
+        assert_eq!(of(text), 1.0e-4);
+        assert_eq!(of(&format!("{text}kind = \"rotary\"\n")), 0.02);
+        assert_eq!(of(""), 1.0e-3);
+        assert_eq!(of("[axis]\nkind = \"rotary\"\n"), 0.1);
+        let error = form("[axis]\nmoving_above_m_s = 0\n").unwrap_err();
+        assert!(error.to_string().contains("moving_above_m_s"), "{error}");
     }
 
     #[test]

@@ -25,7 +25,6 @@ use std::ops::Range;
 use crate::record::outliers::balance::Balance;
 use crate::record::outliers::excursion::{Excursion, excursions};
 use crate::record::time_base::Rows;
-use crate::record::units::AxisKind;
 
 /// More rows than this share stand out by the nature of the axis or of its drive, and are no
 /// outliers. It is half of what the scale of an excursion leaves above it.
@@ -94,7 +93,7 @@ impl Column {
 }
 
 /// Finds the outliers of a file's rows, bridges them and marks them. What was found, by column.
-pub(crate) fn leave_out(rows: &mut Rows, kind: AxisKind) -> Vec<Outliers> {
+pub(crate) fn leave_out(rows: &mut Rows, moving_velocity: f64) -> Vec<Outliers> {
     let standing_out = COLUMNS.map(|column| {
         let values = column.of(rows);
         values.map_or_else(Vec::new, |values| excursions(&rows.time_s, values))
@@ -108,7 +107,13 @@ pub(crate) fn leave_out(rows: &mut Rows, kind: AxisKind) -> Vec<Outliers> {
     for _ in 0..2 {
         for ((column, excursions), found) in COLUMNS.into_iter().zip(&standing_out).zip(&mut found)
         {
-            let more = impossible(&mended, column, excursions, found, (&standing_out, kind));
+            let more = impossible(
+                &mended,
+                column,
+                excursions,
+                found,
+                (&standing_out, moving_velocity),
+            );
             mend(&mut mended, column, &more);
             found.extend(more);
         }
@@ -125,13 +130,13 @@ fn impossible(
     column: Column,
     excursions: &[Excursion],
     known: &[Range<usize>],
-    (standing_out, kind): (&[Vec<Excursion>; 3], AxisKind),
+    (standing_out, moving_velocity): (&[Vec<Excursion>; 3], f64),
 ) -> Vec<Range<usize>> {
     let open = |one: &&Excursion| !known.contains(&one.rows);
     if !excursions.iter().any(|one| open(&one)) {
         return Vec::new();
     }
-    let balance = Balance::of(rows, &standing_out.concat(), kind);
+    let balance = Balance::of(rows, &standing_out.concat(), moving_velocity);
     let cannot = |one: &&Excursion| match column {
         Column::Effort => balance.has_no_such_effort(rows, one),
         Column::Position | Column::Load => balance.has_no_such_motion(rows, one),
@@ -226,7 +231,7 @@ mod tests {
     }
 
     fn found(rows: &mut Rows) -> Vec<(&'static str, usize)> {
-        let outliers = leave_out(rows, AxisKind::Linear);
+        let outliers = leave_out(rows, 1.0e-3);
         assert!(outliers.iter().all(|one| one.left_out));
         outliers.iter().map(|one| (one.column, one.count)).collect()
     }
@@ -288,7 +293,7 @@ mod tests {
         (100..7900)
             .step_by(130)
             .for_each(|row| rows.position[row] += 2.0e-3);
-        let outliers = leave_out(&mut rows, AxisKind::Linear);
+        let outliers = leave_out(&mut rows, 1.0e-3);
         assert!(
             !outliers[0].left_out && outliers[0].count > 50,
             "{outliers:?}"

@@ -53,7 +53,7 @@ pub(crate) fn read(path: &Path, form: &DatasetForm, purpose: Purpose) -> Outcome
     // The other columns of the file are not needed while the record is made.
     drop(table);
     let as_recorded = rows.stamped();
-    let outliers = outliers::leave_out(&mut rows, form.axis.kind);
+    let outliers = outliers::leave_out(&mut rows, form.axis.moving_velocity());
     let record = Record {
         rows: as_recorded,
         ..uniform(rows, clock)

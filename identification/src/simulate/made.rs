@@ -33,6 +33,7 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
     Dataset {
         name: "made".into(),
         kind: AxisKind::Linear,
+        moving_velocity: 1.0e-3,
         effort: Effort::Force,
         hold: EffortHold::ZeroOrder,
         effort_lag_s: 0.0,

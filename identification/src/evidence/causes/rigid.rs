@@ -41,7 +41,7 @@ pub(crate) struct RigidFit {
 impl Rigid {
     /// The witness of a record.
     pub(crate) fn of(dataset: &Dataset, motion: &Kinematics) -> Self {
-        let limit = dataset.kind.moving_velocity();
+        let limit = dataset.moving_velocity;
         let friction: Vec<f64> = motion
             .velocity_lp
             .iter()

@@ -134,11 +134,11 @@ impl Effect for Stribeck {
     }
 
     fn start(&self, dataset: &Dataset) -> f64 {
-        5.0 * dataset.kind.moving_velocity()
+        5.0 * dataset.moving_velocity
     }
 
     fn grid(&self, _: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        let moving = setting.dataset.kind.moving_velocity();
+        let moving = setting.dataset.moving_velocity;
         geometric(0.7 * moving, 40.0 * moving, 14)
     }
 

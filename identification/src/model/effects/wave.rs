@@ -200,7 +200,7 @@ fn shortest(samples: &[Sample], setting: &Setting<'_>) -> Option<f64> {
     let mut speeds: Vec<f64> = samples.iter().map(|sample| sample.speed).collect();
     speeds.sort_by(f64::total_cmp);
     let median = speeds.get(speeds.len() / 2)?;
-    let slowest = setting.dataset.kind.moving_velocity() * SHORTEST_S;
+    let slowest = setting.dataset.moving_velocity * SHORTEST_S;
     Some((FASTEST_SCANNED_HZ / median).min(1.0 / slowest))
 }
 

@@ -11,7 +11,6 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::record::outliers::excursion::Excursion;
 use crate::record::time_base::{Rows, median_step};
-use crate::record::units::AxisKind;
 
 /// Time of a mean: two periods of the low-pass of a fit.
 const MEAN_S: f64 = 0.020;
@@ -62,12 +61,12 @@ struct Left {
 
 impl Balance {
     /// The balance of a record, without the rows that stand out.
-    pub(crate) fn of(rows: &Rows, standing_out: &[Excursion], kind: AxisKind) -> Self {
+    pub(crate) fn of(rows: &Rows, standing_out: &[Excursion], moving_velocity: f64) -> Self {
         let mut spoilt = rows.left_out.clone();
         for one in standing_out {
             spoilt[one.rows.start - 1..=one.rows.end].fill(true);
         }
-        let (model, masses) = usual_model(rows, &spoilt, kind.moving_velocity());
+        let (model, masses) = usual_model(rows, &spoilt, moving_velocity);
         let mut balance = Self {
             model,
             lightest: masses.start / LIGHTER,
