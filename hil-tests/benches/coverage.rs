@@ -4,13 +4,12 @@
 //! machine, its motion and its noise. Each parameter has so many draws (200), spread over the makes
 //! that have it; NAME takes the makes with that in their name.
 //!
-//! Per parameter: the share of the intervals that hold the truth; how far the median estimate is
-//! off, over the half of the central 95 % of the errors; the median half width over the same; how
-//! many are not reported, and how many have no interval.
+//! What the table says: [`hil_tests::intervals`].
 
 use std::collections::BTreeMap;
 
 use axis_model::{Effect, Estimate};
+use hil_tests::intervals::{self, Draw};
 use hil_tests::on_all_cores;
 use identification::{Dataset, fit_declared};
 use makes::Recipe;
@@ -25,15 +24,6 @@ const FIRST_SEED: u64 = 1001;
 /// Makes whose load is taken up and put down again: a dataset declares a payload once.
 const TWICE: [&str; 3] = ["gripper-belt", "theatre-fly", "tray-shuttle"];
 
-/// What a draw says of a parameter whose true size is given.
-struct Draw {
-    make: String,
-    name: &'static str,
-    truth: f64,
-    /// Value, and the half width of its interval.
-    said: Option<(f64, f64)>,
-}
-
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
     let draws = arguments.next().and_then(|text| text.parse().ok());
@@ -41,7 +31,7 @@ fn main() {
     let plan = plan(draws.unwrap_or(DRAWS), &part);
     eprintln!("{} records", plan.len());
     let drawn: Vec<Draw> = on_all_cores(&plan, drawn).into_iter().flatten().collect();
-    print(&drawn);
+    intervals::print(&drawn);
 }
 
 /// The declared records of a seed whose name has a part in it.
@@ -138,64 +128,4 @@ fn named(effect: &Effect<Estimate>) -> Vec<(String, Estimate)> {
     parts
         .map(|(row, estimate)| (row.report_name(), estimate.clone()))
         .collect()
-}
-
-fn print(drawn: &[Draw]) {
-    println!(
-        "| parameter | draws | held, % | off | half width | not reported | no interval |\n|---|---|---|---|---|---|---|"
-    );
-    let mut of_name: BTreeMap<(&str, &str), Vec<&Draw>> = BTreeMap::new();
-    for draw in drawn {
-        of_name.entry((draw.name, "all")).or_default().push(draw);
-        of_name
-            .entry((draw.name, &draw.make))
-            .or_default()
-            .push(draw);
-    }
-    for ((name, make), draws) in of_name {
-        row(&format!("{name} {make}"), &draws);
-    }
-    let all: Vec<&Draw> = drawn.iter().collect();
-    row("all", &all);
-}
-
-fn row(name: &str, draws: &[&Draw]) {
-    let said = |draw: &&&Draw| {
-        draw.said
-            .map(|(value, half)| (value - draw.truth, half, draw.truth))
-    };
-    let all: Vec<(f64, f64, f64)> = draws.iter().filter_map(|draw| said(&draw)).collect();
-    let with: Vec<(f64, f64, f64)> = all
-        .iter()
-        .copied()
-        .filter(|(_, half, _)| *half > 0.0)
-        .collect();
-    let held = with
-        .iter()
-        .filter(|(off, half, _)| off.abs() <= *half)
-        .count();
-    let share = |(off, half, truth): &(f64, f64, f64)| (off / truth.abs(), half / truth.abs());
-    let mut off: Vec<f64> = with.iter().map(|one| share(one).0).collect();
-    let mut half: Vec<f64> = with.iter().map(|one| share(one).1).collect();
-    off.sort_by(f64::total_cmp);
-    half.sort_by(f64::total_cmp);
-    let at = |sorted: &[f64], part: f64| {
-        let place = part * (sorted.len().max(1) - 1) as f64;
-        sorted
-            .get(place.round() as usize)
-            .copied()
-            .unwrap_or(f64::NAN)
-    };
-    let range = 0.5 * (at(&off, 0.975) - at(&off, 0.025));
-    println!(
-        "| {name} | {} | {:.1} | {:+.3}% {:.2} | {:.3}% {:.2} | {} | {} |",
-        draws.len(),
-        100.0 * held as f64 / with.len().max(1) as f64,
-        100.0 * at(&off, 0.5),
-        at(&off, 0.5) / range,
-        100.0 * at(&half, 0.5),
-        at(&half, 0.5) / range,
-        draws.len() - all.len(),
-        all.len() - with.len()
-    );
 }

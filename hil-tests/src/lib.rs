@@ -13,6 +13,7 @@ pub mod comparison;
 pub mod confusion;
 pub mod gaps;
 pub mod golden;
+pub mod intervals;
 pub mod losses;
 pub mod matrix;
 pub mod paths;

@@ -1,0 +1,114 @@
+//! Whether intervals hold the truth: what draws of records say of parameters whose truth is given.
+//!
+//! Per parameter: the share of the intervals that hold the truth; how far the median estimate is
+//! off, alone and over the half of the central 95 % of the errors; the median half width, alone and
+//! over the same; how many are not reported, and how many have no interval.
+
+use std::collections::BTreeMap;
+
+/// What a draw says of a parameter whose true size is given.
+pub struct Draw {
+    /// The machine.
+    pub make: String,
+    /// The parameter.
+    pub name: &'static str,
+    /// Its true size.
+    pub truth: f64,
+    /// Value, and the half width of its interval.
+    pub said: Option<(f64, f64)>,
+}
+
+/// What was said of a parameter, beside its truth.
+struct Beside {
+    /// Estimate − truth.
+    off: f64,
+    /// Half width of the interval.
+    half: f64,
+    truth: f64,
+}
+
+/// Prints the table: each parameter over all machines, on each of them, and all together.
+pub fn print(drawn: &[Draw]) {
+    println!(
+        "| parameter | draws | held, % | off | half width | not reported | no interval |\n|---|---|---|---|---|---|---|"
+    );
+    let mut of_name: BTreeMap<(&str, &str), Vec<&Draw>> = BTreeMap::new();
+    for draw in drawn {
+        for make in ["all", &draw.make] {
+            of_name.entry((draw.name, make)).or_default().push(draw);
+        }
+    }
+    for ((name, make), draws) in of_name {
+        println!("{}", row(&format!("{name} {make}"), &draws));
+    }
+    let all: Vec<&Draw> = drawn.iter().collect();
+    println!("{}", row("all", &all));
+}
+
+fn row(name: &str, draws: &[&Draw]) -> String {
+    let beside = |draw: &&Draw| {
+        draw.said.map(|(value, half)| Beside {
+            off: value - draw.truth,
+            half,
+            truth: draw.truth,
+        })
+    };
+    let all: Vec<Beside> = draws.iter().filter_map(beside).collect();
+    let with: Vec<&Beside> = all.iter().filter(|one| one.half > 0.0).collect();
+    let held = with.iter().filter(|one| one.off.abs() <= one.half).count();
+    // A parameter whose truth is zero has no share of it: in its own unit, times a hundred.
+    let share = |size: f64, truth: f64| size / if truth == 0.0 { 1.0 } else { truth.abs() };
+    let off = sorted(with.iter().map(|one| share(one.off, one.truth)));
+    let half = sorted(with.iter().map(|one| share(one.half, one.truth)));
+    let range = 0.5 * (at(&off, 0.975) - at(&off, 0.025));
+    format!(
+        "| {name} | {} | {:.1} | {:+.3}% {:.2} | {:.3}% {:.2} | {} | {} |",
+        draws.len(),
+        100.0 * held as f64 / with.len().max(1) as f64,
+        100.0 * at(&off, 0.5),
+        at(&off, 0.5) / range,
+        100.0 * at(&half, 0.5),
+        at(&half, 0.5) / range,
+        draws.len() - all.len(),
+        all.len() - with.len()
+    )
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The value below which a part of them lies.
+fn at(sorted: &[f64], part: f64) -> f64 {
+    let place = part * (sorted.len().max(1) - 1) as f64;
+    let value = sorted.get(place.round() as usize);
+    value.copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_counts_what_holds_what_is_not_said_and_what_has_no_interval() {
+        let said = [
+            Some((101.0, 2.0)),
+            Some((103.0, 2.0)),
+            Some((99.0, 2.0)),
+            Some((100.0, 0.0)),
+            None,
+        ];
+        let draws = said.map(|said| Draw {
+            make: "a".into(),
+            name: "inertia",
+            truth: 100.0,
+            said,
+        });
+        let draws: Vec<&Draw> = draws.iter().collect();
+        // Errors −1, 1 and 3 %: the half of their range is 2 %.
+        let wanted = "| inertia | 5 | 66.7 | +1.000% 0.50 | 2.000% 1.00 | 1 | 1 |";
+        assert_eq!(row("inertia", &draws), wanted);
+    }
+}
