@@ -13,6 +13,7 @@
 //! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
 //! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
+mod between_rows;
 mod by_the_load;
 mod carried;
 mod columns;
@@ -21,6 +22,7 @@ mod flanks;
 mod intervals;
 mod known;
 mod left;
+mod linearised;
 mod load;
 mod search;
 mod spring;
@@ -166,7 +168,8 @@ pub(crate) fn settled(
     };
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
-    let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place));
+    let told =
+        carried.and_then(|place| by_the_load::told(&apart, &ways, place, dataset.load_resolution));
     let told = told.filter(|told| difference.agrees_with(told));
     difference.know(&apart);
     if let Some(told) = told {

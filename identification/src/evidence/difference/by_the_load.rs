@@ -11,11 +11,12 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
+use super::carried::stepped;
 use super::columns::{Apart, Way};
 use super::flanks::{Balance, Stiffness};
 use super::known::Known;
+use super::linearised::Linearised;
 use super::load::{Carried, LoadFriction};
-use crate::fit::blocks::Blocks;
 
 /// What the load's motion tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,96 +43,96 @@ pub(crate) struct ByTheLoad {
     pub gap: Option<Known>,
 }
 
-/// Part of a parameter by which its columns are differentiated.
-const STEP: f64 = 0.01;
+/// Turns of the load that are smaller, in counts of its scale, may be those of the counts.
+const SMALLEST_TURN: f64 = 1.5;
 
-/// What the wind-up at a place of such ways tells.
-pub(super) fn told(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<ByTheLoad> {
+/// What the wind-up at a place of such ways tells; `count` is that of the load's scale.
+///
+/// How far the bristle went to and fro within a count nobody recorded. It is taken as the counts
+/// have it. What would be told were none of it real is how uncertain that is.
+pub(super) fn told(apart: &Apart<'_>, ways: &[Way], place: usize, count: f64) -> Option<ByTheLoad> {
     let Some(Way::Carried(carried)) = ways.get(place).copied() else {
         return None;
     };
     let apart = &apart.where_known(ways);
-    let fitted = apart.fit(ways);
-    let (way, own) = fitted.at(place)?;
     let Stiffness {
         known: stiffness,
         is_rubbed,
     } = Balance::of(apart).stiffness(carried.flanks)?;
-    let others: Vec<Way> = ways.iter().copied().filter(|one| *one != way).collect();
-    let columns = apart.columns(way);
-    let bent = derivatives(apart, carried, own);
-    let design = [columns, bent, apart.design(&others)].concat();
-    let design: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-    let blocks = Blocks::new(&design, &apart.target, &apart.mask, apart.motion.period_s);
-    let (values, half_widths) = (blocks.fit().coefficients, blocks.half_widths());
-    let known = |column: usize| Known::new(values[column], half_widths[column]);
+    let told = |ways: &[Way]| near(apart, ways, place, stiffness, is_rubbed);
+    let mut smooth = ways.to_vec();
+    smooth[place] = Way::Carried(Carried {
+        smallest_turn: SMALLEST_TURN * count,
+        ..carried
+    });
+    let smooth = stepped(apart, smooth, place);
+    Some(told(ways)?.beside(told(&smooth)?))
+}
+
+/// What a wind-up tells by the fit that is linearised about it.
+fn near(
+    apart: &Apart<'_>,
+    ways: &[Way],
+    place: usize,
+    stiffness: Known,
+    motor_rubs: bool,
+) -> Option<ByTheLoad> {
+    let linearised = Linearised::of(apart, ways, place)?;
+    let known = linearised.known();
     let LoadFriction {
         deflection,
         rise,
         velocity,
-    } = carried.friction;
+    } = linearised.friction();
     // A step of Gauss and Newton from where the search ended.
     let of_friction = |value: f64, parameter: usize| {
-        let column = own.len() + parameter;
-        Known::new(1.0 + values[column], half_widths[column]).of(value)
+        let change = known[Carried::WIDTH + parameter];
+        Known::new(1.0 + change.value, change.half_width).of(value)
     };
-    let coulomb = known(Carried::FRICTION).times(stiffness);
-    let damping = known(Carried::DAMPING).times(stiffness);
+    let coulomb = known[Carried::FRICTION].times(stiffness);
+    let damping = known[Carried::DAMPING].times(stiffness);
     Some(ByTheLoad {
         stiffness,
         damping: damping.of(-1.0),
-        mass: known(Carried::MASS).times(stiffness),
-        motor_rubs: is_rubbed,
+        mass: known[Carried::MASS].times(stiffness),
+        motor_rubs,
         coulomb,
-        viscous: known(Carried::VISCOUS).times(stiffness),
+        viscous: known[Carried::VISCOUS].times(stiffness),
         deflection: of_friction(deflection, 0),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
-        gap: gap(
-            &others,
-            &values[own.len() + 3..],
-            &half_widths[own.len() + 3..],
-        ),
+        gap: gap(&linearised.others, &known[Carried::WIDTH + 3..]),
     })
 }
 
+impl ByTheLoad {
+    /// The same, as uncertain as what else could be told is different.
+    fn beside(self, other: Self) -> Self {
+        let gap = self.gap.zip(other.gap);
+        Self {
+            damping: self.damping.beside(other.damping),
+            mass: self.mass.beside(other.mass),
+            coulomb: self.coulomb.beside(other.coulomb),
+            viscous: self.viscous.beside(other.viscous),
+            deflection: self.deflection.beside(other.deflection),
+            excess: self.excess.beside(other.excess),
+            velocity: self.velocity.beside(other.velocity),
+            gap: gap.map_or(self.gap, |(own, other)| Some(own.beside(other))),
+            ..self
+        }
+    }
+}
+
 /// The gap among ways that are fitted beside a wind-up, by the factor of the way across it.
-fn gap(others: &[Way], values: &[f64], half_widths: &[f64]) -> Option<Known> {
+fn gap(others: &[Way], known: &[Known]) -> Option<Known> {
     let mut column = 0;
     for way in others {
         if let Way::Flanks(flanks) = way {
-            let [factor, half_width] = [values[column], half_widths[column]];
-            return Some(Known::new(factor, half_width).of(flanks.gap()));
+            return Some(known[column].of(flanks.gap()));
         }
         column += way.width();
     }
     None
-}
-
-/// How motor − load changes with deflection, rise and velocity, each by its own size.
-fn derivatives(apart: &Apart<'_>, carried: Carried, own: &[f64]) -> Vec<Vec<f64>> {
-    let at = |factors: [f64; 3]| {
-        let friction = carried.friction.scaled(factors);
-        apart.predicted(
-            Way::Carried(Carried {
-                friction,
-                ..carried
-            }),
-            own,
-        )
-    };
-    let place = |parameter: usize, by: f64| {
-        let mut factors = [1.0; 3];
-        factors[parameter] += by;
-        at(factors)
-    };
-    let of = |parameter: usize| {
-        let pairs = place(parameter, STEP)
-            .into_iter()
-            .zip(place(parameter, -STEP));
-        pairs.map(|(up, down)| (up - down) / (2.0 * STEP)).collect()
-    };
-    (0..3).map(of).collect()
 }
 
 #[cfg(test)]
@@ -148,7 +149,7 @@ mod tests {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
         let ways = instead(&apart, &WAYS, UNIT).unwrap();
-        let told = told(&apart, &ways, 1).unwrap();
+        let told = told(&apart, &ways, 1, 0.0).unwrap();
         let wanted = [
             (told.stiffness, STIFFNESS, 0.005),
             (told.mass, 60.0, 0.005),
@@ -176,8 +177,8 @@ mod tests {
     fn only_a_wind_up_that_the_load_asks_for_tells() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
-        assert_eq!(told(&apart, &WAYS, 1), None);
-        assert_eq!(told(&apart, &WAYS, 7), None);
+        assert_eq!(told(&apart, &WAYS, 1, 0.0), None);
+        assert_eq!(told(&apart, &WAYS, 7, 0.0), None);
     }
 
     #[test]
@@ -192,9 +193,10 @@ mod tests {
             Way::Constant,
             Way::Flanks(flanks),
         ];
-        let gap = gap(&ways, &[9.0, 9.0, 9.0, 1.02], &[9.0, 9.0, 9.0, 0.05]).unwrap();
+        let nine = Known::new(9.0, 9.0);
+        let gap = gap(&ways, &[nine, nine, nine, Known::new(1.02, 0.05)]).unwrap();
         assert!((gap.value - 4.08e-5).abs() < 1.0e-12, "{gap:?}");
         assert!((gap.half_width - 2.0e-6).abs() < 1.0e-12, "{gap:?}");
-        assert_eq!(super::gap(&ways[..2], &[1.0; 3], &[0.0; 3]), None);
+        assert_eq!(super::gap(&ways[..2], &[nine; 3]), None);
     }
 }

@@ -14,6 +14,7 @@ use axis_model::EffectName;
 
 use super::columns::{Apart, Way};
 use super::flanks::Balance;
+use super::linearised::Linearised;
 use super::load::{Carried, LoadFriction, LoadMotion};
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, GAP_FACTOR};
 use crate::fit::blocks::{Blocks, Gain};
@@ -30,7 +31,12 @@ const VELOCITIES: [f64; 3] = [0.5, 2.0, 8.0];
 /// How far the level rises at rest, to start from.
 const RISE: f64 = 0.3;
 /// Rounds of descents over the three, each with half the steps of the one before.
-const ROUNDS: i32 = 4;
+const ROUNDS: i32 = 2;
+
+/// Most steps of Gauss and Newton, from where the descents end.
+const MOST_STEPS: usize = 5;
+/// Part of the squares that a step leaves where no further one is worth it.
+const SETTLED: f64 = 0.999;
 
 /// Rounds in which the width of a gap settles: what it is off by falls to less than a third in
 /// each.
@@ -48,7 +54,7 @@ fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
         _ => None,
     };
     let flanks = others.iter().find_map(is_flanks);
-    let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks);
+    let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks, 0.0);
     let design = apart.design(others).into_iter().chain(load.plain());
     let design: Vec<Vec<f64>> = design.collect();
     let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
@@ -63,6 +69,7 @@ fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
         friction,
         flanks,
         strike: unit * apart.motion.period_s,
+        smallest_turn: 0.0,
     }
 }
 
@@ -124,6 +131,7 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<
     changed.insert(place, Way::Carried(carried));
     let apart = &apart.where_known(&changed);
     let changed = between_refined_flanks(apart, changed);
+    let changed = stepped(apart, changed, place);
     let gain = Gain::of(&apart.cross_validate(ways), &apart.cross_validate(&changed));
     let is_better = gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T;
     (is_better && is_in_effort(apart, &changed, place)).then_some(changed)
@@ -156,6 +164,40 @@ fn between_refined_flanks(apart: &Apart<'_>, mut ways: Vec<Way>) -> Vec<Way> {
     ways
 }
 
+/// The same ways with the bristle that leaves least (Gauss and Newton): a descent of one parameter
+/// after the other ends early where rise and velocity go together.
+pub(super) fn stepped(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
+    let apart = &apart.where_known(&ways);
+    let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
+    let mut before = left(&ways);
+    for _ in 0..MOST_STEPS {
+        let Some(moved) = Linearised::of(apart, &ways, place).and_then(|near| near.step()) else {
+            break;
+        };
+        let changed: Vec<Way> = ways
+            .iter()
+            .enumerate()
+            .map(|(at, way)| {
+                if at == place {
+                    Way::Carried(moved)
+                } else {
+                    *way
+                }
+            })
+            .collect();
+        let after = left(&changed);
+        if after >= before {
+            break;
+        }
+        let is_settled = after > SETTLED * before;
+        (ways, before) = (changed, after);
+        if is_settled {
+            break;
+        }
+    }
+    ways
+}
+
 /// Whether the effort has a wind-up in it: as well as each of its parts were it free.
 fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
     let fitted = apart.fit(ways);
@@ -174,6 +216,7 @@ fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::evidence::difference::between_rows::Steps;
     use crate::evidence::difference::columns::Path;
     use crate::fit::made::{Axis, on};
     use crate::motion::derivatives::Derivatives;
@@ -194,7 +237,7 @@ pub(super) mod tests {
         let load = two_sines(6000);
         let of = |x: &[f64]| Derivatives::new(x, 1.0e-3, EffortHold::Instant);
         let moved = of(&load);
-        let bend = FRICTION.bend(&load, &moved.velocity);
+        let bend = FRICTION.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
         let force = |row: usize| {
             60.0 * moved.acceleration[row] + 200.0 * moved.velocity[row] + 25.0 * bend[row]
         };

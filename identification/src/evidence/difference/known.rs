@@ -25,6 +25,12 @@ impl Known {
         Self::new(1.0 / self.value, self.half_width / self.value.powi(2))
     }
 
+    /// The same, as uncertain as another value of it is different.
+    pub(super) fn beside(self, other: Self) -> Self {
+        let half_width = self.half_width.hypot(self.value - other.value);
+        Self { half_width, ..self }
+    }
+
     /// The product with another.
     pub(super) fn times(self, other: Self) -> Self {
         let half_width = (self.half_width * other.value).hypot(other.half_width * self.value);
@@ -41,6 +47,13 @@ mod tests {
         let inverse = Known::new(-4.0, 0.2).inverse();
         assert_eq!(inverse.value, -0.25);
         assert!((inverse.half_width / 0.25 - 0.05).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn another_value_makes_it_as_uncertain_as_it_is_different() {
+        let beside = Known::new(5.0, 0.3).beside(Known::new(5.4, 7.0));
+        assert_eq!(beside.value, 5.0);
+        assert!((beside.half_width - 0.5).abs() < 1.0e-12, "{beside:?}");
     }
 
     #[test]

@@ -12,6 +12,7 @@
 
 use std::ops::Range;
 
+use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
@@ -39,7 +40,7 @@ pub(crate) struct LoadFriction {
 
 impl LoadFriction {
     /// The same with deflection, rise and velocity times factors.
-    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
+    fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
         Self {
             deflection: self.deflection * deflection,
             rise: self.rise * rise,
@@ -48,25 +49,22 @@ impl LoadFriction {
     }
 
     /// The bend of the bristle along a path, in Coulomb levels.
-    pub(super) fn bend(self, position: &[f64], velocity: &[f64]) -> Vec<f64> {
-        let (mut bend, mut before) = (0.0_f64, position.first().copied().unwrap_or(0.0));
-        let rows = position.iter().zip(velocity);
-        let bends = rows.map(|(x, v)| {
-            let step = x - before;
-            before = *x;
-            let level = 1.0 + self.rise * (-(v / self.velocity).powi(2)).exp();
-            bend = level * bend_after(bend / level, step, self.deflection * level);
+    pub(super) fn bend(self, path: &Steps) -> Vec<f64> {
+        let mut bend = 0.0_f64;
+        path.followed(|step, velocity| {
+            if step != 0.0 {
+                let level = 1.0 + self.rise * (-(velocity / self.velocity).powi(2)).exp();
+                bend = level * bend_after(bend / level, step, self.deflection * level);
+            }
             bend
-        });
-        bends.collect()
+        })
     }
 }
 
 /// The load's motion at the rows.
 pub(super) struct LoadMotion {
-    position: Vec<f64>,
-    /// Not low-passed: a load that rings faster than that turns over all the same.
-    raw_velocity: Vec<f64>,
+    /// By piece. Not low-passed: a load that rings faster than that turns over all the same.
+    steps: Vec<Steps>,
     /// Low-passed.
     velocity: Vec<f64>,
     /// Low-passed.
@@ -76,12 +74,14 @@ pub(super) struct LoadMotion {
 }
 
 impl LoadMotion {
-    /// Of a record with such a motion of its motor, and such a motor − load.
+    /// Of a record with such a motion of its motor, and such a motor − load; turns of the load that
+    /// are smaller than a size are none to its bristle.
     pub(super) fn of(
         motion: &Kinematics,
         position: &[f64],
         apart: &[f64],
         flanks: Option<Flanks>,
+        smallest_turn: f64,
     ) -> Self {
         let wind_up = |d: &f64| flanks.map_or(*d, |flanks| flanks.wind_up(*d));
         let wound: Vec<f64> = apart.iter().map(wind_up).collect();
@@ -92,27 +92,26 @@ impl LoadMotion {
                 .flat_map(|piece| derivative(&signal[piece], motion.period_s))
                 .collect()
         };
-        let raw_velocity = by_piece(&position, slope);
+        let steps_of = |piece: &Range<usize>| {
+            let path = without_small_turns(&position[piece.clone()], smallest_turn);
+            Steps::of(&path, &slope(&path, motion.period_s), motion.period_s)
+        };
         Self {
-            velocity: motion.low_passed(&raw_velocity),
+            velocity: motion.low_passed(&by_piece(&position, slope)),
             acceleration: motion.low_passed(&by_piece(&position, bow)),
             rate: motion.low_passed(&by_piece(&wound, slope)),
-            raw_velocity,
-            position,
+            steps: motion.pieces.iter().map(steps_of).collect(),
         }
     }
 
     /// The bend and its rate, low-passed.
     pub(super) fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
-        let of_piece = |piece: &Range<usize>| {
-            let bend = friction.bend(
-                &self.position[piece.clone()],
-                &self.raw_velocity[piece.clone()],
-            );
+        let of_piece = |steps: &Steps| {
+            let bend = friction.bend(steps);
             let rate = slope(&bend, motion.period_s);
             (bend, rate)
         };
-        let (bend, rate): (Vec<_>, Vec<_>) = motion.pieces.iter().map(of_piece).unzip();
+        let (bend, rate): (Vec<_>, Vec<_>) = self.steps.iter().map(of_piece).unzip();
         motion.all_low_passed(&[bend.concat(), rate.concat()])
     }
 
@@ -155,6 +154,8 @@ pub(crate) struct Carried {
     pub flanks: Option<Flanks>,
     /// Motor − load that changes by so much within a row where flanks meet: a strike.
     pub strike: f64,
+    /// Turns of the load that are smaller are none to its bristle; zero follows every count.
+    pub smallest_turn: f64,
 }
 
 impl Carried {
@@ -177,9 +178,17 @@ impl Carried {
         position: &[f64],
         apart: &[f64],
     ) -> Vec<Vec<f64>> {
-        let load = LoadMotion::of(motion, position, apart, self.flanks);
+        let load = LoadMotion::of(motion, position, apart, self.flanks, self.smallest_turn);
         let rubbed = load.rubbed(motion, self.friction);
         load.plain().into_iter().chain(rubbed).collect()
+    }
+
+    /// The same with deflection, rise and velocity of its bristle times factors.
+    pub(super) fn scaled(self, factors: [f64; 3]) -> Self {
+        Self {
+            friction: self.friction.scaled(factors),
+            ..self
+        }
     }
 
     /// The rows of a mask without those about strikes: nobody recorded when flanks struck between
@@ -251,8 +260,11 @@ mod tests {
         let there: Vec<f64> = (0..400).map(|row| 1.0e-6 * f64::from(row)).collect();
         let back = there.iter().rev().copied();
         let path: Vec<f64> = there.iter().copied().chain(back).collect();
-        let bend = |velocity: f64| FRICTION.bend(&path, &vec![velocity; path.len()]);
-        let (slow, fast) = (bend(0.0), bend(1.0));
+        let bend = |period_s: f64| {
+            let velocity = slope(&path, period_s);
+            FRICTION.bend(&Steps::of(&path, &velocity, period_s))
+        };
+        let (slow, fast) = (bend(1.0), bend(1.0e-6));
         assert!((slow[399] - 1.4).abs() < 1.0e-4 && (fast[399] - 1.0).abs() < 1.0e-4);
         assert!((slow[799] + 1.4).abs() < 1.0e-4 && (fast[799] + 1.0).abs() < 1.0e-4);
         // One deflection after the turn 2/e of both levels are left to go.
@@ -267,6 +279,7 @@ mod tests {
             friction: FRICTION,
             flanks: None,
             strike: UNIT * 1.0e-3,
+            smallest_turn: 0.0,
         };
         let apart = apart(&axis);
         let mask = vec![true; 6000];
@@ -291,6 +304,7 @@ mod tests {
                 ..Flanks::default()
             }),
             strike: 2.0e-6,
+            smallest_turn: 0.0,
         };
         let mask = vec![true; 6000];
         let left_out = |apart: &dyn Fn(usize) -> f64| {
