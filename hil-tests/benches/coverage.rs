@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use axis_model::{Effect, Estimate};
+use axis_model::{Effect, EffectName, Estimate};
 use hil_tests::intervals::{self, Draw};
 use hil_tests::on_all_cores;
 use identification::{Dataset, fit_declared};
@@ -114,11 +114,16 @@ struct Said {
 }
 
 impl Said {
-    /// What was said of a parameter: a share where a share is true, else an effort.
+    /// What was said of a parameter: a share where a share is true, else an effort. Friction that
+    /// differs by direction is the force of an offset, and told as one.
     fn of(&self, known: &Known) -> Option<&Estimate> {
         let is_like = |said: &&Estimate| said.unit.is_empty() == known.unit.is_empty();
-        let mut both = [&self.stated, &self.fitted].into_iter();
-        both.find_map(|said| said.get(known.name).filter(is_like))
+        let told = |name: &str| {
+            let mut both = [&self.stated, &self.fitted].into_iter();
+            both.find_map(|said| said.get(name).filter(is_like))
+        };
+        let same_force = known.name == EffectName::CoulombAsymmetry.as_str();
+        told(known.name).or_else(|| told(EffectName::Offset.as_str()).filter(|_| same_force))
     }
 }
 

@@ -101,14 +101,15 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             format!("{effort} s/{position}"),
         ),
     ];
-    all.extend(rig.known.iter().map(|known| Known {
-        value: if known.name == "logged_late" {
-            stands_for(rig, known.value)
-        } else {
-            known.value
+    let of_make = |own: &Known| match own.name {
+        "logged_late" => Known {
+            value: stands_for(rig, own.value),
+            ..own.clone()
         },
-        ..known.clone()
-    }));
+        "compliance_stiffness" => known(own.name, own.value, format!("{effort}/{position}")),
+        _ => own.clone(),
+    };
+    all.extend(rig.known.iter().map(of_make));
     all
 }
 

@@ -136,7 +136,8 @@ impl Rig {
         self.step_s() * self.sensing.steps_per_row as f64
     }
 
-    /// A parameter that the make knows; an effort is turned into the unit of the record.
+    /// A parameter that the make knows, in the unit of the recorded effort; a stiffness in that of
+    /// the mechanics, which is turned into it.
     pub fn know(&mut self, name: &'static str, value: f64, unit: &str) {
         self.known.push(Known {
             name,

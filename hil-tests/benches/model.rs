@@ -1,0 +1,82 @@
+//! Whether the model that `commission` hands on is good enough to compensate with: `cargo bench -p
+//! hil-tests --bench model [-- SEEDS]`.
+//!
+//! The reference machine is recorded and identified, with other noise for every seed (20). Its
+//! `model.toml` is put into the plant and driven around circles without compensation. The table has
+//! the largest burst of the true machine and of the model, µm, and how far the model's is off, %:
+//! median and range over the seeds.
+
+use hil_tests::on_all_cores;
+use plant_sim::Machine;
+use workbench::circle_test;
+use workbench::commissioning::identified_axes;
+use workbench::session::Stand;
+use workbench::trajectory::Circle;
+
+/// Seeds.
+const SEEDS: u64 = 20;
+/// The first one.
+const FIRST_SEED: u64 = 401;
+/// Radius of the circles, m.
+const RADIUS_M: f64 = 0.1;
+/// Their feeds, mm/min.
+const FEEDS: [f64; 3] = [500.0, 2000.0, 8000.0];
+
+fn main() {
+    let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
+    let seeds = arguments.next().and_then(|text| text.parse().ok());
+    let seeds: Vec<u64> = (0..seeds.unwrap_or(SEEDS)).collect();
+    let bursts = on_all_cores(&seeds, |seed| both(FIRST_SEED + seed));
+    println!(
+        "| feed, mm/min | machine, µm | model, µm | off, % | from | to |\n|---|---|---|---|---|---|"
+    );
+    for (place, feed) in FEEDS.iter().enumerate() {
+        let of = |which: fn(&(f64, f64)) -> f64| {
+            let mut values: Vec<f64> = bursts.iter().map(|all| which(&all[place])).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let off = of(|(machine, model)| 100.0 * (model / machine - 1.0));
+        let middle = |sorted: &[f64]| sorted[sorted.len() / 2];
+        println!(
+            "| {feed:.0} | {:.2} | {:.2} | {:+.2} | {:+.2} | {:+.2} |",
+            middle(&of(|both| both.0)),
+            middle(&of(|both| both.1)),
+            middle(&off),
+            off[0],
+            off[off.len() - 1]
+        );
+    }
+}
+
+/// The largest bursts of the machine with a seed and of its model, at each feed.
+fn both(seed: u64) -> Vec<(f64, f64)> {
+    let mut machine = Machine::reference();
+    machine.seed = seed;
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let stand = Stand::in_process(&machine);
+    identified_axes::record(&stand, folder.path()).expect("the machine can be recorded");
+    let results = identified_axes::identify(&stand, folder.path());
+    let results = results.unwrap_or_else(|why| panic!("{why}"));
+    let text = identified_axes::model(&machine, &results);
+    let mut model = Machine::parse("model.toml", &text).unwrap_or_else(|why| panic!("{why}"));
+    model.seed = seed;
+    let at = |feed: &f64| (burst_um(&machine, *feed), burst_um(&model, *feed));
+    FEEDS.iter().map(at).collect()
+}
+
+/// The largest burst of a circle without compensation, µm.
+fn burst_um(machine: &Machine, feed_mm_min: f64) -> f64 {
+    let stand = Stand::in_process(machine);
+    let circle = Circle {
+        radius_m: RADIUS_M,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 2,
+        counter_clockwise: true,
+    };
+    let run = circle_test::run(&stand, &circle, &stand.uncompensated(), None);
+    run.expect("the circle can be run")
+        .report
+        .figures
+        .peak_max_um
+}
