@@ -106,6 +106,10 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             value: stands_for(rig, own.value),
             ..own.clone()
         },
+        "delay" => Known {
+            value: (own.value / rig.step_s()).round() * rig.step_s(),
+            ..own.clone()
+        },
         "compliance_stiffness" => known(own.name, own.value, format!("{effort}/{position}")),
         _ => own.clone(),
     };
@@ -193,4 +197,44 @@ fn controller(rig: &Rig) -> String {
          position_sensor = \"{sensor}\"\n",
         rig.controller.filter_share, rig.controller.feedforward_inertia
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::truth::Known;
+
+    fn known(record: &str) -> Vec<Known> {
+        let mut recipes = crate::recipes(1);
+        recipes.retain(|recipe| recipe.name == record);
+        recipes.remove(0).entry().truth.parameters
+    }
+
+    fn of<'a>(all: &'a [Known], name: &str) -> &'a Known {
+        all.iter().find(|known| known.name == name).unwrap()
+    }
+
+    #[test]
+    fn a_stiffness_is_that_of_the_record_in_the_unit_of_its_effort() {
+        for (record, unit, range) in [
+            // 81 N/µm at a lead of 16 mm, and 18 kN m/rad at 9 N m/A.
+            ("covered-table-declared", "N m/m", 1.0e5..4.0e5),
+            ("exoskeleton-knee-declared", "A/rad", 1.0e3..4.0e3),
+            ("tracking-antenna-declared", "N m/rad", 1.0e6..1.0e7),
+        ] {
+            let all = known(record);
+            let stiffness = of(&all, "compliance_stiffness");
+            assert_eq!(stiffness.unit, unit, "{record}");
+            assert!(range.contains(&stiffness.value), "{record}: {stiffness:?}");
+            let mass = of(&all, "inertia");
+            let effort = |unit: &str| unit.split([' ', '/']).next().map(str::to_owned);
+            assert_eq!(effort(&mass.unit), effort(unit), "{record}");
+        }
+    }
+
+    #[test]
+    fn a_delay_is_as_long_as_the_simulation_makes_it() {
+        let all = known("die-bonder-declared");
+        let steps = of(&all, "delay").value / 12.5e-6;
+        assert!((steps - steps.round()).abs() < 1.0e-6, "{steps}");
+    }
 }

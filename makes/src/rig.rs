@@ -136,8 +136,8 @@ impl Rig {
         self.step_s() * self.sensing.steps_per_row as f64
     }
 
-    /// A parameter that the make knows, in the unit of the recorded effort; a stiffness in that of
-    /// the mechanics, which is turned into it.
+    /// A parameter that the make knows, in the unit of the recorded effort. A stiffness is that of
+    /// the mechanics and a delay any: what they come to in a record is worked out later.
     pub fn know(&mut self, name: &'static str, value: f64, unit: &str) {
         self.known.push(Known {
             name,
