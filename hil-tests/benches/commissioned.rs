@@ -90,12 +90,13 @@ fn truths(axis: &MachineAxis) -> Vec<(&'static str, f64)> {
     ];
     if let Law::LuGre {
         bristle_stiffness_n_per_m,
-        ..
+        bristle_damping_n_s_per_m,
     } = axis.actual.law
     {
         // Where the Coulomb level is reached.
         let deflection = sliding.coulomb_n / bristle_stiffness_n_per_m;
         truths.push(("presliding_deflection", deflection));
+        truths.push(("presliding_damping", bristle_damping_n_s_per_m));
     }
     truths
 }

@@ -97,6 +97,11 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
             "presliding_deflection",
             known(told.deflection, length.into()),
         ));
+        let bristle = told.bristle_damping;
+        if bristle.value > bristle.half_width {
+            let unit = format!("{effort} s/{length}");
+            own.push(("presliding_damping", known(bristle, unit)));
+        }
     }
     if extended.fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
         own.push(("stribeck_excess", known(told.excess, effort.into())));

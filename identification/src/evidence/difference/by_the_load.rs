@@ -35,6 +35,8 @@ pub(crate) struct ByTheLoad {
     pub viscous: Known,
     /// Deflection of its bristle: Coulomb level over its stiffness.
     pub deflection: Known,
+    /// Damping of its bristle.
+    pub bristle_damping: Known,
     /// Friction at rest beyond the Coulomb level.
     pub excess: Known,
     /// Velocity at which that has fallen to 1/e.
@@ -91,6 +93,8 @@ fn near(
     };
     let coulomb = known[Carried::FRICTION].times(stiffness);
     let damping = known[Carried::DAMPING].times(stiffness);
+    let deflection = of_friction(deflection, 0);
+    let bent = known[Carried::BENDING].times(stiffness);
     Some(ByTheLoad {
         stiffness,
         damping: damping.of(-1.0),
@@ -98,7 +102,8 @@ fn near(
         motor_rubs,
         coulomb,
         viscous: known[Carried::VISCOUS].times(stiffness),
-        deflection: of_friction(deflection, 0),
+        deflection,
+        bristle_damping: bent.times(deflection.inverse()),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
         gap: gap(&linearised.others, &known[Carried::WIDTH + 3..]),
@@ -115,6 +120,7 @@ impl ByTheLoad {
             coulomb: self.coulomb.beside(other.coulomb),
             viscous: self.viscous.beside(other.viscous),
             deflection: self.deflection.beside(other.deflection),
+            bristle_damping: self.bristle_damping.beside(other.bristle_damping),
             excess: self.excess.beside(other.excess),
             velocity: self.velocity.beside(other.velocity),
             gap: gap.map_or(self.gap, |(own, other)| Some(own.beside(other))),
@@ -170,6 +176,14 @@ mod tests {
         // The made axis has no damper, no gap and no friction of its motor.
         assert!(!told.motor_rubs);
         assert!(told.damping.value.abs() < 1.0e-5 * STIFFNESS, "{told:?}");
+        let bristle = told.bristle_damping;
+        assert!(
+            bristle.value.abs() <= 3.0 * bristle.half_width,
+            "{bristle:?}"
+        );
+        // Half a millisecond of the bristle's stiffness.
+        let most = 0.5e-3 * 25.0 / FRICTION.deflection;
+        assert!(bristle.half_width < most, "{bristle:?}");
         assert_eq!(told.gap, None);
     }
 

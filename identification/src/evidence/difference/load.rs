@@ -169,6 +169,8 @@ impl Carried {
     pub(super) const DAMPING: usize = 2;
     /// Place of the bend's.
     pub(super) const FRICTION: usize = 3;
+    /// Place of that of the rate of the bend.
+    pub(super) const BENDING: usize = 4;
 
     /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
     /// wind-up, bend, rate of the bend.
