@@ -66,9 +66,12 @@ fn steps(x: [f64; 2], slope: [f64; 2]) -> [f64; PARTS] {
 }
 
 /// A path that goes one way between turns that are larger than a size: halfway between the farthest
-/// it has come and the least it will be.
+/// it has come and the least it will be. Without a size it is the path.
 pub(super) fn without_small_turns(path: &[f64], size: f64) -> Vec<f64> {
     let mut smooth = path.to_vec();
+    if size == 0.0 {
+        return smooth;
+    }
     for pair in turns(path, size).windows(2) {
         let part = &path[pair[0]..=pair[1]];
         let is_up = part[part.len() - 1] >= part[0];

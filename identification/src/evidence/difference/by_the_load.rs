@@ -106,7 +106,7 @@ fn near(
         bristle_damping: bent.times(deflection.inverse()),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
-        gap: gap(&linearised.others, &known[Carried::WIDTH + 3..]),
+        gap: gap(&linearised.others, &known[Linearised::OTHERS..]),
     })
 }
 

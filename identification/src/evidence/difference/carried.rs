@@ -174,17 +174,8 @@ pub(super) fn stepped(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Ve
         let Some(moved) = Linearised::of(apart, &ways, place).and_then(|near| near.step()) else {
             break;
         };
-        let changed: Vec<Way> = ways
-            .iter()
-            .enumerate()
-            .map(|(at, way)| {
-                if at == place {
-                    Way::Carried(moved)
-                } else {
-                    *way
-                }
-            })
-            .collect();
+        let mut changed = ways.clone();
+        changed[place] = Way::Carried(moved);
         let after = left(&changed);
         if after >= before {
             break;

@@ -20,14 +20,18 @@ pub(super) struct Linearised {
 }
 
 impl Linearised {
+    /// Place of the coefficients of the other ways: after those of the wind-up, and the changes of
+    /// deflection, rise and velocity.
+    pub(super) const OTHERS: usize = Carried::WIDTH + 3;
+
     /// About the wind-up at a place of such ways.
     pub(super) fn of(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Self> {
         let fitted = apart.fit(ways);
         let (Way::Carried(carried), own) = fitted.at(place)? else {
             return None;
         };
-        let others = ways.iter().enumerate().filter(|(at, _)| *at != place);
-        let others: Vec<Way> = others.map(|(_, way)| *way).collect();
+        let mut others = ways.to_vec();
+        others.remove(place);
         let columns = apart.columns(Way::Carried(carried));
         let bent = derivatives(apart, carried, own);
         let design = [columns, bent, apart.design(&others)].concat();
@@ -56,12 +60,8 @@ impl Linearised {
     /// The wind-up after a step of Gauss and Newton; `None` where there is none to take.
     pub(super) fn step(&self) -> Option<Carried> {
         let coefficients = self.blocks.fit().coefficients;
-        let changes = coefficients.get(Carried::WIDTH..Carried::WIDTH + 3)?;
-        let factor = |change: &f64| (1.0 + change).clamp(FACTORS.0, FACTORS.1);
-        let [deflection, rise, velocity] = changes else {
-            return None;
-        };
-        let factors = [deflection, rise, velocity].map(factor);
+        let changes: [f64; 3] = *coefficients.get(Carried::WIDTH..)?.first_chunk()?;
+        let factors = changes.map(|change| (1.0 + change).clamp(FACTORS.0, FACTORS.1));
         let is_known = factors.iter().all(|factor| factor.is_finite());
         is_known.then(|| self.carried.scaled(factors))
     }
@@ -102,8 +102,8 @@ mod tests {
         let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
         assert!(left(&near) - left(&ways) < 0.05 * (left(&away) - left(&ways)));
         let known = Linearised::of(&apart, &ways, 1).unwrap().known();
-        assert_eq!(known.len(), Carried::WIDTH + 3 + 1);
-        for change in &known[Carried::WIDTH..Carried::WIDTH + 3] {
+        assert_eq!(known.len(), Linearised::OTHERS + 1);
+        for change in &known[Carried::WIDTH..Linearised::OTHERS] {
             assert!(change.value.abs() < 0.01, "{change:?}");
             assert!(change.half_width > 0.0, "{change:?}");
         }
