@@ -156,8 +156,14 @@ impl Drive {
         state.heard
     }
 
+    /// Whole steps of an integration for which a command waits.
+    #[must_use]
+    pub fn dead_steps(&self, step_s: f64) -> usize {
+        (self.dead_time_s / step_s).round() as usize
+    }
+
     fn waited(&self, state: &mut DriveState, command: f64, step_s: f64) -> f64 {
-        let steps = (self.dead_time_s / step_s).round() as usize;
+        let steps = self.dead_steps(step_s);
         state.waiting.push_back(command);
         if state.waiting.len() > steps {
             state.waiting.pop_front().unwrap_or(command)

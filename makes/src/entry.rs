@@ -107,7 +107,7 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             ..own.clone()
         },
         "delay" => Known {
-            value: (own.value / rig.step_s()).round() * rig.step_s(),
+            value: rig.drive.dead_steps(rig.step_s()) as f64 * rig.step_s(),
             ..own.clone()
         },
         "compliance_stiffness" => known(own.name, own.value, format!("{effort}/{position}")),
