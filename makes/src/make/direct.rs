@@ -100,6 +100,7 @@ fn nano_stage(draw: &mut Draw, presence: Presence) -> Rig {
     let deflection = draw.near(12.0e-6);
     let mut train = Train::one(mass, coulomb, draw.near(3.0));
     let slipping = Law::maxwell_slip(coulomb, deflection, 8);
+    let gives_way = slipping.deflection();
     train.surfaces[0].law = presence.or(slipping, Law::coulomb(coulomb));
     let mut rig = rig(
         Kind::Linear,
@@ -109,7 +110,7 @@ fn nano_stage(draw: &mut Draw, presence: Presence) -> Rig {
     );
     rig.sensing.motor.rounding = Rounding::Nearest;
     rig.noisy(0.01);
-    rig.know("presliding_deflection", presence.size(deflection), "m");
+    rig.know("presliding_deflection", presence.size(gives_way), "m");
     rig.moved(
         draw,
         Room::about(0.01, (0.03, 0.6), 15.0),

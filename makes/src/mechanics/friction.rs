@@ -158,6 +158,27 @@ impl Law {
         }
     }
 
+    /// Level over stiffness at a reversal; zero where it is rigid.
+    #[must_use]
+    pub fn deflection(&self) -> f64 {
+        match self {
+            Self::Rigid { .. }
+            | Self::Smooth { .. }
+            | Self::Thixotropic { .. }
+            | Self::Brake { .. } => 0.0,
+            Self::Dahl { coulomb, stiffness }
+            | Self::LuGre {
+                coulomb, stiffness, ..
+            }
+            | Self::BoucWen {
+                coulomb, stiffness, ..
+            } => coulomb / stiffness,
+            Self::MaxwellSlip { elements } => {
+                self.level() / elements.iter().map(|e| e.stiffness).sum::<f64>()
+            }
+        }
+    }
+
     /// The same law with its level times a factor; stiffness stays.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
@@ -533,6 +554,20 @@ mod tests {
                 "{law:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_deflection_is_the_level_over_the_stiffness_at_a_reversal() {
+        for law in hysteretic() {
+            let mut state = vec![0.0; law.states()];
+            let way = 1.0e-4 * law.deflection();
+            let share = along(&law, &mut state, way) / law.level();
+            assert!((share / 1.0e-4 - 1.0).abs() < 1.0e-3, "{law:?}: {share}");
+        }
+        assert_eq!(Law::coulomb(10.0).deflection(), 0.0);
+        // 10 µm over 1 + 1/2 + 1/3 + 1/4 of a quarter each.
+        let four = Law::maxwell_slip(10.0, 1.0e-5, 4).deflection();
+        assert!((four - 4.8e-6).abs() < 1.0e-12, "{four}");
     }
 
     /// Masing: the branch after a reversal is the virgin curve, twice as large; and a small loop

@@ -53,9 +53,10 @@ fn delay_line(draw: &mut Draw, presence: Presence) -> Rig {
         waves: TAU / DELAY_LINE_PITCH_M,
         phase: draw.between(0.0, TAU),
     };
+    let rollers = Law::maxwell_slip(coulomb, deflection, 8);
     let mut train = Train::one(mass, coulomb, draw.near(5.0));
     if presence.has(Effect::Presliding) {
-        train.surfaces[0].law = Law::maxwell_slip(coulomb, deflection, 8);
+        train.surfaces[0].law = rollers.clone();
     }
     let controller = Controller::lead(mass, 16.0, 2.5e-4);
     let mut rig = rig(Kind::Linear, train, controller, 1.0e-9);
@@ -65,7 +66,7 @@ fn delay_line(draw: &mut Draw, presence: Presence) -> Rig {
     rig.noisy(0.03);
     rig.know("torque_constant_ripple", wave.share, "");
     rig.know("torque_constant_ripple_period", DELAY_LINE_PITCH_M, "m");
-    let shown = presence.size_of(Effect::Presliding, deflection);
+    let shown = presence.size_of(Effect::Presliding, rollers.deflection());
     rig.know("presliding_deflection", shown, "m");
     rig.moved(
         draw,

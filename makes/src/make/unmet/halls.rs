@@ -179,9 +179,10 @@ fn fibre_positioner(draw: &mut Draw, presence: Presence) -> Rig {
     let (inertia, coulomb) = (draw.near(2.0e-6), draw.near(2.5e-4));
     let deflection = draw.near(4.0e-3);
     let amplitude = presence.size_of(Effect::TorqueRipple, draw.near(7.0e-5));
+    let rollers = Law::maxwell_slip(coulomb, deflection, 10);
     let mut train = Train::one(inertia, coulomb, draw.near(1.0e-5));
     if presence.has(Effect::Presliding) {
-        train.surfaces[0].law = Law::maxwell_slip(coulomb, deflection, 10);
+        train.surfaces[0].law = rollers.clone();
     }
     let teeth = Field::Cogging {
         amplitude,
@@ -194,7 +195,7 @@ fn fibre_positioner(draw: &mut Draw, presence: Presence) -> Rig {
     rig.column = EffortColumn::Current(1.0 / POSITIONER_NM_PER_A);
     rig.sensing.motor.rounding = Rounding::Nearest;
     rig.noisy(4.0e-6);
-    let shown = presence.size_of(Effect::Presliding, deflection);
+    let shown = presence.size_of(Effect::Presliding, rollers.deflection());
     rig.know("presliding_deflection", shown, "rad");
     rig.know(
         "torque_ripple_amplitude",

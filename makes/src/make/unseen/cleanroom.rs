@@ -61,9 +61,10 @@ fn chuck_pin_lift(draw: &mut Draw, presence: Presence) -> Rig {
     let deflection = draw.near(14.0e-6);
     let weight = presence.size_of(Effect::Offset, draw.near(0.3) * mass * GRAVITY_M_S2);
     let has_rollers = presence.has(Effect::Presliding);
+    let rollers = uneven_elements(coulomb, deflection);
     let mut train = Train::one(mass, coulomb, draw.near(14.0));
     if has_rollers {
-        train.surfaces[0].law = uneven_elements(coulomb, deflection);
+        train.surfaces[0].law = rollers.clone();
     }
     train.fields.push((0, Field::Constant(-weight)));
     let controller = Controller::pid(mass, 26.0, 2.5e-4);
@@ -71,7 +72,7 @@ fn chuck_pin_lift(draw: &mut Draw, presence: Presence) -> Rig {
     rig.sensing.motor.rounding = Rounding::Nearest;
     rig.base.retain(|effect| *effect != Effect::Offset);
     rig.noisy(0.03);
-    let shown = presence.size_of(Effect::Presliding, deflection);
+    let shown = presence.size_of(Effect::Presliding, rollers.deflection());
     rig.know("presliding_deflection", shown, "m");
     rig.know("offset", weight, "N");
     rig.moved(

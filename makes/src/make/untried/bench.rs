@@ -110,15 +110,16 @@ fn plate_shuttle(draw: &mut Draw, presence: Presence) -> Rig {
 fn cell_manipulator(draw: &mut Draw, presence: Presence) -> Rig {
     let (mass, coulomb) = (draw.near(0.35), draw.near(0.6));
     let deflection = draw.near(9.0e-6);
+    let rollers = Law::maxwell_slip(coulomb, deflection, 12);
     let mut train = Train::one(mass, coulomb, draw.near(3.0));
     if presence.has(Effect::Presliding) {
-        train.surfaces[0].law = Law::maxwell_slip(coulomb, deflection, 12);
+        train.surfaces[0].law = rollers.clone();
     }
     let controller = Controller::rejecting(mass, 18.0, 1.25e-4);
     let mut rig = rig(Kind::Linear, train, controller, 1.0e-9);
     rig.sensing.motor.rounding = Rounding::Nearest;
     rig.noisy(4.0e-3);
-    let shown = presence.size_of(Effect::Presliding, deflection);
+    let shown = presence.size_of(Effect::Presliding, rollers.deflection());
     rig.know("presliding_deflection", shown, "m");
     rig.moved(
         draw,
