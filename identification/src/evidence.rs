@@ -8,7 +8,8 @@
 //! | free-run position | [`free_run`] | presliding, backlash |
 //! | motor − load | [`difference`] | backlash, compliance, pitch error |
 //!
-//! [`velocity`] comes first: whether positions or the drive's velocity say how a record moves.
+//! [`velocity`] comes first: whether positions or the drive's velocity say how a record moves, and
+//! [`fast_motion`], whether differences of the positions are sharpened.
 //! [`selection`] is the one forward selection that judges share, [`thresholds`] has every limit.
 //! [`reversal_stage`] asks the witnesses of a reversal and [`at_reversals`] decides. [`findings`]
 //! puts together what was found, [`signs`] says what of it is impossible, and [`verdict`] says
@@ -21,6 +22,7 @@ pub(crate) mod at_reversals;
 pub(crate) mod causes;
 pub(crate) mod difference;
 pub(crate) mod effort;
+pub(crate) mod fast_motion;
 pub(crate) mod features;
 pub(crate) mod few_periods;
 pub(crate) mod findings;

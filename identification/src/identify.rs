@@ -2,12 +2,15 @@
 //!
 //! This is the only file that sees every room. What a step does stands in its room.
 
+use std::borrow::Cow;
+
 use axis_model::EffectName;
 
 use crate::error::IdentificationError;
 use crate::evidence::all_rows::AllRows;
 use crate::evidence::difference::{self, Difference};
 use crate::evidence::effort;
+use crate::evidence::fast_motion;
 use crate::evidence::findings::{Findings, Stages};
 use crate::evidence::forms;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
@@ -69,7 +72,7 @@ fn identify_excerpt(
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     plausibility::check_rows(dataset)?;
-    let dataset = &*velocity::decided(dataset, size);
+    let dataset = &*motion_decided(dataset, size);
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
@@ -98,6 +101,11 @@ fn identify_excerpt(
         });
         return Ok(report::identification(&findings, all.as_ref()));
     }
+}
+
+/// The dataset with what says how it moves: position or velocity, sharpened or not.
+fn motion_decided(dataset: &Dataset, size: ExcerptSize) -> Cow<'_, Dataset> {
+    fast_motion::decided(velocity::decided(dataset, size), size)
 }
 
 /// Every judge in its turn; later ones stand on what earlier ones accepted.
@@ -232,7 +240,7 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
 /// # Errors
 /// Where the declared model has no Coulomb friction, or the record leaves nothing to fit.
 pub fn declared_coulomb(dataset: &Dataset) -> Result<f64, IdentificationError> {
-    let dataset = &*velocity::decided(dataset, EXCERPT);
+    let dataset = &*motion_decided(dataset, EXCERPT);
     let motion = motions::of_training(dataset)?;
     let fitted = Bench::new(dataset, &motion).fit(&Model::declared(dataset));
     let own = fitted.of(EffectName::Coulomb).and_then(<[f64]>::first);
@@ -305,6 +313,7 @@ mod tests {
             validate: record(1.0),
             held_back: false,
             full_band: false,
+            is_sharpened: false,
             notes: Vec::new(),
         }
     }

@@ -6,6 +6,7 @@
 //! [`InverseDynamics::motion`].
 
 use crate::evidence::difference::Known;
+use crate::evidence::fast_motion;
 use crate::evidence::reversal::{self, bristle};
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
@@ -126,11 +127,13 @@ impl InverseDynamics {
     ) -> Vec<Estimate> {
         let of = |motion: &Kinematics| Bench::new(dataset, motion).fit(self.fitted.model());
         let mut estimates = Bench::new(dataset, &self.motion(motion)).estimates(&self.fitted);
-        let at_low = of(&self.motion(low));
-        for (estimate, term) in estimates.iter_mut().zip(at_low.terms()) {
-            if place_among_usual(term.part.called()).is_some() {
-                let (value, half) = &mut estimate.own[0];
-                *half = half.hypot(term.own[0] - *value);
+        let others = [Some(of(&self.motion(low))), self.sharpened(dataset, motion)];
+        for other in others.iter().flatten() {
+            for (estimate, term) in estimates.iter_mut().zip(other.terms()) {
+                if place_among_usual(term.part.called()).is_some() {
+                    let (value, half) = &mut estimate.own[0];
+                    *half = half.hypot(term.own[0] - *value);
+                }
             }
         }
         if let Some(known) = self.known_deflection(dataset, motion) {
@@ -146,6 +149,16 @@ impl InverseDynamics {
             }
         }
         estimates
+    }
+
+    /// The same structure fitted to the sharpened motion, where the plain one was taken: what that
+    /// lacks of fast motion is uncertain.
+    fn sharpened(&self, dataset: &Dataset, motion: &Kinematics) -> Option<Fitted> {
+        let sharpened = fast_motion::sharpened(dataset)?;
+        let mut seen = Kinematics::new(&sharpened, &sharpened.train)?;
+        seen.fitted.clone_from(&motion.fitted);
+        let seen = self.motion(&seen);
+        Some(Bench::new(&sharpened, &seen).fit(self.fitted.model()))
     }
 
     /// Force error over the moving samples of a record, percent.

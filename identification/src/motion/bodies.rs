@@ -22,8 +22,15 @@ pub(crate) struct Bodies {
 impl Bodies {
     /// Of one piece of a record.
     #[must_use]
-    pub(crate) fn of(record: &Record, hold: EffortHold) -> Self {
-        let by_position = |positions: &[f64]| Derivatives::new(positions, record.period_s, hold);
+    pub(crate) fn of(record: &Record, hold: EffortHold, is_sharpened: bool) -> Self {
+        let by_position = |positions: &[f64]| {
+            let plain = Derivatives::new(positions, record.period_s, hold);
+            if is_sharpened {
+                plain.sharpened(hold)
+            } else {
+                plain
+            }
+        };
         let motor = by_position(&record.position);
         let load = record.load.as_deref().map(by_position);
         let apart = |load: &Derivatives| minus(&load.acceleration, &motor.acceleration);
@@ -80,7 +87,7 @@ mod tests {
     fn without_a_measured_velocity_both_bodies_are_those_of_their_positions() {
         let record = jittered(None);
         let hold = EffortHold::Instant;
-        let bodies = Bodies::of(&record, hold);
+        let bodies = Bodies::of(&record, hold, false);
         let own = Derivatives::new(record.load.as_deref().unwrap(), 1.0e-3, hold);
         assert_eq!(bodies.with_friction().velocity, own.velocity);
         assert_eq!(bodies.with_friction().acceleration, own.acceleration);
@@ -89,7 +96,11 @@ mod tests {
     #[test]
     fn with_it_the_jitter_of_both_positions_is_gone_from_both_but_for_their_difference() {
         let exact = Derivatives::new(&two_sines(3000), 1.0e-3, EffortHold::Instant);
-        let bodies = Bodies::of(&jittered(Some(exact.velocity.clone())), EffortHold::Instant);
+        let bodies = Bodies::of(
+            &jittered(Some(exact.velocity.clone())),
+            EffortHold::Instant,
+            false,
+        );
         let worst = |one: &[f64], other: &[f64]| {
             let apart = one[5..2990].iter().zip(&other[5..2990]);
             apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -51,6 +51,9 @@ pub struct Dataset {
     /// Whether a record with a jittered clock is fitted with the low-pass of the errors all the
     /// same: the drive's velocity showed that the jitter does no harm there.
     pub full_band: bool,
+    /// Whether velocity and acceleration are given back what differences lack of fast motion: the
+    /// record showed that this is worth the noise that it adds.
+    pub is_sharpened: bool,
     /// What is odd in `dataset.toml` or in the records but no reason to refuse them.
     pub notes: Vec<String>,
 }
@@ -119,6 +122,7 @@ impl Dataset {
             validate: records.validate,
             held_back: records.held_back,
             full_band: false,
+            is_sharpened: false,
             notes,
         }
     }

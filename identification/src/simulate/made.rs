@@ -47,6 +47,7 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
         train,
         held_back: false,
         full_band: false,
+        is_sharpened: false,
         notes: Vec::new(),
     }
 }
