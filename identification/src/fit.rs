@@ -5,6 +5,7 @@ pub(crate) mod blocks;
 pub(crate) mod fitted;
 #[cfg(test)]
 pub(crate) mod made;
+pub(crate) mod non_negative;
 pub(crate) mod plain;
 pub(crate) mod primes;
 pub(crate) mod rows;

@@ -16,6 +16,7 @@ use crate::evidence::forms;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::plausibility;
 use crate::evidence::rank;
+use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
@@ -131,7 +132,7 @@ fn findings<'a>(
         reversals,
         ripple: None,
     };
-    let models = models(pair, declared, &stages);
+    let models = models(pair, &other, declared, &stages);
     stages.ripple = slow_ripple(dataset, &motions.train, models.declared.fitted.model());
     progress(&Step::Validating);
     let motions = [&motions.train, &motions.train_low, &motions.validate];
@@ -216,7 +217,12 @@ fn path<'a>(dataset: &'a Dataset, transmitted: &'a [f64]) -> difference::Path<'a
 }
 
 /// The declared model and the extended one, each with the bristle that it has.
-fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseDynamics> {
+fn models(
+    pair: Pair<'_>,
+    other: &Bench<'_>,
+    declared: Model,
+    stages: &Stages,
+) -> Compared<InverseDynamics> {
     let moves_apart = stages
         .difference
         .as_ref()
@@ -228,10 +234,19 @@ fn models(pair: Pair<'_>, declared: Model, stages: &Stages) -> Compared<InverseD
     };
     let declares_bristle = pair.bench.dataset.declares(EffectName::Presliding);
     let has_bristle = declares_bristle || stages.reversals.decided.presliding;
-    let deflection = stages.reversals.deflection();
+    let reversals = &stages.reversals;
+    let bristle = reversals.deflection().map(Bristle::Dahl);
+    let fitted = |model: Model, is_there: bool| {
+        let dahl = bristle.clone().filter(|_| is_there);
+        let fitted = InverseDynamics::fitted(pair, model, dahl);
+        if reversals.decided.backlash {
+            return fitted;
+        }
+        fitted.or_slipping(pair, other)
+    };
     Compared {
-        declared: InverseDynamics::fitted(pair, declared, deflection.filter(|_| declares_bristle)),
-        extended: InverseDynamics::fitted(pair, extended, deflection.filter(|_| has_bristle)),
+        declared: fitted(declared, declares_bristle),
+        extended: fitted(extended, has_bristle),
     }
 }
 

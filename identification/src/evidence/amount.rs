@@ -138,7 +138,7 @@ mod tests {
             fitted: axis
                 .bench()
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
-            deflection: None,
+            bristle: None,
         }
     }
 

@@ -75,7 +75,7 @@ mod tests {
             fitted: first
                 .bench()
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
-            deflection: None,
+            bristle: None,
         };
         changes(&first.dataset, [&first.motion, &other.motion], &fitted)
     }

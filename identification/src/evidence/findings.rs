@@ -227,7 +227,7 @@ pub(crate) mod tests {
         let model = crate::fit::made::model(names);
         InverseDynamics {
             fitted: Bench::new(&scene.dataset, &scene.motion).fit(&model),
-            deflection: None,
+            bristle: None,
         }
     }
 

@@ -7,7 +7,8 @@
 
 use crate::evidence::difference::Known;
 use crate::evidence::fast_motion;
-use crate::evidence::reversal::{self, bristle};
+use crate::evidence::reversal;
+use crate::evidence::reversal::bristle::Bristle;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::{self, Pair};
@@ -44,8 +45,8 @@ impl<T> Compared<T> {
 pub(crate) struct InverseDynamics {
     /// The parts with their coefficients.
     pub fitted: Fitted,
-    /// Deflection of the bristle, where there is one in place of the sign.
-    pub deflection: Option<f64>,
+    /// The bristle, where there is one in place of the sign.
+    pub bristle: Option<Bristle>,
 }
 
 /// What a structure leaves of one record.
@@ -63,14 +64,13 @@ pub(crate) struct Judgement {
 impl InverseDynamics {
     /// A model fitted to moving samples; its sign columns follow the bristle, where there is one.
     /// Nonlinear parameters are refined once more then: they were found with the sign.
-    pub(crate) fn fitted(pair: Pair<'_>, mut model: Model, deflection: Option<f64>) -> Self {
-        let Some(width) = deflection else {
+    pub(crate) fn fitted(pair: Pair<'_>, mut model: Model, bristle: Option<Bristle>) -> Self {
+        let Some(own) = &bristle else {
             let fitted = pair.bench.fit(&model);
-            return Self { fitted, deflection };
+            return Self { fitted, bristle };
         };
         let dataset = pair.bench.dataset;
-        let [motion, slow] =
-            [pair.bench, pair.low].map(|bench| bristle::motion(bench.motion, width));
+        let [motion, slow] = [pair.bench, pair.low].map(|bench| own.motion(bench.motion));
         let (bench, low) = (Bench::new(dataset, &motion), Bench::new(dataset, &slow));
         let pair = Pair {
             bench: &bench,
@@ -78,7 +78,24 @@ impl InverseDynamics {
         };
         tuning::refine(pair, &mut model);
         let fitted = bench.fit(&model);
-        Self { fitted, deflection }
+        Self { fitted, bristle }
+    }
+
+    /// The same with Maxwell slip in place of Dahl's bristle, where that is what both records show.
+    /// What the elements are is asked once more of the coefficients that they give.
+    pub(crate) fn or_slipping(self, pair: Pair<'_>, other: &Bench<'_>) -> Self {
+        let Some(about) = self.bristle.as_ref().map(Bristle::deflection) else {
+            return self;
+        };
+        let slipping = |before: &Self| {
+            let elsewhere = before.refitted(other.dataset, other.motion).fitted;
+            let records = [(pair.bench, &before.fitted), (other, &elsewhere)];
+            let bristle = Bristle::Slip(reversal::slip(records, about)?);
+            let model = before.fitted.model().clone();
+            Some(Self::fitted(pair, model, Some(bristle)))
+        };
+        let again = slipping(&self).and_then(|first| slipping(&first));
+        again.unwrap_or(self)
     }
 
     /// The same structure with the coefficients of another record.
@@ -86,26 +103,28 @@ impl InverseDynamics {
         let seen = self.motion(motion);
         Self {
             fitted: Bench::new(dataset, &seen).fit(self.fitted.model()),
-            deflection: self.deflection,
+            bristle: self.bristle.clone(),
         }
     }
 
     /// The motion as this structure sees it.
     pub(crate) fn motion(&self, motion: &Kinematics) -> Kinematics {
-        self.deflection.map_or_else(
-            || motion.clone(),
-            |deflection| bristle::motion(motion, deflection),
-        )
+        let bristle = self.bristle.as_ref();
+        bristle.map_or_else(|| motion.clone(), |bristle| bristle.motion(motion))
     }
 
     /// The deflection with its interval: as moving samples and those about reversals tell it.
     pub(crate) fn known_deflection(&self, dataset: &Dataset, motion: &Kinematics) -> Option<Known> {
-        let deflection = self.deflection?;
-        let step = DEFLECTION_STEP * deflection;
-        let [below, above] = [deflection - step, deflection + step].map(|deflection| {
-            let seen = bristle::motion(motion, deflection);
+        let bristle = self.bristle.as_ref()?;
+        if let Bristle::Slip(elements) = bristle {
+            return Some(elements.known_deflection());
+        }
+        let deflection = bristle.deflection();
+        let [below, above] = [1.0 - DEFLECTION_STEP, 1.0 + DEFLECTION_STEP].map(|factor| {
+            let seen = bristle.scaled(factor).motion(motion);
             Bench::new(dataset, &seen).predict_lp(&self.fitted)
         });
+        let step = DEFLECTION_STEP * deflection;
         let pairs = below.iter().zip(&above);
         let slope = pairs.map(|(below, above)| (above - below) / (2.0 * step));
         let seen = self.motion(motion);
@@ -136,10 +155,11 @@ impl InverseDynamics {
                 }
             }
         }
-        if let Some(known) = self.known_deflection(dataset, motion) {
-            let half_width = known.half_width.min(MOST_OF_A_DEFLECTION * known.value);
-            let ends = [known.value - half_width, known.value + half_width];
-            let [low, high] = ends.map(|deflection| of(&bristle::motion(motion, deflection)));
+        let known = self.known_deflection(dataset, motion);
+        if let Some((bristle, known)) = self.bristle.as_ref().zip(known) {
+            let share = (known.half_width / known.value).min(MOST_OF_A_DEFLECTION);
+            let ends = [1.0 - share, 1.0 + share];
+            let [low, high] = ends.map(|factor| of(&bristle.scaled(factor).motion(motion)));
             let pairs = low.terms().zip(high.terms());
             for (estimate, (low, high)) in estimates.iter_mut().zip(pairs) {
                 let ends = low.own.iter().zip(high.own);
@@ -170,7 +190,7 @@ impl InverseDynamics {
     /// What it leaves of a record.
     pub(crate) fn on(&self, dataset: &Dataset, motion: &Kinematics) -> Judgement {
         let plain = Bench::new(dataset, motion);
-        let reversal_rms = reversal::error_rms(&plain, &self.fitted, self.deflection);
+        let reversal_rms = reversal::error_rms(&plain, &self.fitted, self.bristle.as_ref());
         let seen = self.motion(motion);
         let bench = Bench::new(dataset, &seen);
         Judgement {
@@ -187,16 +207,21 @@ pub(crate) mod tests {
     use axis_model::EffectName::{Coulomb, Inertia, Viscous};
 
     use super::*;
+    use crate::evidence::reversal::slip;
     use crate::record::samples::Record;
     use crate::simulate::made;
 
     pub(crate) const DEFLECTION_M: f64 = 2.0e-4;
 
-    /// 700 kg, 900 N·s/m and 300 N of friction, whose direction is the sign or a bristle.
+    /// 700 kg, 900 N·s/m and 300 N of friction, whose direction is the sign or Dahl's bristle.
     pub(crate) fn record(deflection: Option<f64>) -> Record {
+        record_with(deflection.map(Bristle::Dahl).as_ref())
+    }
+
+    fn record_with(bristle: Option<&Bristle>) -> Record {
         let bare = made::record(1.0e-3, made::two_sines(3000));
         let motion = Kinematics::new(&declared(bare.clone()), &bare).unwrap();
-        let seen = deflection.map(|width| bristle::motion(&motion, width));
+        let seen = bristle.map(|bristle| bristle.motion(&motion));
         let direction = seen.map_or_else(|| motion.direction.clone(), |seen| seen.direction);
         let effort = |row: usize| {
             700.0 * motion.acceleration[row] + 900.0 * motion.velocity[row] + 300.0 * direction[row]
@@ -220,7 +245,11 @@ pub(crate) mod tests {
             bench: &bench,
             low: &bench,
         };
-        InverseDynamics::fitted(pair, Model::declared(dataset), deflection)
+        InverseDynamics::fitted(
+            pair,
+            Model::declared(dataset),
+            deflection.map(Bristle::Dahl),
+        )
     }
 
     fn assert_near(value: f64, wanted: f64, share: f64) {
@@ -259,12 +288,40 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn elements_that_slip_are_told_as_such_and_dahls_bristle_stays_one() {
+        let four = [(0.2, 0.25), (0.5, 0.25), (0.8, 0.25), (1.5, 0.25)];
+        let elements = Bristle::Slip(slip::tests::elements(DEFLECTION_M, &four));
+        for of_the_record in [Bristle::Dahl(DEFLECTION_M), elements] {
+            let dataset = declared(record_with(Some(&of_the_record)));
+            let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+            let bench = Bench::new(&dataset, &motion);
+            let pair = Pair {
+                bench: &bench,
+                low: &bench,
+            };
+            let dahl = fitted(&dataset, &motion, Some(0.7 * DEFLECTION_M));
+            let left = |model: &InverseDynamics| model.on(&dataset, &motion).reversal_rms;
+            let before = left(&dahl);
+            let found = dahl.or_slipping(pair, &bench);
+            let is_slip = |bristle: &Bristle| matches!(bristle, Bristle::Slip(_));
+            let own = found.bristle.as_ref().unwrap();
+            assert_eq!(is_slip(own), is_slip(&of_the_record));
+            if is_slip(own) {
+                assert!(left(&found) < 0.1 * before, "{} {before}", left(&found));
+                assert_near(own.deflection(), of_the_record.deflection(), 0.05);
+                let known = found.known_deflection(&dataset, &motion).unwrap();
+                assert_eq!(known.value, own.deflection());
+            }
+        }
+    }
+
+    #[test]
     fn without_coulomb_friction_nothing_is_left_about_reversals() {
         let dataset = declared(record(None));
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let model = InverseDynamics {
             fitted: Bench::new(&dataset, &motion).fit(&crate::fit::made::model(&[Inertia])),
-            deflection: None,
+            bristle: None,
         };
         assert_eq!(model.on(&dataset, &motion).reversal_rms, 0.0);
     }
@@ -279,7 +336,7 @@ pub(crate) mod tests {
         let motion = Kinematics::new(&dataset, &stronger).unwrap();
         assert_near(model.force_error_percent(&dataset, &motion), 50.0, 1.0e-6);
         let refitted = model.refitted(&dataset, &motion);
-        assert_eq!(refitted.deflection, Some(DEFLECTION_M));
+        assert_eq!(refitted.bristle, Some(Bristle::Dahl(DEFLECTION_M)));
         assert_near(refitted.fitted.of(Inertia).unwrap()[0], 1400.0, 1.0e-6);
         assert!(refitted.force_error_percent(&dataset, &motion) < 1.0e-6);
     }

@@ -268,7 +268,7 @@ mod tests {
             let model = Model::declared(&dataset).with_parameter(4, 0.02);
             let model = InverseDynamics {
                 fitted: Bench::new(&dataset, &motion).fit(&model),
-                deflection: None,
+                bristle: None,
             };
             reason(&dataset, [&motion, &other], &model, error_percent).is_some()
         };

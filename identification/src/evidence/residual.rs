@@ -73,7 +73,7 @@ impl Remainder {
         let seen = model.motion(motion);
         let bench = Bench::new(dataset, &seen);
         let plain = Bench::new(dataset, motion);
-        let bristle_rms = model.deflection.map_or(0.0, |_| {
+        let bristle_rms = model.bristle.as_ref().map_or(0.0, |_| {
             let without = plain.residual(&plain.fit(model.fitted.model()));
             let [without, with] = [&without, &bench.residual(&model.fitted)]
                 .map(|residual| rms(residual, &motion.fitted).powi(2));

@@ -9,14 +9,17 @@
 
 pub(crate) mod bristle;
 pub(crate) mod gap;
+pub(crate) mod slip;
 pub(crate) mod stick;
 
 use axis_model::EffectName;
 
-use self::bristle::deflections;
+use self::bristle::{Bristle, deflections};
 use self::gap::{Plant, SeenGap};
+use self::slip::Elements;
 use crate::evidence::thresholds::{
-    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SUSPICION_RATIO, VETO_RATIO,
+    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SLIP_RATIO, SUSPICION_RATIO,
+    VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
@@ -83,6 +86,26 @@ pub(crate) fn presliding(
     })
 }
 
+/// Maxwell slip in place of Dahl's bristle, for a model as it is fitted to each of two records:
+/// where it leaves clearly less about the reversals of both. `None` where it does not.
+#[must_use]
+pub(crate) fn slip(records: [(&Bench<'_>, &Fitted); 2], about: f64) -> Option<Elements> {
+    let [own, other] = records.map(|(bench, fitted)| Observed::new(bench, fitted));
+    let (own, other) = (own?, other?);
+    let bench = records[0].0;
+    let (deflection, _) = bristle::best(&own, bench.dataset.moving_velocity);
+    let elements = Elements::best(&own, about, resolution(bench.dataset))?;
+    let left = |observed: &Observed<'_>, bristle: &Bristle| {
+        rms(&bristle.error(observed), &observed.motion.slow)
+    };
+    let [dahl, slip] = [Bristle::Dahl(deflection), Bristle::Slip(elements.clone())];
+    let is_less = |observed: &Observed<'_>| {
+        !has_reversals(observed.motion)
+            || left(observed, &slip) <= SLIP_RATIO * left(observed, &dahl)
+    };
+    (is_less(&own) && is_less(&other)).then_some(elements)
+}
+
 /// A gap before the bristle of a model whose bristle was accepted; `None` where the model has no
 /// mass or friction.
 #[must_use]
@@ -103,8 +126,8 @@ fn ratio(bench: &Bench<'_>, fitted: &Fitted, deflection: f64) -> Option<f64> {
     if !has_reversals(bench.motion) {
         return None;
     }
-    let left = |width| error_rms(bench, fitted, width);
-    Some(left(Some(deflection))? / left(None)?.max(f64::MIN_POSITIVE))
+    let left = |bristle| error_rms(bench, fitted, bristle);
+    Some(left(Some(&Bristle::Dahl(deflection)))? / left(None)?.max(f64::MIN_POSITIVE))
 }
 
 /// Whether a motion has enough samples about reversals to be judged there.
@@ -137,17 +160,17 @@ impl Presliding {
     }
 }
 
-/// Rms of the effort about reversals that a model does not explain: with a bristle of the given
-/// deflection, else with rigid stick.
+/// Rms of the effort about reversals that a model does not explain: with a bristle, else
+/// with rigid stick.
 #[must_use]
 pub(crate) fn error_rms(
     bench: &Bench<'_>,
     fitted: &Fitted,
-    deflection: Option<f64>,
+    bristle: Option<&Bristle>,
 ) -> Option<f64> {
     let observed = Observed::new(bench, fitted)?;
-    let error = match deflection {
-        Some(deflection) => bristle::error(&observed, deflection),
+    let error = match bristle {
+        Some(bristle) => bristle.error(&observed),
         None => stick::error(&observed),
     };
     Some(rms(&error, &bench.motion.slow))
@@ -205,6 +228,17 @@ impl<'a> Observed<'a> {
             friction,
             resolution,
         })
+    }
+}
+
+impl Observed<'_> {
+    /// What is left of the friction beside the level times a state.
+    fn without(&self, state: &[f64]) -> Vec<f64> {
+        let force = self.level.iter().zip(state);
+        let force: Vec<f64> = force.map(|(level, state)| level * state).collect();
+        let force = self.motion.low_passed(&force);
+        let seen = self.friction.iter().zip(force);
+        seen.map(|(seen, force)| seen - force).collect()
     }
 }
 
@@ -279,12 +313,11 @@ mod tests {
             seen.rigid > 20.0 && seen.dahl < 0.05 * seen.rigid,
             "{seen:?}"
         );
-        let left = |deflection| error_rms(&bench, &fitted, deflection).unwrap();
-        assert_eq!(
-            (left(None), left(Some(seen.deflection))),
-            (seen.rigid, seen.dahl)
-        );
-        assert!(left(Some(DEFLECTION_M)) < 1.0e-6 * seen.rigid);
+        let dahl = |deflection| error_rms(&bench, &fitted, Some(&Bristle::Dahl(deflection)));
+        let rigid = error_rms(&bench, &fitted, None);
+        assert_eq!(rigid, Some(seen.rigid));
+        assert_eq!(dahl(seen.deflection), Some(seen.dahl));
+        assert!(dahl(DEFLECTION_M).unwrap() < 1.0e-6 * seen.rigid);
         let dataset = declared(record(None));
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let rigid = Bench::new(&dataset, &motion);

@@ -108,7 +108,7 @@ mod tests {
     fn words(axis: &Axis, names: &[EffectName]) -> String {
         let model = InverseDynamics {
             fitted: axis.bench().fit(&model(names)),
-            deflection: None,
+            bristle: None,
         };
         let reason = reasons(&axis.dataset, &axis.motion, &model);
         assert!(reason.iter().all(|reason| reason.counts));

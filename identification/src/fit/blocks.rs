@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::fit::non_negative::non_negative;
 use crate::fit::rows::{FOLDS, Rows};
 
 /// Two-sided 95 % quantiles of Student's t with one degree of freedom, two, … nine.
@@ -274,6 +275,27 @@ impl Blocks {
         folds.into_iter().map(|fold| fold - &mean).collect()
     }
 
+    /// What follows from the Gram matrix of `[columns, target]` over all blocks, with the half width
+    /// of its 95 % interval by the jackknife over folds: for what no linear fit gives. `None` where
+    /// it follows from one of them only.
+    #[must_use]
+    pub(crate) fn known(&self, of: impl Fn(&DMatrix<f64>) -> Option<f64>) -> Option<(f64, f64)> {
+        let total = sum(&self.grams, self.scale.len());
+        let without = |fold: usize| of(&self.gram_without(&total, fold));
+        let folds: Option<Vec<f64>> = (0..self.folds).map(without).collect();
+        let folds = folds?;
+        let mean = folds.iter().sum::<f64>() / folds.len() as f64;
+        let spread: f64 = folds.iter().map(|fold| (fold - mean).powi(2)).sum();
+        let half_width = student(self.folds) * (self.jackknife() * spread).sqrt();
+        of(&total).map(|value| (value, half_width))
+    }
+
+    /// Coefficients over all blocks of which none is negative.
+    #[must_use]
+    pub(crate) fn non_negative(&self) -> Vec<f64> {
+        non_negative(&sum(&self.grams, self.scale.len()))
+    }
+
     /// Variance of what all folds give over the squares of what each leaves.
     fn jackknife(&self) -> f64 {
         let count = self.folds as f64;
@@ -281,13 +303,12 @@ impl Blocks {
     }
 
     fn without_fold(&self, total: &DMatrix<f64>, fold: usize) -> DVector<f64> {
-        let mut rest = total.clone();
-        self.grams
-            .iter()
-            .skip(fold)
-            .step_by(self.folds)
-            .for_each(|gram| rest -= gram);
-        self.solve(&rest)
+        self.solve(&self.gram_without(total, fold))
+    }
+
+    fn gram_without(&self, total: &DMatrix<f64>, fold: usize) -> DMatrix<f64> {
+        let own = self.grams.iter().skip(fold).step_by(self.folds);
+        own.fold(total.clone(), |rest, gram| rest - gram)
     }
 
     fn solve(&self, gram: &DMatrix<f64>) -> DVector<f64> {

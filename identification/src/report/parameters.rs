@@ -12,6 +12,7 @@ use axis_model::{Effect, Estimate};
 
 use crate::evidence::difference::{ByTheLoad, Difference, Known};
 use crate::evidence::findings::Findings;
+use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::slow_ripple::OrderAtReversals;
 use crate::fit::primes::without_primes;
 use crate::model::effects::{Named, Naming};
@@ -92,7 +93,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
             .map(|gap| ("backlash_gap", known(gap, length.into()))),
     );
     let extended = &findings.models.extended;
-    if extended.deflection.is_some() {
+    if matches!(extended.bristle, Some(Bristle::Dahl(_))) {
         own.push((
             "presliding_deflection",
             known(told.deflection, length.into()),
@@ -231,9 +232,24 @@ fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
         let shape = bristle.iter().chain(&gap).flat_map(of_an_effect);
         return (ranking::ABOUT_REVERSALS, shape.collect());
     };
+    // The free run has Dahl's bristle only.
+    if let Some(slipping) = slipping(findings) {
+        let shape = of_an_effect(&bristle_of(slipping));
+        return (ranking::ABOUT_REVERSALS, shape.into_iter().collect());
+    }
     let shape = reversals.estimates(findings.dataset);
     let shape = shape.iter().flat_map(of_an_effect);
     (ranking::FREE_RUN, shape.collect())
+}
+
+/// The deflection of Maxwell slip, where that was found.
+fn slipping(findings: &Findings<'_>) -> Option<Estimate> {
+    let Some(Bristle::Slip(elements)) = &findings.models.extended.bristle else {
+        return None;
+    };
+    let known = elements.known_deflection();
+    let length = findings.dataset.kind.position_unit();
+    Some(about(known.value, known.half_width, length.into()))
 }
 
 fn bristle_of(deflection: Estimate) -> Effect<Estimate> {

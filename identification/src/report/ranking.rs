@@ -9,7 +9,8 @@ use axis_model::EffectName;
 
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::Judged;
-use crate::evidence::reversal::{self, Presliding, bristle};
+use crate::evidence::reversal::bristle::Bristle;
+use crate::evidence::reversal::{self, Presliding};
 use crate::evidence::selection::Scored;
 use crate::fit::bench::Bench;
 use crate::fit::tuning::settled;
@@ -127,7 +128,7 @@ fn gap_on_reversals(findings: &Findings<'_>) -> Option<Candidate> {
 fn with_bristle(findings: &Findings<'_>, presliding: &Presliding) -> f64 {
     let (dataset, model) = (findings.dataset, findings.models.declared.fitted.model());
     let [train, validate] = [findings.motion, findings.validation]
-        .map(|motion| bristle::motion(motion, presliding.deflection));
+        .map(|motion| Bristle::Dahl(presliding.deflection).motion(motion));
     let fitted = Bench::new(dataset, &train).fit(model);
     Bench::new(dataset, &validate).force_error_percent(&fitted)
 }

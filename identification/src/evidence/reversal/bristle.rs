@@ -1,6 +1,7 @@
-//! Friction with a bristle: force G·z, whose state z follows Dahl's law along the measured position
-//! ([`friction`](crate::simulate::friction)).
+//! Friction with a bristle: force G·z, whose state z follows the measured position, by Dahl's law
+//! ([`friction`](crate::simulate::friction)) or by Maxwell slip ([`mod@super::slip`]).
 
+use super::slip::Elements;
 use super::{Observed, rms};
 use crate::fit::search::golden;
 use crate::motion::kinematics::Kinematics;
@@ -44,28 +45,58 @@ pub(crate) fn deflections(unit: f64) -> Vec<f64> {
 /// What a bristle does not explain.
 #[must_use]
 pub(crate) fn error(observed: &Observed<'_>, deflection: f64) -> Vec<f64> {
-    let state = state(&observed.motion.friction_position, deflection);
-    let force: Vec<f64> = observed
-        .level
-        .iter()
-        .zip(state)
-        .map(|(level, state)| level * state)
-        .collect();
-    observed
-        .motion
-        .low_passed(&force)
-        .iter()
-        .zip(&observed.friction)
-        .map(|(force, seen)| seen - force)
-        .collect()
+    observed.without(&state(&observed.motion.friction_position, deflection))
 }
 
-/// Motion whose direction columns follow Dahl's state instead of the sign.
-#[must_use]
-pub(crate) fn motion(motion: &Kinematics, deflection: f64) -> Kinematics {
-    Kinematics {
-        direction: state(&motion.friction_position, deflection),
-        ..motion.clone()
+/// A bristle of either law.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Bristle {
+    /// Dahl's law of a deflection.
+    Dahl(f64),
+    /// Maxwell slip.
+    Slip(Elements),
+}
+
+impl Bristle {
+    /// Level over stiffness at standstill.
+    pub(crate) fn deflection(&self) -> f64 {
+        match self {
+            Self::Dahl(deflection) => *deflection,
+            Self::Slip(elements) => elements.deflection(),
+        }
+    }
+
+    /// The same law, its ways multiplied.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        match self {
+            Self::Dahl(deflection) => Self::Dahl(factor * deflection),
+            Self::Slip(elements) => Self::Slip(elements.scaled(factor)),
+        }
+    }
+
+    /// Motion whose direction columns follow the bristle's state instead of the sign.
+    #[must_use]
+    pub(crate) fn motion(&self, motion: &Kinematics) -> Kinematics {
+        Kinematics {
+            direction: self.state(&motion.friction_position),
+            ..motion.clone()
+        }
+    }
+
+    /// What it does not explain of an observed friction.
+    pub(super) fn error(&self, observed: &Observed<'_>) -> Vec<f64> {
+        match self {
+            Self::Dahl(deflection) => error(observed, *deflection),
+            Self::Slip(elements) => elements.error(observed),
+        }
+    }
+
+    /// State, −1…1, along a position.
+    fn state(&self, position: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Dahl(deflection) => state(position, *deflection),
+            Self::Slip(elements) => elements.state(position),
+        }
     }
 }
 
@@ -107,7 +138,7 @@ mod tests {
     #[test]
     fn a_motion_with_a_bristle_has_its_bend_for_a_direction_and_all_else_as_it_was() {
         let plain = axis(usual).motion;
-        let bent = motion(&plain, 2.0e-4);
+        let bent = Bristle::Dahl(2.0e-4).motion(&plain);
         assert_eq!(bent.direction, state(&plain.friction_position, 2.0e-4));
         assert!(bent.direction != plain.direction && bent.direction.len() == plain.len());
         assert_eq!((bent.velocity, bent.moving), (plain.velocity, plain.moving));
