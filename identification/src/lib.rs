@@ -38,4 +38,7 @@ pub use progress::Step;
 pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::figures;
-pub use report::forms::{EffectCurve, Errors, FreeRun, FreeRunErrors, Identification, Report};
+pub use report::forms::{
+    AfterReversal, EffectCurve, Errors, FreeRun, FreeRunErrors, Identification, PreslidingCurve,
+    Report, SlipElement,
+};

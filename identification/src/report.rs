@@ -26,6 +26,7 @@ pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod parameters;
 pub(crate) mod pictures;
+pub(crate) mod presliding;
 pub(crate) mod protocols;
 pub(crate) mod ranking;
 pub(crate) mod remarks;
@@ -77,6 +78,7 @@ fn report(findings: &Findings<'_>) -> Report {
     let dataset = findings.dataset;
     let found = &findings.found;
     let parameters = parameters::parameters(findings);
+    let bristle = findings.models.extended.bristle.as_ref();
     let whole = dataset.whole();
     let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
     Report {
@@ -93,6 +95,7 @@ fn report(findings: &Findings<'_>) -> Report {
         residual: residual(findings),
         free_run: None,
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
+        presliding: bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates)),
         cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
         parameters: parameters.estimates,

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 use axis_model::{EffectTable, Estimate};
 use identification::Identification;
+use plant_sim::friction::Law;
 use plant_sim::machine::{ActuatorForm, Bus, EncodersForm, Gains, Limits, MechanicsForm, Timing};
 use serde::Serialize;
 
@@ -53,6 +54,8 @@ struct Own {
 #[derive(Serialize)]
 struct Actual {
     effects: EffectTable,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<Law>,
 }
 
 #[derive(Serialize)]
@@ -115,7 +118,11 @@ impl Own {
     fn of(name: &str, known: &Known, result: &Identification) -> Self {
         let report = &result.report;
         let (mechanics, table_mass) = stated::mechanics(known, &result.effects);
-        let stated = stated::effects(known, &result.effects, mechanics.table_mass_kg);
+        let friction = stated::friction(result, mechanics.table_mass_kg);
+        let mut stated = stated::effects(known, &result.effects, mechanics.table_mass_kg);
+        if friction.is_some() {
+            stated.without_presliding();
+        }
         let names = report.declared.iter().chain(&report.found);
         Self {
             name: name.into(),
@@ -126,6 +133,7 @@ impl Own {
             gains: known.gains,
             actual: Actual {
                 effects: stated.effects,
+                friction,
             },
             declared: Declared {
                 effects: names.cloned().collect(),
@@ -171,7 +179,7 @@ mod tests {
         Backlash, Coulomb, Delay, Effect, FrictionDrift, Inertia, Presliding, TorqueRipple,
         ViscousAsymmetry,
     };
-    use identification::Report;
+    use identification::{PreslidingCurve, Report, SlipElement};
     use plant_sim::Machine;
 
     fn estimate(value: f64) -> Estimate {
@@ -200,12 +208,16 @@ mod tests {
 
     /// The file of one axis, and the machine that it is read to.
     fn written(effects: Vec<Effect<Estimate>>) -> (toml::Table, Machine) {
+        written_of(&identification(effects))
+    }
+
+    fn written_of(result: &Identification) -> (toml::Table, Machine) {
         let machine = Machine::reference();
         let known = Known {
             hold_s: 0.5e-3,
             ..Known::of_machine(&machine.axes[0], machine.period_s)
         };
-        let text = text("test", &[("X".into(), known, &identification(effects))]);
+        let text = text("test", &[("X".into(), known, result)]);
         let machine = Machine::parse("model.toml", &text).unwrap();
         (text.parse().unwrap(), machine)
     }
@@ -320,5 +332,41 @@ mod tests {
         let stiffness = machine.axes[0].actual.law.stiffness_n_per_m();
         let most = 0.2 * 280.0 / plant_sim::axis::SUB_STEP_S.powi(2);
         assert!((stiffness / most - 1.0).abs() < 1.0e-9, "{stiffness}");
+    }
+
+    #[test]
+    fn elements_of_maxwell_slip_are_the_friction_law_in_the_place_of_presliding() {
+        let element = |deflection: f64, share: f64| SlipElement { deflection, share };
+        let effects = vec![
+            inertia(700.0, None),
+            Effect::Coulomb(Coulomb {
+                coulomb: estimate(200.0),
+            }),
+            Effect::Presliding(Presliding {
+                deflection: estimate(2.0e-6),
+                damping: None,
+            }),
+        ];
+        let mut result = identification(effects);
+        result.report.presliding = Some(PreslidingCurve {
+            law: "maxwell-slip",
+            elements: vec![element(1.0e-9, 0.25), element(1.0e-5, 0.75)],
+            points: Vec::new(),
+        });
+        let (file, machine) = written_of(&result);
+        let axis = &machine.axes[0];
+        let Law::MaxwellSlip {
+            stiffness_n_per_m,
+            share,
+        } = &axis.actual.law
+        else {
+            panic!("{:?}", axis.actual.law);
+        };
+        // The first one is as stiff as the sub-step carries.
+        let most = 0.2 * 280.0 / plant_sim::axis::SUB_STEP_S.powi(2);
+        assert!((stiffness_n_per_m[0] / (0.25 * most) - 1.0).abs() < 1.0e-9);
+        assert!((stiffness_n_per_m[1] - 1.5e7).abs() < 1.0e-3);
+        assert_eq!(share, &[0.25, 0.75]);
+        assert!(!identified(&file).contains_key("left_out"));
     }
 }

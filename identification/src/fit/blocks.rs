@@ -275,25 +275,18 @@ impl Blocks {
         folds.into_iter().map(|fold| fold - &mean).collect()
     }
 
-    /// What follows from the Gram matrix of `[columns, target]` over all blocks, with the half width
-    /// of its 95 % interval by the jackknife over folds: for what no linear fit gives. `None` where
-    /// it follows from one of them only.
-    #[must_use]
-    pub(crate) fn known(&self, of: impl Fn(&DMatrix<f64>) -> Option<f64>) -> Option<(f64, f64)> {
-        let total = sum(&self.grams, self.scale.len());
-        let without = |fold: usize| of(&self.gram_without(&total, fold));
-        let folds: Option<Vec<f64>> = (0..self.folds).map(without).collect();
-        let folds = folds?;
-        let mean = folds.iter().sum::<f64>() / folds.len() as f64;
-        let spread: f64 = folds.iter().map(|fold| (fold - mean).powi(2)).sum();
-        let half_width = student(self.folds) * (self.jackknife() * spread).sqrt();
-        of(&total).map(|value| (value, half_width))
-    }
-
     /// Coefficients over all blocks of which none is negative.
     #[must_use]
     pub(crate) fn non_negative(&self) -> Vec<f64> {
         non_negative(&sum(&self.grams, self.scale.len()))
+    }
+
+    /// The same without each fold.
+    #[must_use]
+    pub(crate) fn non_negative_without_folds(&self) -> Vec<Vec<f64>> {
+        let total = sum(&self.grams, self.scale.len());
+        let without = |fold: usize| non_negative(&self.gram_without(&total, fold));
+        (0..self.folds).map(without).collect()
     }
 
     /// Variance of what all folds give over the squares of what each leaves.
@@ -323,6 +316,16 @@ impl Blocks {
             .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
         DVector::from_fn(size, |i, _| solution[i] * self.scale[size] / self.scale[i])
     }
+}
+
+/// Half width of the 95 % interval of a value that came out so without each fold: by the jackknife,
+/// for what no linear fit gives.
+#[must_use]
+pub(crate) fn half_width_without_folds(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let spread: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    student(values.len()) * ((count - 1.0) / count * spread).sqrt()
 }
 
 /// Two-sided 95 % quantile of Student's t with one degree of freedom less than there are parts;

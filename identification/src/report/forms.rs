@@ -191,6 +191,41 @@ pub struct ResidualReport {
     pub looks_like: String,
 }
 
+/// One spring of Maxwell slip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SlipElement {
+    /// The way after which it slips, from rest; in the unit of the position.
+    pub deflection: f64,
+    /// Its share of the level.
+    pub share: f64,
+}
+
+/// Friction after a reversal: at the way since it, in the unit of the position, a force in that of
+/// the effort with its 95 % interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AfterReversal {
+    /// Way since the reversal.
+    pub way: f64,
+    /// Friction, against the motion where it is positive.
+    pub force: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Presliding as a curve: from sliding one way to sliding the other.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PreslidingCurve {
+    /// `dahl` or `maxwell-slip`.
+    pub law: &'static str,
+    /// The elements of Maxwell slip.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub elements: Vec<SlipElement>,
+    /// The curve.
+    pub points: Vec<AfterReversal>,
+}
+
 /// What was found, in the form of `identify --json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -222,6 +257,9 @@ pub struct Report {
     /// Ripple about reversals, where the axis is never slow for long.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slow_ripple: Option<SlowRipple>,
+    /// Friction after a reversal, where there is presliding.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub presliding: Option<PreslidingCurve>,
     /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of
     /// the sample rate, but 20 Hz where the clock jittered and that spoils the acceleration.
     pub cutoff_hz: f64,

@@ -5,6 +5,7 @@ use crate::evidence::difference::Difference;
 use crate::evidence::findings::Findings;
 use crate::evidence::free_run::{Judged, Reversals};
 use crate::evidence::reversal::Presliding;
+use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::reversal::gap::SeenGap;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
@@ -33,6 +34,7 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
         length: dataset.kind.millionths(),
     };
     list.extend(said.sentence());
+    list.extend(of_slip(findings));
     list.extend(of_another_day(&findings.changes));
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
@@ -50,6 +52,21 @@ const VAGUE_STIFFNESS: &str = "compliance: while the motor moves the effort goes
 
 const RAN_AWAY: &str = "the simulated axis ran away (an error beyond its travel): the loop of the \
                         identified model is not stable, and no free run was used as evidence";
+
+/// That Maxwell slip stands in the place of Dahl's bristle, and what each leaves.
+fn of_slip(findings: &Findings<'_>) -> Option<String> {
+    let Some(Bristle::Slip(elements)) = &findings.models.extended.bristle else {
+        return None;
+    };
+    let dahl = findings.stages.reversals.inverse?.dahl;
+    Some(format!(
+        "presliding: {} elements that slip one after the other leave {} {} rms about reversals, one bristle by Dahl's law {}",
+        elements.elements().len(),
+        figures::error(findings.train.extended.reversal_rms),
+        findings.dataset.effort.unit(),
+        figures::error(dahl)
+    ))
+}
 
 /// Coefficients that the validation record has in another size.
 fn of_another_day(changes: &[Change]) -> Option<String> {

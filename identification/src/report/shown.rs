@@ -15,6 +15,7 @@
 use axis_model::EffectName;
 
 use crate::evidence::findings::Findings;
+use crate::evidence::reversal::bristle::Bristle;
 use crate::fit::bench::Bench;
 use crate::model::inverse::{Model, Origin, Part};
 use crate::report::forms::Shown;
@@ -77,7 +78,11 @@ fn about_reversals(findings: &Findings<'_>, name: EffectName) -> Row {
     let inverse = findings.stages.reversals.inverse?;
     let shows = name == EffectName::Presliding && inverse.dahl < inverse.rigid;
     let unit = findings.dataset.effort.unit();
-    shows.then_some((ABOUT_REVERSALS, unit, [inverse.rigid, inverse.dahl]))
+    let with = match findings.models.extended.bristle {
+        Some(Bristle::Slip(_)) => findings.train.extended.reversal_rms,
+        _ => inverse.dahl,
+    };
+    shows.then_some((ABOUT_REVERSALS, unit, [inverse.rigid, with]))
 }
 
 fn in_free_run(findings: &Findings<'_>, name: EffectName) -> Row {

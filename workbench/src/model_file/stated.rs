@@ -2,11 +2,12 @@
 //! everything else as `[axis.actual.effects]`.
 
 use axis_model::{
-    Backlash, Compliance, Coulomb, Delay, Effect, EffectTable, Estimate, FrictionDrift, Inertia,
-    Presliding, TorqueRipple,
+    Backlash, Compliance, Coulomb, Delay, Effect, EffectName, EffectTable, Estimate, FrictionDrift,
+    Inertia, Presliding, TorqueRipple,
 };
-use identification::Identification;
+use identification::{Identification, SlipElement};
 use plant_sim::axis::SUB_STEP_S;
+use plant_sim::friction::Law;
 use plant_sim::machine::{ActuatorForm, EncodersForm, MechanicsForm, refusal};
 
 use super::known::Known;
@@ -155,7 +156,36 @@ pub(super) fn effects(known: &Known, effects: &[Effect<Estimate>], table_kg: f64
     stated
 }
 
+/// `[axis.actual.friction]`: Maxwell slip, which no effect of the vocabulary can state. Elements as
+/// stiff as the sub-step carries, at most.
+pub(super) fn friction(result: &Identification, table_kg: f64) -> Option<Law> {
+    let curve = result.report.presliding.as_ref()?;
+    let coulomb: Option<&Coulomb<Estimate>> = identified!(result.effects, Coulomb);
+    let level_n = coulomb?.coulomb.value.max(LEAST_LEVEL_N);
+    let shortest = level_n / stiffest(table_kg);
+    let stiffness = |element: &SlipElement| {
+        let deflection = element.deflection.max(shortest);
+        element.share * level_n / deflection
+    };
+    (!curve.elements.is_empty()).then(|| Law::MaxwellSlip {
+        stiffness_n_per_m: curve.elements.iter().map(stiffness).collect(),
+        share: curve.elements.iter().map(|element| element.share).collect(),
+    })
+}
+
+/// Stiffest bristles that the sub-step carries, N/m.
+fn stiffest(table_kg: f64) -> f64 {
+    STIFFEST_BRISTLES * table_kg / SUB_STEP_S.powi(2)
+}
+
 impl Stated {
+    /// The same without presliding, where the friction law states it.
+    pub(super) fn without_presliding(&mut self) {
+        self.effects
+            .0
+            .retain(|effect| effect.name() != EffectName::Presliding);
+    }
+
     fn take(&mut self, effect: Effect) {
         match refusal(&effect) {
             None => self.effects.0.push(effect),
@@ -165,8 +195,7 @@ impl Stated {
 
     /// Bristles as stiff as the sub-step carries, at most.
     fn presliding(&mut self, own: Presliding, level_n: f64, table_kg: f64) {
-        let stiffest = STIFFEST_BRISTLES * table_kg / SUB_STEP_S.powi(2);
-        let deflection = own.deflection.max(level_n / stiffest);
+        let deflection = own.deflection.max(level_n / stiffest(table_kg));
         self.take(Presliding { deflection, ..own }.into());
     }
 

@@ -3,7 +3,9 @@
 use identification::{Identification, figures};
 
 use super::page::Page;
-use super::result_pictures::{effect_pictures, free_run_picture, residual_pictures, time_picture};
+use super::result_pictures::{
+    effect_pictures, free_run_picture, presliding_picture, residual_pictures, time_picture,
+};
 use super::result_tables::{
     candidate_table, error_table, free_run_sentence, free_run_table, parameter_table,
     protocol_table, reversal_shape_table, sentence, shown_table, slow_ripple_table,
@@ -25,7 +27,9 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
     }
     page.pictures(&residual_pictures(result)?);
     page.pictures(&[time_picture(result)?]);
-    page.pictures(&effect_pictures(result)?);
+    let mut effects = effect_pictures(result)?;
+    effects.extend(presliding_picture(result)?);
+    page.pictures(&effects);
     free_run(page, result)?;
     slow_ripple(page, result);
     page.paragraph("The force error by the protocols that papers use:");

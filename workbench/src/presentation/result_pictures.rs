@@ -1,6 +1,6 @@
 //! Pictures of one identification: what the declared model leaves, and what was found in it.
 
-use identification::{EffectCurve, Identification};
+use identification::{AfterReversal, EffectCurve, Identification};
 
 use super::plots::{self, Curve};
 use super::result_tables::position_error_unit;
@@ -97,6 +97,42 @@ pub fn effect_pictures(result: &Identification) -> Outcome<Vec<String>> {
         )
     };
     result.curves.effects.iter().map(picture).collect()
+}
+
+/// Friction after a reversal with its interval, where there is presliding.
+///
+/// # Errors
+/// Where the plot cannot be drawn.
+pub fn presliding_picture(result: &Identification) -> Outcome<Option<String>> {
+    let Some(curve) = &result.report.presliding else {
+        return Ok(None);
+    };
+    let (factor, unit) = small(result.position_unit);
+    let over_way = |name: &str, value: fn(&AfterReversal) -> f64| {
+        let points = curve.points.iter();
+        line(name, points.map(|at| (factor * at.way, value(at))))
+    };
+    let list = [
+        over_way("friction", |at| at.force),
+        over_way("low", |at| at.low),
+        over_way("high", |at| at.high),
+    ];
+    let picture = plots::curves(
+        &format!("Friction after a reversal ({})", curve.law),
+        &format!("way since the reversal, {unit}"),
+        result.effort_unit,
+        (540, 360),
+        &list,
+    );
+    picture.map(Some)
+}
+
+/// A millionth of a position unit.
+fn small(unit: &str) -> (f64, &'static str) {
+    match unit {
+        "m" => (1.0e6, "µm"),
+        _ => (1.0e6, "µrad"),
+    }
 }
 
 /// What the free run leaves over time.

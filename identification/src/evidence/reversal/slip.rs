@@ -6,12 +6,9 @@
 //! (Lampaert, Swevers and Al-Bender, IEEE TAC 47, 2002; the grid as in Rizos and Fassois, Control
 //! Engineering Practice 12, 2004).
 
-use nalgebra::DMatrix;
-
 use super::Observed;
 use crate::evidence::difference::Known;
-use crate::fit::blocks::Blocks;
-use crate::fit::non_negative::non_negative;
+use crate::fit::blocks::{Blocks, half_width_without_folds};
 use crate::model::effects::geometric;
 
 /// Number of deflections of the grid.
@@ -33,9 +30,9 @@ pub(crate) struct Element {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Elements {
     /// From the first one that slips to the last.
-    pub elements: Vec<Element>,
-    /// Half width of the interval of [`Self::deflection`].
-    half_width: f64,
+    elements: Vec<Element>,
+    /// What they are without each fold of the record.
+    without_folds: Vec<Vec<Element>>,
 }
 
 impl Elements {
@@ -45,14 +42,17 @@ impl Elements {
         let from = (FROM * about).max(smallest);
         let grid = geometric(from, (TO * about).max(2.0 * from), GRID);
         let blocks = blocks(observed, &grid);
-        let elements = of_shares(&grid, &blocks.non_negative())?;
-        let of_gram = |gram: &DMatrix<f64>| of_shares(&grid, &non_negative(gram));
-        let known = blocks.known(|gram| of_gram(gram).map(|elements| deflection(&elements)));
-        let half_width = known.map_or(f64::INFINITY, |(_, half_width)| half_width);
+        let folds = blocks.non_negative_without_folds();
+        let without_folds = folds.iter().map(|shares| of_shares(&grid, shares));
         Some(Self {
-            elements,
-            half_width,
+            elements: of_shares(&grid, &blocks.non_negative())?,
+            without_folds: without_folds.collect::<Option<Vec<_>>>()?,
         })
+    }
+
+    /// From the first one that slips to the last.
+    pub(crate) fn elements(&self) -> &[Element] {
+        &self.elements
     }
 
     /// What they do not explain.
@@ -60,25 +60,44 @@ impl Elements {
         observed.without(&self.state(&observed.motion.friction_position))
     }
 
-    /// Level over stiffness at standstill, with its interval by the jackknife over folds.
-    pub(crate) fn known_deflection(&self) -> Known {
-        Known::new(deflection(&self.elements), self.half_width)
-    }
-
     /// Level over stiffness at standstill.
     pub(crate) fn deflection(&self) -> f64 {
         deflection(&self.elements)
     }
 
+    /// The same with its interval.
+    pub(crate) fn known_deflection(&self) -> Known {
+        self.known(deflection)
+    }
+
+    /// Force over the level after a way from rest, with its interval.
+    pub(crate) fn known_force(&self, way: f64) -> Known {
+        self.known(|elements| {
+            let forces = elements
+                .iter()
+                .map(|e| e.share * (way / e.deflection).min(1.0));
+            forces.sum()
+        })
+    }
+
+    /// What follows from the elements, with its interval by the jackknife over folds.
+    fn known(&self, of: impl Fn(&[Element]) -> f64) -> Known {
+        let without_folds: Vec<f64> = self.without_folds.iter().map(|own| of(own)).collect();
+        Known::new(of(&self.elements), half_width_without_folds(&without_folds))
+    }
+
     /// The same elements, each of which slips at a multiple of its deflection.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
-        let scaled = |element: &Element| Element {
-            deflection: factor * element.deflection,
-            ..*element
+        let scaled = |elements: &Vec<Element>| -> Vec<Element> {
+            let scaled = |element: &Element| Element {
+                deflection: factor * element.deflection,
+                ..*element
+            };
+            elements.iter().map(scaled).collect()
         };
         Self {
-            elements: self.elements.iter().map(scaled).collect(),
-            half_width: factor * self.half_width,
+            elements: scaled(&self.elements),
+            without_folds: self.without_folds.iter().map(scaled).collect(),
         }
     }
 
@@ -149,9 +168,10 @@ pub(crate) mod tests {
             deflection: at * deflection,
             share: *share,
         };
+        let elements: Vec<Element> = parts.iter().map(element).collect();
         Elements {
-            elements: parts.iter().map(element).collect(),
-            half_width: 0.0,
+            without_folds: vec![elements.clone(); 10],
+            elements,
         }
     }
 
@@ -174,6 +194,7 @@ pub(crate) mod tests {
         // Half a level over one, and half a level over two.
         assert!((two.deflection() - 1.0 / 0.75).abs() < 1.0e-12);
         assert!((two.scaled(3.0).deflection() - 4.0).abs() < 1.0e-12);
+        assert!((two.known_force(1.5).value - 0.875).abs() < 1.0e-12);
     }
 
     #[test]

@@ -54,11 +54,11 @@ pub(super) fn draw(
 pub(super) type Chart<'a> =
     ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// The names of the series, in the corner.
-pub(super) fn legend(chart: &mut Chart<'_>) -> Outcome<()> {
+/// The names of the series, in a corner.
+pub(super) fn legend(chart: &mut Chart<'_>, corner: SeriesLabelPosition) -> Outcome<()> {
     let labels = chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(corner)
         .border_style(PALE)
         .background_style(WHITE.mix(0.85))
         .draw();

@@ -41,11 +41,39 @@ pub fn curves(title: &str, x: &str, y: &str, size: (u32, u32), list: &[Curve]) -
             series(&mut chart, curve, color)?;
         }
         if list.len() > 1 {
-            legend(&mut chart)
+            legend(&mut chart, emptiest(list, (x_low, x_high), (y_low, y_high)))
         } else {
             Ok(())
         }
     })
+}
+
+/// Part of the width and of the height that a legend takes.
+const LEGEND: f64 = 0.3;
+
+/// The corner with the fewest points of all curves in it.
+fn emptiest(list: &[Curve], x: (f64, f64), y: (f64, f64)) -> SeriesLabelPosition {
+    use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
+    let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
+    let points = list.iter().flat_map(|curve| thinned(&curve.points, 3000));
+    let points: Vec<(f64, f64)> = points.map(|at| (share(at.0, x), share(at.1, y))).collect();
+    let inside = |(right, upper): (bool, bool)| {
+        let is_near = |share: f64, is_end: bool| if is_end { 1.0 - share } else { share } < LEGEND;
+        let near = points
+            .iter()
+            .filter(|at| is_near(at.0, right) && is_near(at.1, upper));
+        near.count()
+    };
+    let corners = [
+        (UpperRight, (true, true)),
+        (UpperLeft, (false, true)),
+        (LowerRight, (true, false)),
+        (LowerLeft, (false, false)),
+    ];
+    let fewest = corners
+        .into_iter()
+        .min_by_key(|(_, corner)| inside(*corner));
+    fewest.map_or(UpperRight, |(position, _)| position)
 }
 
 /// Height of the letters of a title, px: as large as its plot is wide enough for.
@@ -114,6 +142,31 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_legend_stands_where_no_curve_is() {
+        use SeriesLabelPosition::{LowerRight, UpperLeft, UpperRight};
+        let rising = |sign: f64| Curve {
+            name: String::new(),
+            points: (0..100)
+                .map(|i| (f64::from(i), sign * f64::from(i)))
+                .collect(),
+            dots: false,
+        };
+        let corner = |curve: Curve, y: (f64, f64)| emptiest(&[curve], (0.0, 99.0), y);
+        assert!(matches!(corner(rising(1.0), (0.0, 99.0)), UpperLeft));
+        assert!(matches!(corner(rising(-1.0), (-99.0, 0.0)), UpperRight));
+        let both = [rising(1.0), rising(0.0)];
+        assert!(matches!(
+            emptiest(&both, (0.0, 99.0), (0.0, 99.0)),
+            UpperLeft
+        ));
+        let above = Curve {
+            points: vec![(0.0, 99.0), (99.0, 99.0)],
+            ..rising(0.0)
+        };
+        assert!(matches!(corner(above, (0.0, 99.0)), LowerRight));
+    }
 
     #[test]
     fn a_tick_has_the_digits_of_its_axis_and_no_zeros_that_say_nothing() {

@@ -46,7 +46,7 @@ pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
         chart
             .draw_series([Text::new(note, (-1.5, -1.5), style)])
             .map_err(failed)?;
-        legend(&mut chart)
+        legend(&mut chart, SeriesLabelPosition::UpperRight)
     })
 }
 
