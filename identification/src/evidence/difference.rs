@@ -620,18 +620,24 @@ impl Difference {
         self.gap = Some(Known::new(gap, half_width.hypot(wound)));
     }
 
-    /// How far the stiffness of a spring without a gap is known: as far as the rows in which the
-    /// motor moves give the same. Where they do not tell it, it may be anything up to twice what it
-    /// was taken for.
+    /// The stiffness of a spring without a gap: by the rows in which the motor moves, where they
+    /// contradict that of all rows, else as well known as they tell it. Where they do not tell it,
+    /// it may be anything up to twice what it was taken for.
     fn doubt_stiffness(&mut self, apart: &Apart<'_>) {
         let ways = self.extended.ways();
         let Some(stiffness) = self.stiffness.filter(|_| !has(&ways, EffectName::Backlash)) else {
             return;
         };
-        let stiffness = stiffness.value;
-        let seen = spring::on_moving_rows(apart, &ways);
-        let half_width = |seen: Known| seen.half_width + (seen.value - stiffness).abs();
-        self.stiffness = Some(Known::new(stiffness, seen.map_or(stiffness, half_width)));
+        let of_all = stiffness.value;
+        let known = spring::on_moving_rows(apart, &ways).map(|seen| {
+            let apart = (seen.value - of_all).abs();
+            if apart > seen.half_width {
+                seen
+            } else {
+                Known::new(of_all, seen.half_width + apart)
+            }
+        });
+        self.stiffness = known.or(Some(Known::new(of_all, of_all)));
     }
 
     /// Whether the stiffness may be anything from zero up.

@@ -242,6 +242,16 @@ impl<'a> Apart<'a> {
         }
     }
 
+    /// Rate of the transmitted force at the rows.
+    pub(super) fn rate_of_force(&self) -> Vec<f64> {
+        let force = self.path.at_rows(self.path.transmitted);
+        let last = force.len() - 1;
+        let rows = 0..=last;
+        let rate = rows.map(|row| force[(row + 1).min(last)] - force[row.saturating_sub(1)]);
+        rate.map(|over| over / (2.0 * self.motion.period_s))
+            .collect()
+    }
+
     /// The rows of a mask in which the motor moves.
     fn moving(&self, mask: &[bool]) -> Vec<bool> {
         let pairs = mask.iter().zip(&self.motion.fitted);

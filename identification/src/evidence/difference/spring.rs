@@ -1,10 +1,10 @@
 //! The stiffness of a spring between motor and load, by the rows in which the motor moves.
 //!
 //! A spring is wound up by the effort less what the motor's own side takes of it: inertia, Coulomb
-//! and viscous friction. Where the motor stands its friction is whatever holds, so those rows may
-//! bias the stiffness. They are judged all the same when names are given, for a gap shows there.
-//! What the moving rows alone say has more noise and less bias: the difference of both is a measure
-//! of how far the stiffness is known.
+//! and viscous friction, and a damper beside the spring follows the rate of the effort. Where the
+//! motor stands its friction is whatever holds: those rows bias the stiffness, by up to a third.
+//! They are judged all the same when names are given, for a gap shows there. The damper is asked
+//! because its part goes with the motion; as far as it moves the stiffness, that is uncertain.
 
 use axis_model::EffectName;
 
@@ -27,25 +27,69 @@ pub(super) fn on_moving_rows(apart: &Apart<'_>, ways: &[Way]) -> Option<Known> {
         motor_friction: true,
     };
     let moving = apart.where_moving();
-    let fitted = moving.fit(&ways);
-    let (_, &[softness, inertia, friction, _]) = fitted.at(place)? else {
-        return None;
-    };
+    let first: usize = ways[..place].iter().map(|way| way.width()).sum();
+    let mut columns = moving.design(&ways);
+    let undamped = stiffness(&moving, &columns, first)?;
+    columns.push(moving.rate_of_force());
+    Some(stiffness(&moving, &columns, first)?.beside(undamped))
+}
+
+/// The stiffness by columns of which those of the wind-up begin at a place: softness, what the
+/// motor's mass takes of it, and its friction.
+fn stiffness(apart: &Apart<'_>, columns: &[Vec<f64>], first: usize) -> Option<Known> {
+    let blocks = apart.blocks_of(columns, &apart.target);
+    let (own, half_widths) = (blocks.fit().coefficients, blocks.half_widths());
+    let [softness, inertia, friction] = [own[first], own[first + 1], own[first + 2]];
     let motor_mass = -inertia / softness;
     let masses = 0.0..Plain::moved_mass(apart.motion);
-    let can_be = softness > 0.0 && masses.contains(&motor_mass) && friction <= 0.0;
-    let column: usize = ways[..place].iter().map(|way| way.width()).sum();
-    let half_width = moving.blocks(&ways).half_widths()[column];
-    can_be.then(|| Known {
-        value: 1.0 / softness,
-        half_width: half_width / softness.powi(2),
-    })
+    let rubs = friction <= half_widths[first + 2];
+    let can_be = softness > 0.0 && masses.contains(&motor_mass) && rubs;
+    can_be.then(|| Known::new(softness, half_widths[first]).inverse())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::carried::tests::{WAYS, apart, axis};
+    use super::super::columns::Path;
     use super::*;
+    use crate::fit::made::{self, usual};
+
+    /// 30 of 90 kg and 10 of the 25 N of friction on the motor, the rest behind 5 N/µm with a
+    /// damper that lets it follow over so many seconds; 30 N change with position.
+    fn known(follows_s: f64) -> Option<Known> {
+        let mut axis = made::axis(|motion, row| {
+            usual(motion, row) + 30.0 * (700.0 * motion.position_lp[row]).sin()
+        });
+        let motion = &mut axis.motion;
+        let share = 1.0 - (-motion.period_s / follows_s).exp();
+        let mut apart = 0.0;
+        let after = |row: usize| {
+            let own = 30.0 * motion.acceleration[row] + 10.0 * motion.direction[row];
+            apart += share * ((motion.effort[row] - own) / 5.0e6 - apart);
+            apart
+        };
+        motion.difference = Some((0..motion.len()).map(after).collect());
+        let path = Path {
+            position: &axis.dataset.train.position,
+            transmitted: &axis.motion.effort_lp,
+            hold: axis.dataset.hold,
+        };
+        let wind_up = Way::WindUp {
+            motor_friction: false,
+        };
+        let apart = Apart::on(&axis.motion, path).unwrap();
+        on_moving_rows(&apart, &[Way::Constant, wind_up])
+    }
+
+    #[test]
+    fn the_moving_rows_tell_the_stiffness_with_a_damper_and_without() {
+        for follows_s in [1.0e-6, 2.0e-3] {
+            let known = known(follows_s).unwrap();
+            let off = (known.value - 5.0e6).abs();
+            assert!(off < 0.02 * 5.0e6, "{follows_s} {known:?}");
+            assert!(known.half_width < 0.05 * 5.0e6, "{follows_s} {known:?}");
+        }
+    }
 
     #[test]
     fn between_flanks_and_without_a_spring_nothing_is_told() {
