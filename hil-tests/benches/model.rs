@@ -4,8 +4,8 @@
 //! The reference machine is recorded and identified, with other noise for every seed (20). Its
 //! `model.toml` is put into the plant and driven around circles without compensation. The table has
 //! the largest burst of the true machine and of the model, µm, and how far the model's is off, %:
-//! median and range over the seeds. `model.toml` has no noise of the motor's force; the last column
-//! is how far it is off with that of the machine.
+//! median and range over the seeds. The last column is how far it is off with the noise of the
+//! machine's own force. What noise was told stands below.
 
 use hil_tests::on_all_cores;
 use plant_sim::Machine;
@@ -28,7 +28,8 @@ fn main() {
     let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
     let seeds = arguments.next().and_then(|text| text.parse().ok());
     let seeds: Vec<u64> = (0..seeds.unwrap_or(SEEDS)).collect();
-    let bursts = on_all_cores(&seeds, |seed| of_seed(FIRST_SEED + seed));
+    let models = on_all_cores(&seeds, |seed| of_seed(FIRST_SEED + seed));
+    let bursts: Vec<&Vec<BurstsUm>> = models.iter().map(|model| &model.bursts).collect();
     println!(
         "| feed, mm/min | machine, µm | model, µm | off, % | from | to | with its noise: off, % |\n|---|---|---|---|---|---|---|"
     );
@@ -47,6 +48,22 @@ fn main() {
             median(&of(|burst| 100.0 * (burst.noisy / burst.machine - 1.0)))
         );
     }
+    let noises: Vec<f64> = models.iter().flat_map(|model| model.noises_n).collect();
+    println!(
+        "\nnoise of the force: {:.2} N (machine {:.2}), {:.2} to {:.2}",
+        median(&noises),
+        Machine::reference().axes[0].actual.force_noise_n,
+        noises.iter().copied().fold(f64::INFINITY, f64::min),
+        noises.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    );
+}
+
+/// What a seed gave.
+struct OfSeed {
+    /// At each feed.
+    bursts: Vec<BurstsUm>,
+    /// Noise of the force of both axes in `model.toml`, N.
+    noises_n: [f64; 2],
 }
 
 /// The largest bursts at a feed, µm.
@@ -58,7 +75,7 @@ struct BurstsUm {
 }
 
 /// The bursts of the machine with a seed and of its model, at each feed.
-fn of_seed(seed: u64) -> Vec<BurstsUm> {
+fn of_seed(seed: u64) -> OfSeed {
     let mut machine = Machine::reference();
     machine.seed = seed;
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
@@ -78,7 +95,10 @@ fn of_seed(seed: u64) -> Vec<BurstsUm> {
         model: burst_um(&model, *feed),
         noisy: burst_um(&noisy, *feed),
     };
-    FEEDS.iter().map(at).collect()
+    OfSeed {
+        bursts: FEEDS.iter().map(at).collect(),
+        noises_n: [0, 1].map(|axis| model.axes[axis].actual.force_noise_n),
+    }
 }
 
 /// The largest burst of a circle without compensation, µm.

@@ -26,6 +26,7 @@ pub(crate) mod fast_motion;
 pub(crate) mod features;
 pub(crate) mod few_periods;
 pub(crate) mod findings;
+pub(crate) mod force_noise;
 pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;

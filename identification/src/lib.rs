@@ -39,6 +39,6 @@ pub use record::dataset::Dataset;
 pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::figures;
 pub use report::forms::{
-    AfterReversal, EffectCurve, Errors, FreeRun, FreeRunErrors, Identification, PreslidingCurve,
-    Report, SlipElement,
+    AfterReversal, EffectCurve, Errors, ForceNoise, FreeRun, FreeRunErrors, Identification,
+    PreslidingCurve, Report, SlipElement,
 };

@@ -7,6 +7,7 @@ use axis_model::EffectName;
 
 use crate::evidence::all_rows::AllRows;
 use crate::evidence::findings::Findings;
+use crate::evidence::force_noise;
 use crate::evidence::reversal;
 use crate::evidence::slow_ripple::RippleAtReversals;
 use crate::motion::filter;
@@ -15,7 +16,7 @@ use crate::record::dataset::Dataset;
 use crate::record::excerpt::note;
 use crate::report::effects::Travel;
 use crate::report::forms::{
-    Curves, Identification, Report, ResidualReport, RippleOrder, SlowRipple,
+    Curves, ForceNoise, Identification, Report, ResidualReport, RippleOrder, SlowRipple,
 };
 
 pub(crate) mod curves;
@@ -96,6 +97,7 @@ fn report(findings: &Findings<'_>) -> Report {
         free_run: None,
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
         presliding: bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates)),
+        force_noise: force_noise(findings),
         cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
         parameters: parameters.estimates,
@@ -104,6 +106,17 @@ fn report(findings: &Findings<'_>) -> Report {
         warnings: remarks::remarks(findings),
         found: words(found.names()),
     }
+}
+
+fn force_noise(findings: &Findings<'_>) -> Option<ForceNoise> {
+    let run = findings.stages.reversals.free_run.as_ref()?;
+    let law = run.controller.law()?;
+    let (motion, model) = ([findings.motion, findings.low], &findings.models.extended);
+    let noise = force_noise::force_noise(findings.dataset, motion, model, &law)?;
+    Some(ForceNoise {
+        recorded: noise.recorded,
+        acting: noise.acting,
+    })
 }
 
 fn words(names: &[EffectName]) -> Vec<String> {

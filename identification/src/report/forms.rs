@@ -226,6 +226,15 @@ pub struct PreslidingCurve {
     pub points: Vec<AfterReversal>,
 }
 
+/// White noise of the force, rms in the unit of the effort.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ForceNoise {
+    /// Of the record alone.
+    pub recorded: f64,
+    /// Acting on the axis.
+    pub acting: f64,
+}
+
 /// What was found, in the form of `identify --json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -260,6 +269,10 @@ pub struct Report {
     /// Friction after a reversal, where there is presliding.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub presliding: Option<PreslidingCurve>,
+    /// Noise of the force, where the controller is known and tells that of the record from that
+    /// which acts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_noise: Option<ForceNoise>,
     /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of
     /// the sample rate, but 20 Hz where the clock jittered and that spoils the acceleration.
     pub cutoff_hz: f64,

@@ -5,7 +5,7 @@ use axis_model::{
     Backlash, Compliance, Coulomb, Delay, Effect, EffectName, EffectTable, Estimate, FrictionDrift,
     Inertia, Presliding, TorqueRipple,
 };
-use identification::{Identification, SlipElement};
+use identification::{ForceNoise, Identification, SlipElement};
 use plant_sim::axis::SUB_STEP_S;
 use plant_sim::friction::Law;
 use plant_sim::machine::{ActuatorForm, EncodersForm, MechanicsForm, refusal};
@@ -114,13 +114,19 @@ pub(super) fn encoders(known: &Known) -> EncodersForm {
     }
 }
 
-/// `[axis.actuator]`: what the model leaves of the effort is taken for noise of the recording.
+/// `[axis.actuator]`: what the model leaves of the effort is taken for noise of the recording,
+/// where no controller tells that from noise that acts.
 pub(super) fn actuator(known: &Known, result: &Identification) -> ActuatorForm {
+    let of_record = ForceNoise {
+        recorded: result.residual_rms,
+        acting: 0.0,
+    };
+    let noise = result.report.force_noise.unwrap_or(of_record);
     ActuatorForm {
         current_loop_time_constant_s: known.lag_s,
         force_limit_n: known.force_limit_n,
-        force_noise_n: 0.0,
-        force_record_noise_n: result.residual_rms.min(known.force_limit_n),
+        force_noise_n: noise.acting.min(known.force_limit_n),
+        force_record_noise_n: noise.recorded.min(known.force_limit_n),
     }
 }
 

@@ -159,6 +159,20 @@ impl Law {
             .collect()
     }
 
+    /// What the law leaves of the effort of a record, row by row; nothing at the ends of a piece,
+    /// where the setpoint beyond is not known.
+    pub(crate) fn leaves_of(&self, record: &Record) -> Vec<f64> {
+        let computed = self.teacher_forced(record, Self::start);
+        let pairs = record.effort.iter().zip(computed);
+        let mut left: Vec<f64> = pairs.map(|(effort, computed)| effort - computed).collect();
+        for piece in record.pieces() {
+            let inside = piece.start + EDGE_ROWS..piece.end.saturating_sub(EDGE_ROWS);
+            let ends = piece.filter(|row| !inside.contains(row));
+            ends.for_each(|row| left[row] = 0.0);
+        }
+        left
+    }
+
     fn misfit_on(&self, record: &Record) -> f64 {
         self.misfits_on(record).whole
     }
