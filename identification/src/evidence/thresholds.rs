@@ -200,8 +200,8 @@ pub(crate) const FEWEST_REVERSAL_ROWS: usize = 200;
 /// neither.
 pub(crate) const BRISTLE_RATIO: f64 = 0.7;
 
-/// Rms of Maxwell slip over that of Dahl about reversals, at most, for it to stand there. Chosen: on
-/// made records whose elements slip one after the other it leaves 0.03 to 0.6, on bristles of
+/// Rms of Maxwell slip over that of Dahl about reversals, at most, for it to stand there. Chosen:
+/// on made records whose elements slip one after the other it leaves 0.03 to 0.6, on bristles of
 /// Dahl's or `LuGre`'s law one and more.
 pub(crate) const SLIP_RATIO: f64 = 0.8;
 
