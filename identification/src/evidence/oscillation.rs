@@ -8,14 +8,17 @@
 //!
 //! Units: m or rad, s.
 
+use std::f64::consts::TAU;
+use std::ops::Range;
+
 use crate::evidence::reversal::rms;
 use crate::evidence::thresholds::{OSCILLATION, WAVE_LEFT};
 use crate::evidence::verdict::Reason;
 use crate::motion::bodies::minus;
+use crate::motion::derivatives::Derivatives;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
-use std::f64::consts::TAU;
 
 /// The setpoint asks for a wave where it has more than this part of it.
 const ASKED: f64 = 0.5;
@@ -58,6 +61,19 @@ impl Wave {
     }
 }
 
+/// Acceleration below the cut-off, from plain differences: sharpened ones would let more of a wave
+/// beyond it through.
+fn slower_acceleration(dataset: &Dataset, motion: &Kinematics, record: &Record) -> Vec<f64> {
+    if !dataset.is_sharpened {
+        return motion.acceleration_lp.clone();
+    }
+    let of_piece = |piece: Range<usize>| {
+        Derivatives::new(&record.position[piece], motion.period_s, dataset.hold).acceleration
+    };
+    let pieces = motion.pieces.iter().cloned();
+    motion.low_passed(&pieces.flat_map(of_piece).collect::<Vec<f64>>())
+}
+
 /// What is said of a record on which a wave drives the axis; `what` is the record.
 pub(crate) fn reason(
     dataset: &Dataset,
@@ -67,7 +83,7 @@ pub(crate) fn reason(
 ) -> Option<Reason> {
     let wave = Wave::of(motion, &record.position)?;
     let inside: Vec<bool> = (0..motion.len()).map(|row| motion.is_inside(row)).collect();
-    let slower = rms(&motion.acceleration_lp, &inside);
+    let slower = rms(&slower_acceleration(dataset, motion, record), &inside);
     if wave.left >= WAVE_LEFT || wave.acceleration() <= OSCILLATION * slower {
         return None;
     }
@@ -126,6 +142,21 @@ mod tests {
         );
         let words = said_of(wave(150.0, 40.0e-6), wave(150.0, 60.0e-6)).unwrap();
         assert!(words.contains("the setpoint swings on"), "{words}");
+    }
+
+    #[test]
+    fn a_wave_is_told_beside_a_sharpened_motion_too() {
+        let smooth = two_sines(6000);
+        let wave = wave(112.0, 4.0e-6);
+        let path = smooth.iter().enumerate().map(|(row, x)| x + wave(row));
+        let mut axis = on(record(1.0e-3, path.collect()));
+        let plain = slower_acceleration(&axis.dataset, &axis.motion, &axis.dataset.train);
+        assert_eq!(plain, axis.motion.acceleration_lp);
+        axis.dataset.is_sharpened = true;
+        let motion = Kinematics::new(&axis.dataset, &axis.dataset.train).unwrap();
+        assert_ne!(motion.acceleration_lp, plain);
+        let still = slower_acceleration(&axis.dataset, &motion, &axis.dataset.train);
+        assert_eq!(still, plain);
     }
 
     #[test]
