@@ -8,9 +8,9 @@
 
 use std::path::Path;
 
-use hil_tests::intervals::{self, Draw};
+use hil_tests::intervals::{self, Draw, Said};
 use hil_tests::on_all_cores;
-use identification::{Dataset, Report, identify};
+use identification::{Dataset, identify};
 use plant_sim::Machine;
 use plant_sim::friction::Law;
 use plant_sim::machine::MachineAxis;
@@ -58,15 +58,13 @@ fn drawn(folder: &Path, axis: &MachineAxis) -> Vec<Draw> {
     let records = folder.join(format!("records-{}", axis.name));
     let dataset = Dataset::read(&records, None, None).unwrap_or_else(|why| panic!("{why}"));
     let identified = identify(&dataset, &mut |_| ()).unwrap_or_else(|why| panic!("{why}"));
-    let said = |report: &Report, name: &str| {
-        let estimate = report.parameters.get(name)?;
-        Some((estimate.value, estimate.half_width()))
-    };
+    let table = &identified.report.parameters;
+    let said = |name| Said::in_table(table.get(name), table.unknown.contains_key(name));
     let draw = |(name, truth): (&'static str, f64)| Draw {
         make: "reference".into(),
         name,
         truth,
-        said: said(&identified.report, name),
+        said: said(name),
     };
     truths(axis).into_iter().map(draw).collect()
 }

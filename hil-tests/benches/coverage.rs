@@ -1,17 +1,18 @@
 //! Whether intervals hold the truth: `cargo bench -p hil-tests --bench coverage [-- DRAWS [NAME]]`.
 //!
-//! Records of unlike make whose structure is declared, so that nothing is searched. A draw is a
-//! machine, its motion and its noise. Each parameter has so many draws (200), spread over the makes
-//! that have it; NAME takes the makes with that in their name.
+//! Records of unlike make. In the first table their structure is declared, so that nothing is
+//! searched; in the second what is not declared is hidden, and was selected before it had an
+//! interval. A draw is a machine, its motion and its noise. Each parameter has so many draws (200),
+//! spread over the makes that have it; NAME takes the makes with that in their name.
 //!
-//! What the table says: [`hil_tests::intervals`].
+//! What a table says: [`hil_tests::intervals`].
 
 use std::collections::BTreeMap;
 
 use axis_model::{Effect, EffectName, Estimate};
-use hil_tests::intervals::{self, Draw};
+use hil_tests::intervals::{self, Draw, Said};
 use hil_tests::on_all_cores;
-use identification::{Dataset, fit_declared};
+use identification::{Dataset, Identification, fit_declared, identify};
 use makes::Recipe;
 use makes::make::Form;
 use makes::truth::Known;
@@ -28,25 +29,33 @@ fn main() {
     let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
     let draws = arguments.next().and_then(|text| text.parse().ok());
     let part = arguments.next().unwrap_or_default();
-    let plan = plan(draws.unwrap_or(DRAWS), &part);
-    eprintln!("{} records", plan.len());
-    let drawn: Vec<Draw> = on_all_cores(&plan, drawn).into_iter().flatten().collect();
-    intervals::print(&drawn);
+    for (title, form) in [
+        ("The structure declared", Form::Declared),
+        ("After selection", Form::Hidden),
+    ] {
+        let plan = plan(form, draws.unwrap_or(DRAWS), &part);
+        eprintln!("{} records", plan.len());
+        let drawn = on_all_cores(&plan, |(make, seed)| drawn(form, make, *seed));
+        let drawn: Vec<Draw> = drawn.into_iter().flatten().collect();
+        println!("{title}:\n");
+        intervals::print(&drawn);
+        println!();
+    }
 }
 
-/// The declared records of a seed whose name has a part in it.
-fn declared(seed: u64, part: &str) -> Vec<Recipe> {
+/// The records of a form and a seed whose name has a part in it.
+fn recipes(form: Form, seed: u64, part: &str) -> Vec<Recipe> {
     let mut recipes = makes::recipes(seed);
-    let form = format!("-{}", Form::Declared.word());
+    let end = format!("-{}", form.word());
     let is_twice = |recipe: &Recipe| TWICE.iter().any(|make| recipe.name.starts_with(make));
-    recipes.retain(|recipe| recipe.name.ends_with(&form) && recipe.name.contains(part));
+    recipes.retain(|recipe| recipe.name.ends_with(&end) && recipe.name.contains(part));
     recipes.retain(|recipe| !is_twice(recipe));
     recipes
 }
 
 /// Makes with their seeds: the rarest parameters first, each shared out over its makes.
-fn plan(draws: usize, part: &str) -> Vec<(String, u64)> {
-    let known = on_all_cores(&declared(FIRST_SEED, part), |recipe| {
+fn plan(form: Form, draws: usize, part: &str) -> Vec<(String, u64)> {
+    let known = on_all_cores(&recipes(form, FIRST_SEED, part), |recipe| {
         let parameters = recipe.entry().truth.parameters;
         let names: Vec<&str> = parameters.iter().map(|known| known.name).collect();
         (recipe.name.clone(), names)
@@ -77,60 +86,50 @@ fn plan(draws: usize, part: &str) -> Vec<(String, u64)> {
     seeds.into_iter().flat_map(of_make).collect()
 }
 
-fn drawn((make, seed): &(String, u64)) -> Vec<Draw> {
-    let mut recipes = declared(*seed, make);
-    recipes.retain(|recipe| recipe.name == *make);
+fn drawn(form: Form, make: &str, seed: u64) -> Vec<Draw> {
+    let mut recipes = recipes(form, seed, make);
+    recipes.retain(|recipe| recipe.name == make);
     let entry = recipes.remove(0).entry();
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     entry
         .write(folder.path())
         .expect("the folder can be written");
     let dataset = Dataset::read(&folder.path().join(&entry.name), None, None);
-    let fitted = dataset.and_then(|dataset| fit_declared(&dataset, &mut |_| ()));
-    let said = match fitted {
-        Ok(fitted) => Said {
-            stated: fitted.effects.iter().rev().flat_map(named).collect(),
-            fitted: fitted.report.parameters,
-        },
-        Err(why) => {
-            eprintln!("{make} {seed}: {why}");
-            Said::default()
-        }
-    };
+    let result = dataset.and_then(|dataset| match form {
+        Form::Declared => fit_declared(&dataset, &mut |_| ()),
+        _ => identify(&dataset, &mut |_| ()),
+    });
+    if let Err(why) = &result {
+        eprintln!("{make} {seed}: {why}");
+    }
     let of_parameter = |known: &Known| Draw {
-        make: make.clone(),
+        make: make.to_owned(),
         name: known.name,
         truth: known.value,
-        said: said.of(known).map(|said| (said.value, said.half_width())),
+        said: result
+            .as_ref()
+            .map_or(Said::Nothing, |result| said_of(result, known)),
     };
     entry.truth.parameters.iter().map(of_parameter).collect()
 }
 
-/// What was said of a draw, as the vocabulary has it and as it was fitted.
-#[derive(Default)]
-struct Said {
-    stated: BTreeMap<String, Estimate>,
-    fitted: BTreeMap<String, Estimate>,
+/// What is said of a parameter, as the vocabulary has it, else as it was fitted. Friction that
+/// differs by direction is the force of an offset, and told as one.
+fn said_of(result: &Identification, known: &Known) -> Said {
+    let same_force = known.name == EffectName::CoulombAsymmetry.as_str();
+    let offset = same_force.then_some(EffectName::Offset.as_str());
+    let mut names = [known.name].into_iter().chain(offset);
+    let told = names.find_map(|name| told(result, name, known.unit.is_empty()));
+    let unknown = &result.report.parameters.unknown;
+    Said::in_table(told.as_ref(), unknown.contains_key(known.name))
 }
 
-impl Said {
-    /// What was said of a parameter: a share where a share is true, else an effort. Friction that
-    /// differs by direction is the force of an offset, and told as one.
-    fn of(&self, known: &Known) -> Option<&Estimate> {
-        let is_like = |said: &&Estimate| said.unit.is_empty() == known.unit.is_empty();
-        let told = |name: &str| {
-            let mut both = [&self.stated, &self.fitted].into_iter();
-            both.find_map(|said| said.get(name).filter(is_like))
-        };
-        let same_force = known.name == EffectName::CoulombAsymmetry.as_str();
-        told(known.name).or_else(|| told(EffectName::Offset.as_str()).filter(|_| same_force))
-    }
-}
-
-/// The parameters of an effect, named as reports name them.
-fn named(effect: &Effect<Estimate>) -> Vec<(String, Estimate)> {
-    let parts = effect.parts().into_iter();
-    parts
-        .map(|(row, estimate)| (row.report_name(), estimate.clone()))
-        .collect()
+/// A known parameter: a share where a share is true, else an effort.
+fn told(result: &Identification, name: &str, is_share: bool) -> Option<Estimate> {
+    let is_like = |said: &Estimate| said.unit.is_empty() == is_share;
+    let parts = result.effects.iter().flat_map(Effect::parts);
+    let mut stated = parts.filter(|(row, _)| row.report_name() == name);
+    let stated = stated.find_map(|(_, own)| Some(own.clone()).filter(is_like));
+    let fitted = || result.report.parameters.get(name).cloned();
+    stated.or_else(|| fitted().filter(is_like))
 }

@@ -2,9 +2,12 @@
 //!
 //! Per parameter: the share of the intervals that hold the truth; how far the median estimate is
 //! off, alone and over the half of the central 95 % of the errors; the median half width, alone and
-//! over the same; how many are not reported, and how many have no interval.
+//! over the same; how many are not reported, how many are said not to be known, and how many have
+//! no interval.
 
 use std::collections::BTreeMap;
+
+use axis_model::Estimate;
 
 /// What a draw says of a parameter whose true size is given.
 pub struct Draw {
@@ -14,8 +17,38 @@ pub struct Draw {
     pub name: &'static str,
     /// Its true size.
     pub truth: f64,
+    /// What is said.
+    pub said: Said,
+}
+
+/// What is said of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Said {
     /// Value, and the half width of its interval.
-    pub said: Option<(f64, f64)>,
+    Known(f64, f64),
+    /// That the record does not know it.
+    Unknown,
+    /// Nothing.
+    Nothing,
+}
+
+impl Said {
+    /// What a table of parameters says of one.
+    #[must_use]
+    pub fn in_table(known: Option<&Estimate>, is_unknown: bool) -> Self {
+        let unsaid = if is_unknown {
+            Self::Unknown
+        } else {
+            Self::Nothing
+        };
+        known.map_or(unsaid, Self::of)
+    }
+
+    /// An estimate.
+    #[must_use]
+    pub const fn of(estimate: &Estimate) -> Self {
+        Self::Known(estimate.value, estimate.half_width())
+    }
 }
 
 /// What was said of a parameter, beside its truth.
@@ -30,7 +63,7 @@ struct Beside {
 /// Prints the table: each parameter over all machines, on each of them, and all together.
 pub fn print(drawn: &[Draw]) {
     println!(
-        "| parameter | draws | held, % | off | half width | not reported | no interval |\n|---|---|---|---|---|---|---|"
+        "| parameter | draws | held, % | off | half width | not reported | unknown | no interval |\n|---|---|---|---|---|---|---|---|"
     );
     let mut of_name: BTreeMap<(&str, &str), Vec<&Draw>> = BTreeMap::new();
     for draw in drawn {
@@ -46,13 +79,15 @@ pub fn print(drawn: &[Draw]) {
 }
 
 fn row(name: &str, draws: &[&Draw]) -> String {
-    let beside = |draw: &&Draw| {
-        draw.said.map(|(value, half)| Beside {
+    let beside = |draw: &&Draw| match draw.said {
+        Said::Known(value, half) => Some(Beside {
             off: value - draw.truth,
             half,
             truth: draw.truth,
-        })
+        }),
+        Said::Unknown | Said::Nothing => None,
     };
+    let are = |said: Said| draws.iter().filter(|draw| draw.said == said).count();
     let all: Vec<Beside> = draws.iter().filter_map(beside).collect();
     let with: Vec<&Beside> = all.iter().filter(|one| one.half > 0.0).collect();
     let held = with.iter().filter(|one| one.off.abs() <= one.half).count();
@@ -62,14 +97,15 @@ fn row(name: &str, draws: &[&Draw]) -> String {
     let half = sorted(with.iter().map(|one| share(one.half, one.truth)));
     let range = 0.5 * (at(&off, 0.975) - at(&off, 0.025));
     format!(
-        "| {name} | {} | {:.1} | {:+.3}% {:.2} | {:.3}% {:.2} | {} | {} |",
+        "| {name} | {} | {:.1} | {:+.3}% {:.2} | {:.3}% {:.2} | {} | {} | {} |",
         draws.len(),
         100.0 * held as f64 / with.len().max(1) as f64,
         100.0 * at(&off, 0.5),
         at(&off, 0.5) / range,
         100.0 * at(&half, 0.5),
         at(&half, 0.5) / range,
-        draws.len() - all.len(),
+        are(Said::Nothing),
+        are(Said::Unknown),
         all.len() - with.len()
     )
 }
@@ -94,11 +130,12 @@ mod tests {
     #[test]
     fn a_row_counts_what_holds_what_is_not_said_and_what_has_no_interval() {
         let said = [
-            Some((101.0, 2.0)),
-            Some((103.0, 2.0)),
-            Some((99.0, 2.0)),
-            Some((100.0, 0.0)),
-            None,
+            Said::Known(101.0, 2.0),
+            Said::Known(103.0, 2.0),
+            Said::Known(99.0, 2.0),
+            Said::Known(100.0, 0.0),
+            Said::Nothing,
+            Said::Unknown,
         ];
         let draws = said.map(|said| Draw {
             make: "a".into(),
@@ -108,7 +145,7 @@ mod tests {
         });
         let draws: Vec<&Draw> = draws.iter().collect();
         // Errors −1, 1 and 3 %: the half of their range is 2 %.
-        let wanted = "| inertia | 5 | 66.7 | +1.000% 0.50 | 2.000% 1.00 | 1 | 1 |";
+        let wanted = "| inertia | 6 | 66.7 | +1.000% 0.50 | 2.000% 1.00 | 1 | 1 | 1 |";
         assert_eq!(row("inertia", &draws), wanted);
     }
 }

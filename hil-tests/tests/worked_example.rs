@@ -47,7 +47,7 @@ fn the_worked_example_goes_from_a_residual_to_its_effect() {
 }
 
 fn figures(report: &Report) -> Vec<golden::Measured> {
-    let of = |name: &str| &report.parameters[name];
+    let of = |name: &str| &report.parameters.known[name];
     let half_width = |name: &str| 0.5 * (of(name).high - of(name).low);
     let [best, second] = [&report.candidates[0], &report.candidates[1]];
     let free_run = report.free_run.as_ref().unwrap().validate;

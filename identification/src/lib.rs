@@ -40,5 +40,5 @@ pub use record::units::{AxisKind, Effort, EffortHold};
 pub use report::figures;
 pub use report::forms::{
     AfterReversal, EffectCurve, Errors, ForceNoise, FreeRun, FreeRunErrors, Identification,
-    PreslidingCurve, Report, SlipElement,
+    ParameterTable, PreslidingCurve, Report, SlipElement, UnknownParameter,
 };

@@ -32,6 +32,7 @@ pub(crate) mod protocols;
 pub(crate) mod ranking;
 pub(crate) mod remarks;
 pub(crate) mod shown;
+pub(crate) mod unknown;
 
 /// The report with its curves; errors and predictions are of all rows where an excerpt was fitted.
 pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>) -> Identification {
@@ -82,6 +83,8 @@ fn report(findings: &Findings<'_>) -> Report {
     let bristle = findings.models.extended.bristle.as_ref();
     let whole = dataset.whole();
     let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
+    let presliding = bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates));
+    let table = unknown::table(parameters.estimates);
     Report {
         dataset: dataset.name.clone(),
         declared: words(&dataset.declared),
@@ -96,14 +99,14 @@ fn report(findings: &Findings<'_>) -> Report {
         residual: residual(findings),
         free_run: None,
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
-        presliding: bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates)),
+        presliding,
         force_noise: force_noise(findings),
         cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
-        parameters: parameters.estimates,
-        parameters_from: parameters.from,
         verdict: findings.verdict.word().into(),
-        warnings: remarks::remarks(findings),
+        warnings: remarks::remarks(findings, &table),
+        parameters: table,
+        parameters_from: parameters.from,
         found: words(found.names()),
     }
 }

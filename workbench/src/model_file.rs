@@ -6,10 +6,8 @@
 //! (`table_mass`), and what the simulator cannot be told (`left_out`). A screw whose stiffness was
 //! not identified is stiff for the simulator.
 
-use std::collections::BTreeMap;
-
-use axis_model::{EffectTable, Estimate};
-use identification::Identification;
+use axis_model::EffectTable;
+use identification::{Identification, ParameterTable};
 use plant_sim::friction::Law;
 use plant_sim::machine::{ActuatorForm, Bus, EncodersForm, Gains, Limits, MechanicsForm, Timing};
 use serde::Serialize;
@@ -71,7 +69,7 @@ struct Identified {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     left_out: Vec<String>,
     #[serde(flatten)]
-    parameters: BTreeMap<String, Estimate>,
+    parameters: ParameterTable,
 }
 
 /// The first line of the file.
@@ -123,6 +121,10 @@ impl Own {
         if friction.is_some() {
             stated.without_presliding();
         }
+        let unknown = report.parameters.unknown.keys();
+        stated
+            .left_out
+            .extend(unknown.map(|name| format!("{name}: unknown")));
         let names = report.declared.iter().chain(&report.found);
         Self {
             name: name.into(),
@@ -155,7 +157,7 @@ struct ParametersOnly<'a> {
     declared: &'a [String],
     found: &'a [String],
     verdict: &'a str,
-    identified: &'a BTreeMap<String, Estimate>,
+    identified: &'a ParameterTable,
 }
 
 /// Parameters alone, for an axis that the simulator does not have.
@@ -176,11 +178,12 @@ pub fn parameters_only(name: &str, result: &Identification) -> String {
 mod tests {
     use super::*;
     use axis_model::{
-        Backlash, Coulomb, Delay, Effect, FrictionDrift, Inertia, Presliding, TorqueRipple,
-        ViscousAsymmetry,
+        Backlash, Coulomb, Delay, Effect, Estimate, FrictionDrift, Inertia, Presliding,
+        TorqueRipple, ViscousAsymmetry,
     };
-    use identification::{PreslidingCurve, Report, SlipElement};
+    use identification::{PreslidingCurve, Report, SlipElement, UnknownParameter};
     use plant_sim::Machine;
+    use std::collections::BTreeMap;
 
     fn estimate(value: f64) -> Estimate {
         Estimate {
@@ -199,7 +202,10 @@ mod tests {
                 declared: vec!["inertia".into(), "coulomb".into()],
                 found: vec!["delay".into()],
                 verdict: "explained".into(),
-                parameters: BTreeMap::from([("coulomb".into(), estimate(250.0))]),
+                parameters: ParameterTable {
+                    known: BTreeMap::from([("coulomb".into(), estimate(250.0))]),
+                    ..ParameterTable::default()
+                },
                 ..Report::default()
             },
             ..Identification::default()
@@ -317,6 +323,32 @@ mod tests {
         ];
         assert_eq!(left_out, wanted);
         assert_eq!(machine.axes[0].actual.effects.list().len(), 2);
+    }
+
+    #[test]
+    fn what_the_record_does_not_know_is_left_out_and_has_no_value() {
+        let mut result = identification(Vec::new());
+        let unknown = UnknownParameter {
+            unknown: true,
+            unit: "N s/m".into(),
+            low: 0.0,
+            high: 90.0,
+            record: "long moves",
+        };
+        let table = &mut result.report.parameters.unknown;
+        table.extend(["inertia", "viscous"].map(|name| (name.to_owned(), unknown.clone())));
+        let (file, machine) = written_of(&result);
+        let left_out = identified(&file)["left_out"].as_array().unwrap();
+        let left_out: Vec<&str> = left_out.iter().filter_map(|word| word.as_str()).collect();
+        assert_eq!(left_out, ["inertia: unknown", "viscous: unknown"]);
+        let viscous = identified(&file)["viscous"].as_table().unwrap();
+        assert_eq!(viscous["unknown"].as_bool(), Some(true));
+        assert!(!viscous.contains_key("value"));
+        let own = Machine::reference().axes[0].actual.mechanics;
+        let mechanics = machine.axes[0].actual.mechanics;
+        let moved_kg = |m: plant_sim::mechanics::Mechanics| m.motor_inertia_kg + m.table_mass_kg;
+        assert!((moved_kg(mechanics) - moved_kg(own)).abs() < 1.0e-9);
+        assert_eq!(machine.axes[0].actual.sliding.viscous_n_s_per_m, 0.0);
     }
 
     #[test]

@@ -183,29 +183,41 @@ fn parameters_once(result: &Identification, written: &Written) -> Vec<String> {
         .into_iter()
         .filter(|path| !path.starts_with("/parameters/"));
     let report = &result.report;
-    let homeless = report.parameters.keys();
+    let homeless = report.parameters.names();
     let homeless = homeless.filter(|name| !report.parameters_from.contains_key(*name));
     elsewhere.chain(homeless.cloned()).collect()
 }
 
 fn intervals_hold(result: &Identification, _: &Written) -> Vec<String> {
-    let rows = result.report.parameters.iter();
-    let outside = rows.filter(|(_, one)| !(one.low <= one.value && one.value <= one.high));
+    let table = &result.report.parameters;
+    let known = table.known.iter();
+    let outside = known.filter(|(_, one)| !(one.low <= one.value && one.value <= one.high));
+    let outside = outside.map(|(name, one)| format!("{name} {one:?}"));
+    let unknown = table.unknown.iter();
+    let turned = unknown.filter(|(_, one)| !(one.unknown && one.low <= one.high));
     outside
-        .map(|(name, one)| format!("{name} {one:?}"))
+        .chain(turned.map(|(name, one)| format!("{name} {one:?}")))
         .collect()
 }
 
 fn model_is_the_same(result: &Identification, written: &Written) -> Vec<String> {
     let of_model = written.identified();
-    let rows = result.report.parameters.iter();
+    let table = &result.report.parameters;
+    let said_unknown = |name: &String| of_model.get(name)?.get("unknown")?.as_bool();
+    let unknown = table.unknown.keys();
+    let not_said = unknown.filter(|name| said_unknown(name) != Some(true));
+    let rows = table.known.iter();
     let other = rows.filter(|(name, one)| {
         let number = |key: &str| of_model.get(*name)?.get(key)?.as_float();
         [("value", one.value), ("low", one.low), ("high", one.high)]
             .iter()
             .any(|(key, wanted)| number(key) != Some(*wanted))
     });
-    other.map(|(name, _)| name.clone()).collect()
+    other
+        .map(|(name, _)| name)
+        .chain(not_said)
+        .cloned()
+        .collect()
 }
 
 /// Digits of a number that mean something.
@@ -239,8 +251,9 @@ fn digits_of_intervals(result: &Identification, written: &Written) -> Vec<String
     let Some(table) = written.table("parameter") else {
         return vec!["no table of parameters".into()];
     };
-    let rows = table[1..].iter().filter(|row| !is_borne(row));
-    let missing = (table.len() - 1 != result.report.parameters.len())
+    let known = table[1..].iter().filter(|row| row[1] != "unknown");
+    let rows = known.filter(|row| !is_borne(row));
+    let missing = (table.len() - 1 != result.report.parameters.names().count())
         .then(|| "the table has other rows".to_owned());
     rows.map(|row| row.join(" ")).chain(missing).collect()
 }

@@ -37,7 +37,7 @@ pub(crate) struct Travel {
 
 /// The effects of a report.
 pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> {
-    let table = in_shares(&report.parameters, travel);
+    let table = in_shares(&report.parameters.known, travel);
     let mut effects = Vec::new();
     for name in EffectName::ALL {
         let each = (1..).map(|times| assemble(*name, times, &table));
@@ -63,7 +63,8 @@ fn assemble(name: EffectName, times: usize, table: &Table) -> Option<Effect<Esti
 /// The mass of the load is a structure of its own in the inverse model.
 const LOAD_INERTIA: &str = "load_inertia";
 
-fn key(parameter: &Parameter) -> String {
+/// The name that a report gives a parameter.
+pub(crate) fn key(parameter: &Parameter) -> String {
     if parameter.effect == EffectName::Inertia && parameter.optional {
         LOAD_INERTIA.into()
     } else {
@@ -216,7 +217,7 @@ fn at_reversals(report: &Report) -> Vec<Effect<Estimate>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::forms::{RippleOrder, SlowRipple};
+    use crate::report::forms::{ParameterTable, RippleOrder, SlowRipple};
 
     const fn travel(middle: f64, half: f64) -> Travel {
         Travel {
@@ -237,7 +238,10 @@ mod tests {
     fn report(parameters: &[(&str, f64)]) -> Report {
         let entry = |(name, value): &(&str, f64)| ((*name).to_owned(), about(*value, 1.0, "N"));
         Report {
-            parameters: parameters.iter().map(entry).collect(),
+            parameters: ParameterTable {
+                known: parameters.iter().map(entry).collect(),
+                ..ParameterTable::default()
+            },
             ..Report::default()
         }
     }

@@ -1,7 +1,10 @@
 //! What is said about an identification: the form of `identify --json`, and curves for pictures.
 
+use std::collections::BTreeMap;
+
 use axis_model::{Effect, Estimate};
 use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
 use crate::report::protocols::Protocol;
 
@@ -235,6 +238,57 @@ pub struct ForceNoise {
     pub acting: f64,
 }
 
+/// A parameter that the record does not know.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct UnknownParameter {
+    /// Always true: it stands in the place of a value.
+    pub unknown: bool,
+    /// Unit of the interval.
+    pub unit: String,
+    /// Lower end of the interval in which it lies.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// What to record so that it is known.
+    pub record: &'static str,
+}
+
+/// Parameters by name: those that the record knows, and those that it does not. One map in JSON and
+/// TOML.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParameterTable {
+    /// Values with intervals.
+    pub known: BTreeMap<String, Estimate>,
+    /// Intervals too wide for a value.
+    pub unknown: BTreeMap<String, UnknownParameter>,
+}
+
+impl ParameterTable {
+    /// A parameter that is known.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&Estimate> {
+        self.known.get(name)
+    }
+
+    /// All names.
+    pub fn names(&self) -> impl Iterator<Item = &String> {
+        self.known.keys().chain(self.unknown.keys())
+    }
+}
+
+impl Serialize for ParameterTable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.names().count()))?;
+        for (name, known) in &self.known {
+            map.serialize_entry(name, known)?;
+        }
+        for (name, unknown) in &self.unknown {
+            map.serialize_entry(name, unknown)?;
+        }
+        map.end()
+    }
+}
+
 /// What was found, in the form of `identify --json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -280,9 +334,9 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub as_defined: Option<[Errors; 2]>,
     /// Parameters of the extended model.
-    pub parameters: std::collections::BTreeMap<String, Estimate>,
+    pub parameters: ParameterTable,
     /// The output that each of them comes from.
-    pub parameters_from: std::collections::BTreeMap<String, &'static str>,
+    pub parameters_from: BTreeMap<String, &'static str>,
     /// `explained` or `unexplained`.
     pub verdict: String,
     /// What the record cannot say, and what cannot be told apart.

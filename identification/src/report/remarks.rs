@@ -10,13 +10,14 @@ use crate::evidence::reversal::gap::SeenGap;
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
 use crate::report::figures;
+use crate::report::forms::{ParameterTable, UnknownParameter};
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
 mod beyond;
 mod directions;
 
 /// All remarks, the strongest first.
-pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
+pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> Vec<String> {
     let (dataset, stage) = (findings.dataset, &findings.stages.reversals);
     let free_run = stage.free_run.as_ref();
     let mut list: Vec<String> = free_run
@@ -44,8 +45,19 @@ pub(crate) fn remarks(findings: &Findings<'_>) -> Vec<String> {
     let fitted = &findings.models.extended.fitted;
     let found = findings.found.names();
     list.extend(directions::of_an_offset(dataset, found, fitted));
+    list.extend(parameters.unknown.iter().map(of_an_unknown));
     list.extend(excitation::warnings(dataset, findings.motion));
     list
+}
+
+fn of_an_unknown((name, own): (&String, &UnknownParameter)) -> String {
+    format!(
+        "unknown: {name}, somewhere between {} and {} {}; to know it, record {}",
+        figures::error(own.low),
+        figures::error(own.high),
+        own.unit,
+        own.record
+    )
 }
 
 const VAGUE_STIFFNESS: &str = "compliance: while the motor moves the effort goes so closely with the motion that the record does not tell the motor's mass and friction from the load's; the stiffness may be anything up to twice that of the table: record faster accelerations";

@@ -22,6 +22,8 @@ pub struct Known {
     pub lag_s: f64,
     /// Limit of the force, N.
     pub force_limit_n: f64,
+    /// Mass that the gains are for, kg: stands where the identification does not know it.
+    pub inertia_kg: f64,
     /// Limits of the motion.
     pub limits: Limits,
     /// Gains of the drive.
@@ -43,6 +45,7 @@ impl Known {
             load_resolution_m: actual.load_encoder_resolution_m,
             lag_s: actual.current_loop_time_constant_s,
             force_limit_n: actual.force_limit_n,
+            inertia_kg: actual.mechanics.motor_inertia_kg + actual.mechanics.table_mass_kg,
             limits: axis.limits,
             gains: axis.gains,
             period_s,
@@ -82,6 +85,7 @@ impl Known {
             load_resolution_m: dataset.load_resolution.clamp(1.0e-10, 1.0e-4),
             lag_s: dataset.effort_lag_s,
             force_limit_n: dataset.effort_limit.unwrap_or(3.0 * hardest),
+            inertia_kg: mass_kg,
             limits: Limits {
                 velocity_m_per_s: (1.2 * fastest / (10.0 * record.period_s)).clamp(0.1, 5.0),
                 acceleration_m_per_s2: (hardest / mass_kg).clamp(0.5, 200.0),

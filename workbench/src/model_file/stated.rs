@@ -46,7 +46,7 @@ pub(super) fn mechanics(
     effects: &[Effect<Estimate>],
 ) -> (MechanicsForm, &'static str) {
     let gap: Option<&Backlash<Estimate>> = identified!(effects, Backlash);
-    let masses = Masses::of(effects, gap);
+    let masses = Masses::of(effects, gap, known.inertia_kg);
     let compliance: Option<&Compliance<Estimate>> = identified!(effects, Compliance);
     let stiffness = masses.stiffness_n_per_m(compliance);
     let usual = 2.0 * SCREW_DAMPING * (stiffness * masses.reduced_kg()).sqrt();
@@ -72,9 +72,9 @@ struct Masses {
 }
 
 impl Masses {
-    fn of(effects: &[Effect<Estimate>], gap: Option<&Backlash<Estimate>>) -> Self {
+    fn of(effects: &[Effect<Estimate>], gap: Option<&Backlash<Estimate>>, design_kg: f64) -> Self {
         let inertia: Option<&Inertia<Estimate>> = identified!(effects, Inertia);
-        let all_kg = inertia.map_or(0.0, |own| own.inertia.value);
+        let all_kg = inertia.map_or(design_kg, |own| own.inertia.value);
         let all_kg = all_kg.max(LEAST_MASS_KG);
         let load = inertia.and_then(|own| own.load.as_ref());
         let behind_gap = gap.and_then(|gap| gap.load_share.as_ref());
@@ -165,7 +165,9 @@ pub(super) fn effects(known: &Known, effects: &[Effect<Estimate>], table_kg: f64
 /// `[axis.actual.friction]`: Maxwell slip, which no effect of the vocabulary can state. Elements as
 /// stiff as the sub-step carries, at most.
 pub(super) fn friction(result: &Identification, table_kg: f64) -> Option<Law> {
-    let curve = result.report.presliding.as_ref()?;
+    let deflection: Option<&Presliding<Estimate>> = identified!(result.effects, Presliding);
+    let curve = result.report.presliding.as_ref();
+    let curve = curve.filter(|_| deflection.is_some())?;
     let coulomb: Option<&Coulomb<Estimate>> = identified!(result.effects, Coulomb);
     let level_n = coulomb?.coulomb.value.max(LEAST_LEVEL_N);
     let shortest = level_n / stiffest(table_kg);

@@ -1,7 +1,10 @@
 //! What an identification found, as a sentence and as tables of text: the same for a page and for
 //! the console.
 
-use identification::{Errors, FreeRun, FreeRunErrors, Identification, Report, figures};
+use axis_model::Estimate;
+use identification::{
+    Errors, FreeRun, FreeRunErrors, Identification, Report, UnknownParameter, figures,
+};
 
 /// Rows of cells; the first one is the head.
 pub type TextTable = Vec<Vec<String>>;
@@ -159,22 +162,31 @@ pub fn shown_table(report: &Report) -> TextTable {
 #[must_use]
 pub fn parameter_table(report: &Report) -> TextTable {
     let columns = ["parameter", "value", "low", "high", "unit", "from"];
-    let mut rows = vec![head(columns)];
-    rows.extend(report.parameters.iter().map(|(name, parameter)| {
-        let [value, low, high] = figures::estimate(parameter);
-        let has_interval = parameter.low < parameter.high;
-        let end = |end: String| if has_interval { end } else { "–".into() };
+    let row = |name: &str, [value, low, high]: [String; 3], unit: &str| {
         let from = report.parameters_from.get(name).copied();
-        vec![
-            name.clone(),
-            value,
-            end(low),
-            end(high),
-            parameter.unit.clone(),
-            from.unwrap_or_default().to_owned(),
-        ]
-    }));
+        let [name, unit, from] = [name, unit, from.unwrap_or_default()].map(str::to_owned);
+        vec![name, value, low, high, unit, from]
+    };
+    let mut rows = vec![head(columns)];
+    let known = report.parameters.known.iter();
+    rows.extend(known.map(|(name, known)| row(name, with_interval(known), &known.unit)));
+    let unknown = report.parameters.unknown.iter();
+    rows.extend(unknown.map(|(name, unknown)| row(name, without_value(unknown), &unknown.unit)));
     rows
+}
+
+/// Value and ends; a value without an interval has none.
+fn with_interval(known: &Estimate) -> [String; 3] {
+    let [value, low, high] = figures::estimate(known);
+    let has_interval = known.low < known.high;
+    let end = |end: String| if has_interval { end } else { "–".into() };
+    [value, end(low), end(high)]
+}
+
+fn without_value(unknown: &UnknownParameter) -> [String; 3] {
+    let ends = [unknown.low, unknown.high].map(figures::error);
+    let [low, high] = ends;
+    ["unknown".into(), low, high]
 }
 
 /// Who drove the simulation, and what its errors are worth.
