@@ -1,16 +1,15 @@
-//! Records of the axes over the bus: all axes move by their own sines at the same time, and each
-//! becomes a dataset folder that `identify` reads.
+//! Records of the axes over the bus: all axes move by their own excitation at the same time, and
+//! each becomes a dataset folder that `identify` reads.
 
 pub mod dataset_folder;
 
 use plant_sim::Machine;
-use plant_sim::machine::MachineAxis;
 
 use crate::error::Outcome;
 use crate::network::link::Link;
 use crate::network::master::AxisCycle;
 use crate::session::Session;
-use crate::trajectory::windowed_sines::{self, WindowedSine};
+use crate::trajectory::Excitation;
 
 /// Noise of records is another than that of circles.
 pub const RECORDING_RUN: u64 = 1;
@@ -56,7 +55,7 @@ impl Part {
 /// How all axes move.
 struct Plan {
     /// Per axis.
-    sines: Vec<Vec<WindowedSine>>,
+    excitations: Vec<Excitation>,
     /// Until the last axis has done.
     duration_s: f64,
 }
@@ -64,20 +63,23 @@ struct Plan {
 impl Plan {
     fn of(machine: &Machine, part: Part) -> Self {
         let is_validation = part == Part::Validate;
-        let of_axis = |axis: &MachineAxis| windowed_sines::sequence(&axis.limits, is_validation);
-        let sines: Vec<_> = machine.axes.iter().map(of_axis).collect();
-        let durations_s = sines.iter().map(|own| windowed_sines::duration_s(own));
+        let of_axis = |axis| Excitation::of(axis, machine.period_s, is_validation);
+        let excitations: Vec<_> = machine.axes.iter().map(of_axis).collect();
+        let durations_s = excitations.iter().map(Excitation::duration_s);
         let duration_s = durations_s.fold(0.0, f64::max);
-        Self { sines, duration_s }
+        Self {
+            excitations,
+            duration_s,
+        }
     }
 
     fn setpoints(&self, time_s: f64) -> Vec<f64> {
-        let at = |own: &Vec<WindowedSine>| windowed_sines::at(own, time_s);
-        self.sines.iter().map(at).collect()
+        let at = |own: &Excitation| own.at(time_s);
+        self.excitations.iter().map(at).collect()
     }
 }
 
-/// Moves all axes by their own sines and records them together, one record per axis. What was
+/// Moves all axes by their own excitation and records them together, one record per axis. What was
 /// recorded before a failure stays in `records`.
 ///
 /// # Errors
