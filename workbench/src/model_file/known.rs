@@ -60,20 +60,7 @@ impl Known {
         if dataset.kind != AxisKind::Linear || dataset.effort != Effort::Force {
             return None;
         }
-        let record = &dataset.train;
-        let fastest = record
-            .position
-            .windows(11)
-            .map(|w| (w[10] - w[0]).abs())
-            .fold(0.0, f64::max);
-        let hardest = record
-            .effort
-            .iter()
-            .fold(0.0, |most: f64, effort| most.max(effort.abs()));
-        let furthest = record
-            .position
-            .iter()
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
+        let shown = Shown::by(dataset);
         let controller = dataset.controller.clone().unwrap_or_default();
         let lead_m = dataset.lead_m_per_rev.unwrap_or(LEAD_M);
         let bandwidth = controller
@@ -84,13 +71,9 @@ impl Known {
             counts_per_rev: (lead_m / dataset.resolution).round().clamp(100.0, 1.0e8),
             load_resolution_m: dataset.load_resolution.clamp(1.0e-10, 1.0e-4),
             lag_s: dataset.effort_lag_s,
-            force_limit_n: dataset.effort_limit.unwrap_or(3.0 * hardest),
+            force_limit_n: dataset.effort_limit.unwrap_or(3.0 * shown.force_n),
             inertia_kg: mass_kg,
-            limits: Limits {
-                velocity_m_per_s: (1.2 * fastest / (10.0 * record.period_s)).clamp(0.1, 5.0),
-                acceleration_m_per_s2: (hardest / mass_kg).clamp(0.5, 200.0),
-                travel_m: (1.2 * furthest).clamp(0.12, 10.0),
-            },
+            limits: shown.limits(mass_kg),
             gains: Gains {
                 position_sensor: match controller.position_sensor.as_deref() {
                     Some("load") => PositionSensor::Load,
@@ -109,12 +92,45 @@ impl Known {
                 torque_low_pass_hz: None,
                 torque_notch_hz: None,
             },
-            period_s: record.period_s,
+            period_s: dataset.train.period_s,
             hold_s: if dataset.hold == EffortHold::Instant {
-                0.5 * record.period_s
+                0.5 * dataset.train.period_s
             } else {
                 0.0
             },
         })
     }
+}
+
+/// The most that the record shows of an axis.
+struct Shown {
+    velocity_m_per_s: f64,
+    force_n: f64,
+    position_m: f64,
+}
+
+impl Shown {
+    fn by(dataset: &Dataset) -> Self {
+        let record = &dataset.train;
+        let over_ten = record.position.windows(11);
+        let way = most(over_ten.map(|rows| rows[10] - rows[0]));
+        Self {
+            velocity_m_per_s: way / (10.0 * record.period_s),
+            force_n: most(record.effort.iter().copied()),
+            position_m: most(record.position.iter().copied()),
+        }
+    }
+
+    /// A fifth more than what was seen, within what is usual of machines.
+    fn limits(&self, mass_kg: f64) -> Limits {
+        Limits {
+            velocity_m_per_s: (1.2 * self.velocity_m_per_s).clamp(0.1, 5.0),
+            acceleration_m_per_s2: (self.force_n / mass_kg).clamp(0.5, 200.0),
+            travel_m: (1.2 * self.position_m).clamp(0.12, 10.0),
+        }
+    }
+}
+
+fn most(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most, value| most.max(value.abs()))
 }
