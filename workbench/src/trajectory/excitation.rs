@@ -199,6 +199,38 @@ mod tests {
         }
     }
 
+    /// `| mm | mm/s | m/s² | mm | Hz | s |` for each sine.
+    fn rows(excitation: &Excitation) -> Vec<String> {
+        let row = |part: &Part| match &part.motion {
+            Motion::Sine(sine) => Some(format!(
+                "| {:.0} | {:.1} | {:.3} | {:.2} | {:.2} | {:.1} |",
+                1.0e3 * sine.centre_m,
+                1.0e3 * sine.velocity_m_per_s,
+                sine.acceleration_m_per_s2,
+                1.0e3 * sine.amplitude_m(),
+                sine.period_s().recip(),
+                sine.duration_s()
+            )),
+            Motion::Rest(_) | Motion::Way(_) => None,
+        };
+        excitation.parts.iter().filter_map(row).collect()
+    }
+
+    #[test]
+    fn the_page_has_the_sines_of_the_reference_axis() {
+        let page = include_str!("../../../docs/excitation.md");
+        let [axis, _] = axes();
+        for (excitation, title) in both(&axis).iter().zip(["Training", "Validation"]) {
+            let rows = rows(excitation).join("\n");
+            let title = format!("{title}, {:.1} s", excitation.duration_s());
+            println!("{title}\n{rows}");
+            assert!(
+                page.contains(&title) && page.contains(&rows),
+                "{title}\n{rows}"
+            );
+        }
+    }
+
     #[test]
     fn slow_axes_with_long_travel_and_quick_ones_with_a_short_one_move_in_the_time_too() {
         for (velocity, acceleration, travel) in [
