@@ -16,7 +16,7 @@ use axis_model::EffectName;
 
 use self::bristle::{Bristle, deflections};
 use self::gap::{Plant, SeenGap};
-use self::slip::Elements;
+use self::slip::{Elements, Fall};
 use crate::evidence::thresholds::{
     BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SLIP_RATIO, SUSPICION_RATIO,
     VETO_RATIO,
@@ -94,7 +94,8 @@ pub(crate) fn slip(records: [(&Bench<'_>, &Fitted); 2], about: f64) -> Option<El
     let (own, other) = (own?, other?);
     let bench = records[0].0;
     let (deflection, _) = bristle::best(&own, bench.dataset.moving_velocity);
-    let elements = Elements::best(&own, about, resolution(bench.dataset))?;
+    let fall = Fall::of(records[0].1);
+    let elements = Elements::best(&own, fall, about, resolution(bench.dataset))?;
     let left = |observed: &Observed<'_>, bristle: &Bristle| {
         rms(&bristle.error(observed), &observed.motion.slow)
     };

@@ -357,6 +357,11 @@ pub(crate) trait Effect: Sync {
         false
     }
 
+    /// Exponent p of a level that falls by exp(−|v/vs|^p); `None` where it does not fall.
+    fn fall_exponent(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether it acts on the motor and its screw rather than on the load.
     fn acts_on_motor(&self) -> bool {
         false

@@ -78,7 +78,7 @@ impl Bristle {
     #[must_use]
     pub(crate) fn motion(&self, motion: &Kinematics) -> Kinematics {
         Kinematics {
-            direction: self.state(&motion.friction_position),
+            direction: self.state(motion),
             ..motion.clone()
         }
     }
@@ -91,11 +91,11 @@ impl Bristle {
         }
     }
 
-    /// State, −1…1, along a position.
-    fn state(&self, position: &[f64]) -> Vec<f64> {
+    /// State, −1…1.
+    fn state(&self, motion: &Kinematics) -> Vec<f64> {
         match self {
-            Self::Dahl(deflection) => state(position, *deflection),
-            Self::Slip(elements) => elements.state(position),
+            Self::Dahl(deflection) => state(&motion.friction_position, *deflection),
+            Self::Slip(elements) => elements.state(motion),
         }
     }
 }

@@ -6,10 +6,14 @@
 //! (Lampaert, Swevers and Al-Bender, IEEE TAC 47, 2002; the grid as in Rizos and Fassois, Control
 //! Engineering Practice 12, 2004).
 
+use axis_model::EffectName;
+
 use super::Observed;
 use crate::evidence::difference::Known;
 use crate::fit::blocks::{Blocks, half_width_without_folds};
+use crate::fit::fitted::Fitted;
 use crate::model::effects::geometric;
+use crate::motion::kinematics::Kinematics;
 
 /// Number of deflections of the grid.
 const GRID: u32 = 20;
@@ -26,43 +30,93 @@ pub(crate) struct Element {
     pub share: f64,
 }
 
+/// How the level of friction falls as velocity grows: `g = 1 + rise·exp(−|v/vs|^p)`, in Coulomb
+/// levels. It is the force at which an element slips; below, only the way tells its force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Fall {
+    rise: f64,
+    velocity: f64,
+    exponent: f64,
+}
+
+impl Fall {
+    /// Of a model as it was fitted; without a Stribeck fall the level is the same at all velocities.
+    pub(super) fn of(fitted: &Fitted) -> Self {
+        let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
+        let coulomb = first(EffectName::Coulomb).filter(|level| *level > 0.0);
+        let mut terms = fitted.terms();
+        let fall = terms.find_map(|term| Some((term.part, term.part.effect.fall_exponent()?)));
+        let excess = first(EffectName::Stribeck);
+        let (Some(coulomb), Some(excess), Some((part, exponent))) = (coulomb, excess, fall) else {
+            return Self::default();
+        };
+        Self {
+            rise: (excess / coulomb).max(0.0),
+            velocity: part.parameter,
+            exponent,
+        }
+    }
+
+    fn level(&self, velocity: f64) -> f64 {
+        if self.rise == 0.0 {
+            return 1.0;
+        }
+        1.0 + self.rise * (-(velocity / self.velocity).abs().powf(self.exponent)).exp()
+    }
+
+    /// At the rows of a motion.
+    fn levels(&self, motion: &Kinematics) -> Vec<f64> {
+        let velocity = motion.velocity_lp.iter();
+        velocity.map(|v| self.level(*v)).collect()
+    }
+}
+
 /// Elements side by side; their shares add up to one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Elements {
     /// From the first one that slips to the last.
-    elements: Vec<Element>,
+    in_turn: Vec<Element>,
     /// What they are without each fold of the record.
     without_folds: Vec<Vec<Element>>,
+    /// The level at which they slip.
+    fall: Fall,
 }
 
 impl Elements {
-    /// The elements that leave the least of an observed friction, on a grid about a deflection and
-    /// not below the smallest that shows; `None` where none of them explains anything.
-    pub(crate) fn best(observed: &Observed<'_>, about: f64, smallest: f64) -> Option<Self> {
+    /// The elements that leave the least of an observed friction whose level falls, on a grid about
+    /// a deflection and not below the smallest that shows; `None` where none of them explains
+    /// anything.
+    pub(crate) fn best(
+        observed: &Observed<'_>,
+        fall: Fall,
+        about: f64,
+        smallest: f64,
+    ) -> Option<Self> {
         let from = (FROM * about).max(smallest);
         let grid = geometric(from, (TO * about).max(2.0 * from), GRID);
-        let blocks = blocks(observed, &grid);
+        let blocks = blocks(observed, fall, &grid);
         let folds = blocks.non_negative_without_folds();
         let without_folds = folds.iter().map(|shares| of_shares(&grid, shares));
         Some(Self {
-            elements: of_shares(&grid, &blocks.non_negative())?,
+            in_turn: of_shares(&grid, &blocks.non_negative())?,
             without_folds: without_folds.collect::<Option<Vec<_>>>()?,
+            fall,
         })
     }
 
     /// From the first one that slips to the last.
     pub(crate) fn elements(&self) -> &[Element] {
-        &self.elements
+        &self.in_turn
     }
 
     /// What they do not explain.
     pub(crate) fn error(&self, observed: &Observed<'_>) -> Vec<f64> {
-        observed.without(&self.state(&observed.motion.friction_position))
+        observed.without(&self.state(observed.motion))
     }
 
     /// Level over stiffness at standstill.
     pub(crate) fn deflection(&self) -> f64 {
-        deflection(&self.elements)
+        deflection(&self.in_turn)
     }
 
     /// The same with its interval.
@@ -83,7 +137,7 @@ impl Elements {
     /// What follows from the elements, with its interval by the jackknife over folds.
     fn known(&self, of: impl Fn(&[Element]) -> f64) -> Known {
         let without_folds: Vec<f64> = self.without_folds.iter().map(|own| of(own)).collect();
-        Known::new(of(&self.elements), half_width_without_folds(&without_folds))
+        Known::new(of(&self.in_turn), half_width_without_folds(&without_folds))
     }
 
     /// The same elements, each of which slips at a multiple of its deflection.
@@ -96,16 +150,21 @@ impl Elements {
             elements.iter().map(scaled).collect()
         };
         Self {
-            elements: scaled(&self.elements),
+            in_turn: scaled(&self.in_turn),
             without_folds: self.without_folds.iter().map(scaled).collect(),
+            fall: self.fall,
         }
     }
 
-    /// Sum of the elements' forces along a position, −1…1.
-    pub(crate) fn state(&self, position: &[f64]) -> Vec<f64> {
+    /// Sum of the elements' forces over the level, −1…1.
+    pub(crate) fn state(&self, motion: &Kinematics) -> Vec<f64> {
+        self.along(&motion.friction_position, &self.fall.levels(motion))
+    }
+
+    fn along(&self, position: &[f64], levels: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; position.len()];
-        for element in &self.elements {
-            let own = stop(position, element.deflection);
+        for element in &self.in_turn {
+            let own = stop(position, levels, element.deflection);
             sum.iter_mut()
                 .zip(own)
                 .for_each(|(sum, own)| *sum += element.share * own);
@@ -119,23 +178,25 @@ fn deflection(elements: &[Element]) -> f64 {
     1.0 / stiffness.sum::<f64>()
 }
 
-/// Force of one element over its level, −1…1, along a position: a spring that slips.
-fn stop(position: &[f64], deflection: f64) -> Vec<f64> {
+/// Force of one element over its level, −1…1, along a position: a spring that slips. Its deflection
+/// is that at the Coulomb level.
+fn stop(position: &[f64], levels: &[f64], deflection: f64) -> Vec<f64> {
     let mut force = 0.0_f64;
     let mut before = position.first().copied().unwrap_or(0.0);
-    let after = |x: &f64| {
-        force = (force + (x - before) / deflection).clamp(-1.0, 1.0);
+    let after = |(x, level): (&f64, &f64)| {
+        force = (force + (x - before) / deflection).clamp(-level, *level);
         before = *x;
-        force
+        force / level
     };
-    position.iter().map(after).collect()
+    position.iter().zip(levels).map(after).collect()
 }
 
 /// Every element of a grid at the observed level, and the friction, where it is known.
-fn blocks(observed: &Observed<'_>, grid: &[f64]) -> Blocks {
+fn blocks(observed: &Observed<'_>, fall: Fall, grid: &[f64]) -> Blocks {
     let motion = observed.motion;
+    let levels = fall.levels(motion);
     let column = |deflection: &f64| {
-        let state = stop(&motion.friction_position, *deflection);
+        let state = stop(&motion.friction_position, &levels, *deflection);
         let force = observed.level.iter().zip(state);
         force.map(|(level, state)| level * state).collect()
     };
@@ -161,6 +222,7 @@ fn of_shares(grid: &[f64], shares: &[f64]) -> Option<Vec<Element>> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::fit::made;
 
     /// Elements that slip at shares of a deflection.
     pub(crate) fn elements(deflection: f64, parts: &[(f64, f64)]) -> Elements {
@@ -171,14 +233,15 @@ pub(crate) mod tests {
         let elements: Vec<Element> = parts.iter().map(element).collect();
         Elements {
             without_folds: vec![elements.clone(); 10],
-            elements,
+            in_turn: elements,
+            fall: Fall::default(),
         }
     }
 
     #[test]
     fn a_loop_of_elements_closes_and_its_branches_are_twice_the_virgin_curve() {
         let four = elements(1.0, &[(0.25, 0.25), (0.5, 0.25), (0.75, 0.25), (1.0, 0.25)]);
-        let after = |way: &[f64]| *four.state(way).last().unwrap();
+        let after = |way: &[f64]| *four.along(way, &vec![1.0; way.len()]).last().unwrap();
         for part in [0.1, 0.3, 0.6, 0.9] {
             let virgin = after(&[0.0, part]);
             let back = after(&[0.0, 3.0, 3.0 - 2.0 * part]);
@@ -195,6 +258,28 @@ pub(crate) mod tests {
         assert!((two.deflection() - 1.0 / 0.75).abs() < 1.0e-12);
         assert!((two.scaled(3.0).deflection() - 4.0).abs() < 1.0e-12);
         assert!((two.known_force(1.5).value - 0.875).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn below_its_level_the_way_alone_tells_the_force_of_an_element() {
+        let one = elements(1.0, &[(1.0, 1.0)]);
+        // Half bent at a level of 1.3; then the level falls, and the force stays what it was.
+        let state = one.along(&[0.0, 0.5, 0.5, 3.0, 3.0], &[1.3, 1.3, 1.0, 1.0, 1.3]);
+        let wanted = [0.0, 0.5 / 1.3, 0.5, 1.0, 1.0 / 1.3];
+        for (state, wanted) in state.iter().zip(wanted) {
+            assert!((state - wanted).abs() < 1.0e-12, "{state} {wanted}");
+        }
+    }
+
+    #[test]
+    fn the_level_falls_with_the_velocity_as_the_model_says() {
+        let coulomb = made::model(&[EffectName::Coulomb]);
+        let model = coulomb.with(made::found(EffectName::Stribeck, 2.0e-3));
+        let fitted = Fitted::new(model, &[200.0, 60.0]);
+        let fall = Fall::of(&fitted);
+        assert!((fall.level(0.0) - 1.3).abs() < 1.0e-12);
+        assert!((fall.level(-2.0e-3) - (1.0 + 0.3 / std::f64::consts::E)).abs() < 1.0e-12);
+        assert!((fall.level(0.1) - 1.0).abs() < 1.0e-12);
     }
 
     #[test]

@@ -108,6 +108,10 @@ impl Effect for Stribeck {
         !self.by_direction
     }
 
+    fn fall_exponent(&self) -> Option<f64> {
+        Some(self.exponent)
+    }
+
     fn action(&self, at: &Instant, vs: f64, own: &[f64]) -> Action {
         let left = self.left(at.velocity, vs);
         Action {
