@@ -40,7 +40,8 @@ pub(crate) struct Fall {
 }
 
 impl Fall {
-    /// Of a model as it was fitted; without a Stribeck fall the level is the same at all velocities.
+    /// Of a model as it was fitted; without a Stribeck fall the level is the same at all
+    /// velocities.
     pub(super) fn of(fitted: &Fitted) -> Self {
         let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
         let coulomb = first(EffectName::Coulomb).filter(|level| *level > 0.0);
