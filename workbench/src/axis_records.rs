@@ -52,8 +52,9 @@ impl Part {
     }
 }
 
-/// How all axes move.
-struct Plan {
+/// How all axes move in one of the records. It takes a while to choose that, so it is done before
+/// an axis is enabled: a bus in clock pace does not wait.
+pub struct Plan {
     /// Per axis.
     excitations: Vec<Excitation>,
     /// Until the last axis has done.
@@ -61,7 +62,9 @@ struct Plan {
 }
 
 impl Plan {
-    fn of(machine: &Machine, part: Part) -> Self {
+    /// Of a record of a machine.
+    #[must_use]
+    pub fn of(machine: &Machine, part: Part) -> Self {
         let is_validation = part == Part::Validate;
         let of_axis = |axis| Excitation::of(axis, machine.period_s, is_validation);
         let excitations: Vec<_> = machine.axes.iter().map(of_axis).collect();
@@ -87,10 +90,9 @@ impl Plan {
 pub fn record<L: Link>(
     session: &mut Session<'_, L>,
     machine: &Machine,
-    part: Part,
+    plan: &Plan,
     records: &mut Vec<AxisRecord>,
 ) -> Outcome<()> {
-    let plan = Plan::of(machine, part);
     records.clear();
     records.resize(machine.axes.len(), AxisRecord::default());
     session.go_to(&vec![0.0; machine.axes.len()])?;

@@ -9,7 +9,7 @@ use plant_sim::machine::PositionSensor;
 use protocol::Fault;
 use protocol::states::DriveState;
 use workbench::axis_records::dataset_folder::DatasetFolder;
-use workbench::axis_records::{self, Part};
+use workbench::axis_records::{self, Part, Plan};
 use workbench::cli::{Commission, MachineArguments};
 use workbench::commands::commission;
 use workbench::compensation::AxisCompensation;
@@ -275,6 +275,7 @@ fn an_axis_is_enabled_where_the_encoder_of_its_loop_stands() {
 #[test]
 fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
     let machine = quiet();
+    let [train, validate] = Part::BOTH.map(|part| Plan::of(&machine, part));
     let out = tempfile::tempdir().unwrap();
     let log = out.path().join("records.candump.log");
     let session = Session::on(
@@ -292,14 +293,14 @@ fn a_record_that_breaks_off_is_on_disk_up_to_there_and_says_why() {
     let failure = session
         .perform(&[], Some(&log), |session| {
             let mut records = Vec::new();
-            axis_records::record(session, &machine, Part::Train, &mut records)?;
+            axis_records::record(session, &machine, &train, &mut records)?;
             folder_of_y.write(Part::Train, &records[1], None)?;
             session
                 .master_mut()
                 .link_mut()
                 .bus_mut(1)
                 .connect(PLANT, false);
-            let outcome = axis_records::record(session, &machine, Part::Validate, &mut records);
+            let outcome = axis_records::record(session, &machine, &validate, &mut records);
             let broke_off = outcome.as_ref().err();
             folder_of_y.write(Part::Validate, &records[1], broke_off)?;
             outcome

@@ -12,7 +12,7 @@ use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
 
 use crate::axis_records::dataset_folder::DatasetFolder;
-use crate::axis_records::{self, AxisRecord, Part, RECORDING_RUN};
+use crate::axis_records::{self, AxisRecord, Part, Plan, RECORDING_RUN};
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::model_file::{self, Known};
@@ -33,12 +33,14 @@ fn records_folder(out: &Path, axis: &MachineAxis) -> PathBuf {
 /// # Errors
 /// Where a file or the machine is wrong, or the operator interrupts.
 pub fn record(stand: &Stand<'_>, out: &Path) -> Outcome<()> {
+    progress::step("choosing what to move");
+    let plans = Part::BOTH.map(|part| (part, Plan::of(stand.machine, part)));
     let session = stand.connect(RECORDING_RUN)?;
     let log = out.join("records.candump.log");
     session.perform(&stand.uncompensated(), Some(&log), |session| {
-        Part::BOTH
+        plans
             .iter()
-            .try_for_each(|part| record_part(session, stand.machine, *part, out))
+            .try_for_each(|(part, plan)| record_part(session, stand.machine, *part, plan, out))
     })
 }
 
@@ -46,6 +48,7 @@ fn record_part(
     session: &mut Session<'_>,
     machine: &Machine,
     part: Part,
+    plan: &Plan,
     out: &Path,
 ) -> Outcome<()> {
     progress::step(match part {
@@ -53,7 +56,7 @@ fn record_part(
         Part::Validate => "recording the validation record",
     });
     let mut records = Vec::new();
-    let outcome = axis_records::record(session, machine, part, &mut records);
+    let outcome = axis_records::record(session, machine, plan, &mut records);
     for (axis, record) in machine.axes.iter().zip(&records) {
         let folder = DatasetFolder {
             path: &records_folder(out, axis),

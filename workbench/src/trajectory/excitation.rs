@@ -4,7 +4,7 @@
 mod design;
 mod information;
 
-use plant_sim::machine::{Limits, MachineAxis};
+use plant_sim::machine::MachineAxis;
 
 use super::Move;
 use super::windowed_sine::WindowedSine;
@@ -14,18 +14,21 @@ use design::Menu;
 const TRAINING: Menu = Menu {
     velocity: 1.0,
     acceleration: 1.0,
-    centres: &[-0.6, -0.3, 0.0, 0.3, 0.6],
+    centres: &[0.0, 0.3, 0.6, -0.3, -0.6],
     time_s: 37.0,
 };
 /// The validation record moves otherwise: another share of everything.
 const VALIDATION: Menu = Menu {
     velocity: 0.8,
     acceleration: 0.65,
-    centres: &[-0.45, -0.1, 0.2, 0.5],
+    centres: &[-0.1, 0.2, 0.5, -0.45],
     time_s: 23.0,
 };
-/// Shares of the limits with which an axis goes from centre to centre.
+/// Shares of the limits with which an axis goes from centre to centre, at most.
 const WAY: f64 = 0.6;
+/// Share of what friction alone would slow the load of a usual axis down with. A load that is
+/// slowed down harder runs across a gap ahead of its motor, though that does not reverse.
+const WAY_OF_FRICTION: f64 = 0.5;
 /// The most of a record's time that is spent on ways.
 const ON_THE_WAY: f64 = 0.3;
 /// Rest before each motion and after the last one.
@@ -57,7 +60,7 @@ impl Excitation {
     pub fn of(axis: &MachineAxis, period_s: f64, is_validation: bool) -> Self {
         let menu = if is_validation { VALIDATION } else { TRAINING };
         let axis = within_reach(axis, &menu);
-        let left_s = menu.time_s - ways_s(&axis.limits, menu.centres);
+        let left_s = menu.time_s - ways_s(&axis, menu.centres);
         let sines = design::design(&axis, period_s, &menu, left_s);
         let mut all = Self {
             parts: Vec::new(),
@@ -65,19 +68,19 @@ impl Excitation {
         };
         let mut at_m = 0.0;
         for sine in sines {
-            all.add_way(&axis.limits, at_m, sine.centre_m);
+            all.add_way(&axis, at_m, sine.centre_m);
             all.add(Motion::Sine(sine), sine.duration_s());
             at_m = sine.centre_m;
         }
-        all.add_way(&axis.limits, at_m, 0.0);
+        all.add_way(&axis, at_m, 0.0);
         all
     }
 
     /// A rest, the way to another place, and a rest.
-    fn add_way(&mut self, limits: &Limits, from_m: f64, to_m: f64) {
+    fn add_way(&mut self, axis: &MachineAxis, from_m: f64, to_m: f64) {
         self.add(Motion::Rest(from_m), REST_S);
         if from_m != to_m {
-            let way = way(limits, from_m, to_m);
+            let way = way(axis, from_m, to_m);
             let duration_s = way.duration_s();
             self.add(Motion::Way(way), duration_s);
             self.add(Motion::Rest(to_m), REST_S);
@@ -111,22 +114,24 @@ impl Excitation {
 /// The axis with the part of its travel that it can reach in a share of the time.
 fn within_reach(axis: &MachineAxis, menu: &Menu) -> MachineAxis {
     let mut axis = axis.clone();
-    while ways_s(&axis.limits, menu.centres) > ON_THE_WAY * menu.time_s {
+    while ways_s(&axis, menu.centres) > ON_THE_WAY * menu.time_s {
         axis.limits.travel_m *= 0.5;
     }
     axis
 }
 
-fn way(limits: &Limits, from_m: f64, to_m: f64) -> Move {
-    let (v, a) = (limits.velocity_m_per_s, limits.acceleration_m_per_s2);
-    Move::new(&[from_m], &[to_m], WAY * v, WAY * a)
+fn way(axis: &MachineAxis, from_m: f64, to_m: f64) -> Move {
+    let limits = axis.limits;
+    let gentle = WAY_OF_FRICTION * design::coasting_m_per_s2(axis);
+    let hardest = f64::min(WAY * limits.acceleration_m_per_s2, gentle);
+    Move::new(&[from_m], &[to_m], WAY * limits.velocity_m_per_s, hardest)
 }
 
 /// How long all ways and their rests take: from zero through all centres and back.
-fn ways_s(limits: &Limits, centres: &[f64]) -> f64 {
-    let places = centres.iter().map(|share| share * limits.travel_m);
+fn ways_s(axis: &MachineAxis, centres: &[f64]) -> f64 {
+    let places = centres.iter().map(|share| share * axis.limits.travel_m);
     let places: Vec<f64> = [0.0].into_iter().chain(places).chain([0.0]).collect();
-    let of_way = |ends: &[f64]| way(limits, ends[0], ends[1]).duration_s() + REST_S;
+    let of_way = |ends: &[f64]| way(axis, ends[0], ends[1]).duration_s() + REST_S;
     REST_S + places.windows(2).map(of_way).sum::<f64>()
 }
 

@@ -7,7 +7,7 @@ use identification::Dataset;
 use plant_sim::machine::MachineAxis;
 
 use crate::axis_records::dataset_folder::DatasetFolder;
-use crate::axis_records::{self, AxisRecord, Part, RECORDING_RUN};
+use crate::axis_records::{self, AxisRecord, Part, Plan, RECORDING_RUN};
 use crate::compensation::{AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::progress;
@@ -20,9 +20,10 @@ use crate::session::Stand;
 pub fn measured(stand: &Stand<'_>) -> Outcome<Vec<AxisCompensation>> {
     progress::step("recording the axes for their Coulomb friction");
     let mut records = Vec::new();
+    let plan = Plan::of(stand.machine, Part::Train);
     let session = stand.connect(RECORDING_RUN)?;
     session.perform(&stand.uncompensated(), None, |session| {
-        axis_records::record(session, stand.machine, Part::Train, &mut records)
+        axis_records::record(session, stand.machine, &plan, &mut records)
     })?;
     let folder = std::env::temp_dir().join(format!("quadrant-{}", std::process::id()));
     let axes = stand.machine.axes.iter().zip(&records);

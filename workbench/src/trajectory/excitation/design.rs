@@ -107,11 +107,11 @@ impl Choice {
         self.sine.duration_s() + REST_S
     }
 
-    /// By how much it lowers the mean of the variance's logarithm, per second.
-    fn gain_per_s(&self, known: &[Information]) -> f64 {
-        let each = known.iter().zip(&self.told);
-        let gains = each.map(|(known, told)| ln_variance(known) - ln_variance(&(known + told)));
-        gains.sum::<f64>() / known.len() as f64 / self.lasts_s()
+    /// By how much it lowers the mean of the variance's logarithm, which is so large, per second.
+    fn gain_per_s(&self, known: &[Information], before: f64) -> f64 {
+        let with = known.iter().zip(&self.told);
+        let with: Vec<Information> = with.map(|(known, told)| known + told).collect();
+        (before - mean_ln_variance(&with)) / self.lasts_s()
     }
 }
 
@@ -119,9 +119,15 @@ impl Choice {
 fn best(choices: &[Choice], known: &[Information], left_s: f64) -> Option<usize> {
     let fits = |one: &Choice| !one.is_taken && one.lasts_s() <= left_s;
     let places = (0..choices.len()).filter(|place| fits(&choices[*place]));
-    let gains = places.map(|place| (choices[place].gain_per_s(known), place));
+    let before = mean_ln_variance(known);
+    let gains = places.map(|place| (choices[place].gain_per_s(known, before), place));
     let best = gains.max_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, place)| place)
+}
+
+/// Mean of the logarithm over the usual axes.
+fn mean_ln_variance(known: &[Information]) -> f64 {
+    known.iter().map(ln_variance).sum::<f64>() / known.len() as f64
 }
 
 /// The logarithm of the sum of all relative variances.
@@ -162,12 +168,24 @@ impl Menu {
     }
 }
 
+/// With what friction alone slows the load of a usual axis down, m/s².
+#[must_use]
+pub(super) fn coasting_m_per_s2(axis: &MachineAxis) -> f64 {
+    let coulomb_n = COULOMB * axis.actual.force_limit_n;
+    coulomb_n / (LOAD * gains_are_for_kg(axis))
+}
+
+/// What the drive's gains are for.
+fn gains_are_for_kg(axis: &MachineAxis) -> f64 {
+    let mechanics = axis.actual.mechanics;
+    mechanics.motor_inertia_kg + mechanics.table_mass_kg
+}
+
 /// Axes that this one may turn out to be.
 fn usual_axes(axis: &MachineAxis, period_s: f64) -> Vec<UsualAxis> {
     let own = &axis.actual;
-    let (mechanics, limits) = (own.mechanics, axis.limits);
-    // What the drive's gains are for.
-    let inertia_kg = mechanics.motor_inertia_kg + mechanics.table_mass_kg;
+    let limits = axis.limits;
+    let inertia_kg = gains_are_for_kg(axis);
     let load_kg = LOAD * inertia_kg;
     let coulomb_n = COULOMB * own.force_limit_n;
     let usual = UsualAxis {
@@ -209,9 +227,9 @@ mod tests {
             let told = sines
                 .iter()
                 .map(|sine| sine.periods * axis.of_a_period(sine));
-            ln_variance(&told.fold(Information::identity(), |sum, told| sum + told))
+            told.fold(Information::identity(), |sum, told| sum + told)
         };
-        usual.iter().map(of_axis).sum::<f64>() / usual.len() as f64
+        mean_ln_variance(&usual.iter().map(of_axis).collect::<Vec<_>>())
     }
 
     /// Nine sines of one place, as somebody would choose them without a design: 30 s.
