@@ -33,6 +33,7 @@ use std::f64::consts::TAU;
 use axis_model::EffectName;
 
 pub(crate) use self::by_the_load::ByTheLoad;
+use self::by_the_load::Smallest;
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
 use self::flanks::{Balance, Judged};
@@ -168,8 +169,11 @@ pub(crate) fn settled(
     };
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
-    let told =
-        carried.and_then(|place| by_the_load::told(&apart, &ways, place, dataset.load_resolution));
+    let smallest = Smallest {
+        count: dataset.load_resolution,
+        velocity: unit,
+    };
+    let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place, smallest));
     let told = told.filter(|told| difference.agrees_with(told));
     difference.know(&apart);
     if let Some(told) = told {

@@ -86,20 +86,14 @@ impl LoadMotion {
         let wind_up = |d: &f64| flanks.map_or(*d, |flanks| flanks.wind_up(*d));
         let wound: Vec<f64> = apart.iter().map(wind_up).collect();
         let position = minus(position, apart);
-        let by_piece = |signal: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>| -> Vec<f64> {
-            let pieces = motion.pieces.iter().cloned();
-            pieces
-                .flat_map(|piece| derivative(&signal[piece], motion.period_s))
-                .collect()
-        };
         let steps_of = |piece: &Range<usize>| {
             let path = without_small_turns(&position[piece.clone()], smallest_turn);
             Steps::of(&path, &slope(&path, motion.period_s), motion.period_s)
         };
         Self {
-            velocity: motion.low_passed(&by_piece(&position, slope)),
-            acceleration: motion.low_passed(&by_piece(&position, bow)),
-            rate: motion.low_passed(&by_piece(&wound, slope)),
+            velocity: derived(motion, &position, slope),
+            acceleration: derived(motion, &position, bow),
+            rate: derived(motion, &wound, slope),
             steps: motion.pieces.iter().map(steps_of).collect(),
         }
     }
@@ -119,6 +113,28 @@ impl LoadMotion {
     pub(super) fn plain(&self) -> [Vec<f64>; 3] {
         [&self.acceleration, &self.velocity, &self.rate].map(Clone::clone)
     }
+}
+
+/// A derivative of a signal, piece by piece and low-passed.
+fn derived(motion: &Kinematics, of: &[f64], derivative: fn(&[f64], f64) -> Vec<f64>) -> Vec<f64> {
+    let pieces = motion.pieces.iter().cloned();
+    let derived = pieces.flat_map(|piece| derivative(&of[piece], motion.period_s));
+    motion.low_passed(&derived.collect::<Vec<f64>>())
+}
+
+/// The rows of a mask in which the load goes faster than a velocity. All of them where that leaves
+/// few.
+pub(super) fn where_it_moves(
+    motion: &Kinematics,
+    position: &[f64],
+    apart: &[f64],
+    mask: &[bool],
+    slowest: f64,
+) -> Vec<bool> {
+    let velocity = derived(motion, &minus(position, apart), slope);
+    let rows = mask.iter().zip(velocity);
+    let moves = rows.map(|(inside, velocity)| *inside && velocity.abs() > slowest);
+    unless_few(moves.collect(), mask, QUIET_SHARE)
 }
 
 /// First derivative at the rows by the central differences over two and four rows: within half a
@@ -293,6 +309,26 @@ mod tests {
         assert!((load[first] - load[0]).abs() >= travel);
         assert!((load[first - 1] - load[0]).abs() < travel);
         assert!(known[first..].iter().all(|known| *known));
+    }
+
+    #[test]
+    fn a_load_moves_where_it_is_faster_than_it_rests_unless_that_leaves_few() {
+        let axis = axis(|_| 0.0);
+        let apart = apart(&axis);
+        let mask = vec![true; 6000];
+        let position = &axis.dataset.train.position;
+        let moves =
+            |slowest: f64| where_it_moves(&axis.motion, position, apart.raw, &mask, slowest);
+        let speed: Vec<f64> = slope(&two_sines(6000), 1.0e-3);
+        let fastest = speed.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        for (row, moves) in moves(0.2 * fastest).iter().enumerate().skip(100).take(5800) {
+            let share = speed[row].abs() / fastest;
+            assert!(
+                *moves == (share > 0.2) || (share - 0.2).abs() < 0.02,
+                "{row}"
+            );
+        }
+        assert_eq!(moves(0.999 * fastest), mask);
     }
 
     #[test]
