@@ -16,19 +16,23 @@ use crate::evidence::forms;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
 use crate::evidence::plausibility;
 use crate::evidence::rank;
-use crate::evidence::reversal::bristle::Bristle;
+use crate::evidence::reversal::{self, bristle::Bristle};
 use crate::evidence::reversal_stage::ReversalStage;
 use crate::evidence::selection::Selection;
 use crate::evidence::slow_ripple::slow_ripple;
+use crate::evidence::thresholds::EFFORT_PERCENT;
 use crate::evidence::velocity;
 use crate::evidence::veto::veto;
 use crate::fit::bench::Bench;
+use crate::fit::plain::Plain;
 use crate::fit::tuning::{self, Pair};
 use crate::model::inverse::Model;
+use crate::motion::derivatives::Derivatives;
 use crate::motion::motions::{self, Motions};
 use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::{EXCERPT, ExcerptSize, excerpt};
+use crate::record::scale_error::ScaleError;
 use crate::report;
 use crate::report::forms::Identification;
 
@@ -73,7 +77,29 @@ fn identify_excerpt(
     progress: &mut dyn FnMut(&Step),
 ) -> Result<Identification, IdentificationError> {
     plausibility::check_rows(dataset)?;
-    let dataset = &*motion_decided(dataset, size);
+    let mut dataset = motion_decided(dataset, size);
+    loop {
+        match judged(&dataset, size, search, progress)? {
+            Judged::Whole(identification) => return Ok(*identification),
+            Judged::ScaleIsOff(error) => dataset.to_mut().scale_error = Some(error),
+        }
+    }
+}
+
+/// What came of all judges.
+enum Judged {
+    /// The identification.
+    Whole(Box<Identification>),
+    /// Nothing holds: the acceleration of the load has a force that never was.
+    ScaleIsOff(ScaleError),
+}
+
+fn judged(
+    dataset: &Dataset,
+    size: ExcerptSize,
+    search: Search,
+    progress: &mut dyn FnMut(&Step),
+) -> Result<Judged, IdentificationError> {
     let excerpt = excerpt(dataset, size);
     let fitted_on = excerpt.as_ref().unwrap_or(dataset);
     let low_cutoff_hz = tuning::delay_cutoff_hz(dataset.train.period_s);
@@ -89,6 +115,9 @@ fn identify_excerpt(
             low: &low,
         };
         let findings = findings(pair, &motions, search, progress);
+        if let Some(error) = scale_error(&findings, &bench) {
+            return Ok(Judged::ScaleIsOff(error));
+        }
         let is_declared = |name: &&EffectName| fitted_on.declares(**name);
         let declared = findings.found.names().iter().filter(is_declared);
         let before = brought_back.len();
@@ -100,8 +129,27 @@ fn identify_excerpt(
             progress(&Step::AllRows);
             AllRows::of(&findings, dataset)
         });
-        return Ok(report::identification(&findings, all.as_ref()));
+        let identification = report::identification(&findings, all.as_ref());
+        return Ok(Judged::Whole(Box::new(identification)));
     }
+}
+
+/// What the load's scale is off by, where its acceleration has a force of the size of an effect by
+/// that and is still taken as it was recorded. The load is as heavy as the axis at most.
+fn scale_error(findings: &Findings<'_>, bench: &Bench<'_>) -> Option<ScaleError> {
+    let (dataset, motion) = (bench.dataset, bench.motion);
+    if dataset.scale_error.is_some() {
+        return None;
+    }
+    let error = findings.stages.difference.as_ref()?.scale_error()?;
+    let off = Derivatives::new(
+        &error.along(&dataset.train.position),
+        motion.period_s,
+        dataset.hold,
+    );
+    let rms = |signal: &[f64]| reversal::rms(signal, &motion.fitted);
+    let force = Plain::moved_mass(motion) * rms(&motion.low_passed(&off.acceleration));
+    (force >= 0.01 * EFFORT_PERCENT * rms(&motion.effort_lp)).then_some(error)
 }
 
 /// The dataset with what says how it moves: position or velocity, sharpened or not.
@@ -329,6 +377,7 @@ mod tests {
             held_back: false,
             full_band: false,
             is_sharpened: false,
+            scale_error: None,
             notes: Vec::new(),
         }
     }

@@ -17,6 +17,7 @@ pub(crate) mod outliers;
 pub(crate) mod reading;
 pub(crate) mod rounding;
 pub(crate) mod samples;
+pub(crate) mod scale_error;
 pub(crate) mod source;
 pub(crate) mod table;
 pub(crate) mod time_base;

@@ -51,6 +51,7 @@ use crate::fit::plain::Plain;
 use crate::model::effects::wave;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
+use crate::record::scale_error::ScaleError;
 use crate::record::units::AxisKind;
 
 /// Least travel, in turns, over which a period of a turn is told from wind-up and a constant.
@@ -550,6 +551,11 @@ fn stiffness(gap: Option<(Way, &[f64])>, wind_up: Way, own: &[f64]) -> f64 {
 }
 
 impl Difference {
+    /// What the load's scale is off by, where its error was found or declared.
+    pub(crate) fn scale_error(&self) -> Option<ScaleError> {
+        self.extended.scale_error()
+    }
+
     fn of([declared, extended]: [FittedWays; 2], scored: Vec<Scored>) -> Self {
         let is_declared = |name: &EffectName| declared.of(*name).is_some();
         let gap = extended.of(EffectName::Backlash);

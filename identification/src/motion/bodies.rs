@@ -6,8 +6,8 @@
 //! position too: so the load's motion is the motor's and what the two positions differ by.
 
 use crate::motion::derivatives::Derivatives;
+use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
-use crate::record::units::EffortHold;
 
 /// The bodies of a record.
 pub(crate) struct Bodies {
@@ -22,10 +22,11 @@ pub(crate) struct Bodies {
 impl Bodies {
     /// Of one piece of a record.
     #[must_use]
-    pub(crate) fn of(record: &Record, hold: EffortHold, is_sharpened: bool) -> Self {
+    pub(crate) fn of(dataset: &Dataset, record: &Record) -> Self {
+        let hold = dataset.hold;
         let by_position = |positions: &[f64]| {
             let plain = Derivatives::new(positions, record.period_s, hold);
-            if is_sharpened {
+            if dataset.is_sharpened {
                 plain.sharpened(hold)
             } else {
                 plain
@@ -34,7 +35,12 @@ impl Bodies {
         let motor = by_position(&record.position);
         let load = record.load.as_deref().map(by_position);
         let apart = |load: &Derivatives| minus(&load.acceleration, &motor.acceleration);
-        let load_acceleration = load.as_ref().map(apart);
+        let mut load_acceleration = load.as_ref().map(apart);
+        if let Some((apart, error)) = load_acceleration.as_mut().zip(dataset.scale_error) {
+            let never_was = by_position(&error.along(&record.position)).acceleration;
+            let rows = apart.iter_mut().zip(never_was);
+            rows.for_each(|(apart, never_was)| *apart += never_was);
+        }
         let Some(measured) = record.velocity.as_deref() else {
             return Self {
                 motor,
@@ -66,7 +72,18 @@ pub(crate) fn minus(one: &[f64], other: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::made::{record, two_sines};
+    use crate::record::scale_error::ScaleError;
+    use crate::record::units::EffortHold;
+    use crate::simulate::made::{dataset, record, two_sines};
+
+    fn bodies(record: Record, scale_error: Option<ScaleError>) -> Bodies {
+        let dataset = Dataset {
+            hold: EffortHold::Instant,
+            scale_error,
+            ..dataset(record, None)
+        };
+        Bodies::of(&dataset, &dataset.train)
+    }
 
     /// Two sines with a load that follows at nine tenths, and positions that are off by a jitter.
     fn jittered(velocity: Option<Vec<f64>>) -> Record {
@@ -86,9 +103,8 @@ mod tests {
     #[test]
     fn without_a_measured_velocity_both_bodies_are_those_of_their_positions() {
         let record = jittered(None);
-        let hold = EffortHold::Instant;
-        let bodies = Bodies::of(&record, hold, false);
-        let own = Derivatives::new(record.load.as_deref().unwrap(), 1.0e-3, hold);
+        let own = Derivatives::new(record.load.as_deref().unwrap(), 1.0e-3, EffortHold::Instant);
+        let bodies = bodies(record, None);
         assert_eq!(bodies.with_friction().velocity, own.velocity);
         assert_eq!(bodies.with_friction().acceleration, own.acceleration);
     }
@@ -96,11 +112,7 @@ mod tests {
     #[test]
     fn with_it_the_jitter_of_both_positions_is_gone_from_both_but_for_their_difference() {
         let exact = Derivatives::new(&two_sines(3000), 1.0e-3, EffortHold::Instant);
-        let bodies = Bodies::of(
-            &jittered(Some(exact.velocity.clone())),
-            EffortHold::Instant,
-            false,
-        );
+        let bodies = bodies(jittered(Some(exact.velocity.clone())), None);
         let worst = |one: &[f64], other: &[f64]| {
             let apart = one[5..2990].iter().zip(&other[5..2990]);
             apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -114,5 +126,28 @@ mod tests {
             "{}",
             worst(load, &slower)
         );
+    }
+
+    #[test]
+    fn a_scale_that_is_off_makes_no_acceleration_of_its_load() {
+        let error = ScaleError {
+            per_length: 100.0,
+            cos: 2.0e-6,
+            sin: -1.0e-6,
+        };
+        let apart = |scale_error: Option<ScaleError>| {
+            let path = two_sines(3000);
+            let seen = minus(&path, &error.along(&path));
+            let off = Record {
+                load: Some(seen),
+                ..record(1.0e-3, path)
+            };
+            let apart = bodies(off, scale_error).load_acceleration.unwrap();
+            apart[5..2990]
+                .iter()
+                .fold(0.0_f64, |most, a| most.max(a.abs()))
+        };
+        assert!(apart(None) > 1.0e-3, "{}", apart(None));
+        assert!(apart(Some(error)) < 1.0e-6 * apart(None));
     }
 }

@@ -87,7 +87,7 @@ impl Kinematics {
 
     fn of_piece(dataset: &Dataset, record: &Record, filter: LowPass) -> Self {
         let (period_s, hold) = (record.period_s, dataset.hold);
-        let bodies = Bodies::of(record, hold, dataset.is_sharpened);
+        let bodies = Bodies::of(dataset, record);
         let of_the_fit = LowPass::new(period_s, fit_cutoff_hz(dataset, record));
         let of_the_fit = of_the_fit.unwrap_or_else(|| filter.clone());
         let friction = bodies.with_friction();
@@ -264,6 +264,7 @@ mod tests {
             held_back: false,
             full_band: false,
             is_sharpened: false,
+            scale_error: None,
             notes: Vec::new(),
         }
     }

@@ -11,6 +11,7 @@ use crate::record::extent::{plateau, range, smallest_step};
 use crate::record::form::{self, ControllerForm, DatasetForm};
 use crate::record::reading::{self, Reading};
 use crate::record::samples::Record;
+use crate::record::scale_error::ScaleError;
 use crate::record::units::{AxisKind, Effort, EffortHold};
 
 type Outcome<T> = Result<T, IdentificationError>;
@@ -54,6 +55,9 @@ pub struct Dataset {
     /// Whether velocity and acceleration are given back what differences lack of fast motion: the
     /// record showed that this is worth the noise that it adds.
     pub is_sharpened: bool,
+    /// What the load's scale is off by, where that is a force of the size of an effect. The load's
+    /// acceleration is without it, its position is as it was recorded.
+    pub(crate) scale_error: Option<ScaleError>,
     /// What is odd in `dataset.toml` or in the records but no reason to refuse them.
     pub notes: Vec<String>,
 }
@@ -123,6 +127,7 @@ impl Dataset {
             held_back: records.held_back,
             full_band: false,
             is_sharpened: false,
+            scale_error: None,
             notes,
         }
     }

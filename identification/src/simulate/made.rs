@@ -48,6 +48,7 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
         held_back: false,
         full_band: false,
         is_sharpened: false,
+        scale_error: None,
         notes: Vec::new(),
     }
 }

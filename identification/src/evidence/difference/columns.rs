@@ -22,7 +22,9 @@ use super::edges::Flanks;
 use super::load::Carried;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
+use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
+use crate::record::scale_error::ScaleError;
 use crate::record::units::EffortHold;
 use crate::simulate::load::Behind;
 
@@ -157,6 +159,18 @@ impl FittedWays {
         Some((own.0, &own.1))
     }
 
+    /// The pitch error among them.
+    pub(crate) fn scale_error(&self) -> Option<ScaleError> {
+        let (Way::Pitch { per_length }, own) = self.of(EffectName::PitchError)? else {
+            return None;
+        };
+        Some(ScaleError {
+            per_length,
+            cos: own[0],
+            sin: own[1],
+        })
+    }
+
     /// What its effects are called, in their order.
     pub(crate) fn names(&self) -> impl Iterator<Item = EffectName> {
         self.0.iter().filter_map(|(way, _)| way.called().name())
@@ -208,15 +222,10 @@ impl<'a> Apart<'a> {
 
     /// Motor − load at the rows without the pitch error of fitted ways.
     pub(super) fn cleared(&self, fitted: &FittedWays) -> Cow<'a, [f64]> {
-        let Some((Way::Pitch { per_length }, own)) = fitted.of(EffectName::PitchError) else {
+        let Some(error) = fitted.scale_error() else {
             return Cow::Borrowed(self.raw);
         };
-        let wave = |x: f64| {
-            let (sin, cos) = (TAU * per_length * x).sin_cos();
-            own[0] * cos + own[1] * sin
-        };
-        let rows = self.raw.iter().zip(self.path.position);
-        rows.map(|(apart, x)| apart - wave(*x)).collect()
+        minus(self.raw, &error.along(self.path.position)).into()
     }
 
     /// The same with such a motor − load at the rows.
