@@ -32,7 +32,7 @@ use crate::motion::motions::{self, Motions};
 use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::{EXCERPT, ExcerptSize, excerpt};
-use crate::record::scale_error::ScaleError;
+use crate::record::scale_error::{ScaleError, along};
 use crate::report;
 use crate::report::forms::Identification;
 
@@ -81,7 +81,7 @@ fn identify_excerpt(
     loop {
         match judged(&dataset, size, search, progress)? {
             Judged::Whole(identification) => return Ok(*identification),
-            Judged::ScaleIsOff(error) => dataset.to_mut().scale_error = Some(error),
+            Judged::ScaleIsOff(errors) => dataset.to_mut().scale_errors = errors,
         }
     }
 }
@@ -91,7 +91,7 @@ enum Judged {
     /// The identification.
     Whole(Box<Identification>),
     /// Nothing holds: the acceleration of the load has a force that never was.
-    ScaleIsOff(ScaleError),
+    ScaleIsOff(Vec<ScaleError>),
 }
 
 fn judged(
@@ -115,8 +115,8 @@ fn judged(
             low: &low,
         };
         let findings = findings(pair, &motions, search, progress);
-        if let Some(error) = scale_error(&findings, &bench) {
-            return Ok(Judged::ScaleIsOff(error));
+        if let Some(errors) = scale_errors(&findings, &bench) {
+            return Ok(Judged::ScaleIsOff(errors));
         }
         let is_declared = |name: &&EffectName| fitted_on.declares(**name);
         let declared = findings.found.names().iter().filter(is_declared);
@@ -136,20 +136,20 @@ fn judged(
 
 /// What the load's scale is off by, where its acceleration has a force of the size of an effect by
 /// that and is still taken as it was recorded. The load is as heavy as the axis at most.
-fn scale_error(findings: &Findings<'_>, bench: &Bench<'_>) -> Option<ScaleError> {
+fn scale_errors(findings: &Findings<'_>, bench: &Bench<'_>) -> Option<Vec<ScaleError>> {
     let (dataset, motion) = (bench.dataset, bench.motion);
-    if dataset.scale_error.is_some() {
+    if !dataset.scale_errors.is_empty() {
         return None;
     }
-    let error = findings.stages.difference.as_ref()?.scale_error()?;
+    let errors = findings.stages.difference.as_ref()?.scale_errors();
     let off = Derivatives::new(
-        &error.along(&dataset.train.position),
+        &along(&errors, &dataset.train.position),
         motion.period_s,
         dataset.hold,
     );
     let rms = |signal: &[f64]| reversal::rms(signal, &motion.fitted);
     let force = Plain::moved_mass(motion) * rms(&motion.low_passed(&off.acceleration));
-    (force >= 0.01 * EFFORT_PERCENT * rms(&motion.effort_lp)).then_some(error)
+    (force >= 0.01 * EFFORT_PERCENT * rms(&motion.effort_lp)).then_some(errors)
 }
 
 /// The dataset with what says how it moves: position or velocity, sharpened or not.
@@ -377,7 +377,7 @@ mod tests {
             held_back: false,
             full_band: false,
             is_sharpened: false,
-            scale_error: None,
+            scale_errors: Vec::new(),
             notes: Vec::new(),
         }
     }

@@ -79,8 +79,8 @@ pub(crate) struct Difference {
     pub gap: Option<Known>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<Known>,
-    /// Amplitude and wave number of the pitch error, if one was found or declared.
-    pub pitch: Option<(Known, Known)>,
+    /// Amplitude and wave number of each pitch error that was found or declared.
+    pub pitch: Vec<(Known, Known)>,
     /// What the load's own motion tells, where it explains the wind-up better than the effort.
     pub by_the_load: Option<ByTheLoad>,
     /// The largest structure that no accepted effect explains, beyond the counts.
@@ -93,6 +93,13 @@ pub(crate) struct Difference {
 /// the force speaks for none: as sums of squares, below which the motion judges. Chosen: half the
 /// rms.
 const MUCH_LESS: f64 = 0.25;
+
+/// A wave is another one from so many periods more or less within the travel on: nearer, both look
+/// alike over most of it.
+const ANOTHER_WAVE: f64 = 1.0;
+
+/// Most waves of a pitch error.
+const MOST_PITCH_ERRORS: usize = 4;
 
 /// Rounds in which a pitch error and what the flanks do beside it settle.
 const PITCH_ROUNDS: usize = 3;
@@ -137,7 +144,8 @@ fn judged(dataset: &Dataset, apart: Apart<'_>) -> Difference {
     output.before = output.apart.cross_validate(&declared).held_out.iter().sum();
     let selection = selection::select(&output, declared.clone(), &mut |_| ());
     let fit = |ways: &Vec<Way>| output.apart.where_known(ways).fit(ways);
-    let fits = [&declared, &selection.model].map(fit);
+    let extended = output.without_idle_waves(selection.model, &declared);
+    let fits = [&declared, &extended].map(fit);
     Difference::of(fits, selection.scored)
 }
 
@@ -217,7 +225,7 @@ impl Output for MotorLoad<'_> {
 
     fn candidates(&self, ways: &Vec<Way>, round: usize) -> Vec<Candidate<Vec<Way>>> {
         let base = self.apart.where_known(ways).cross_validate(ways);
-        let is_open = |name: &EffectName| !has(ways, *name);
+        let is_open = |name: &EffectName| count_of(ways, *name) < most_of(*name);
         let open = EFFECTS.into_iter().filter(is_open);
         let judged = open.filter_map(|name| self.judged(ways, &base, name, round));
         judged.collect()
@@ -225,8 +233,6 @@ impl Output for MotorLoad<'_> {
 
     fn accepts(&self, candidate: &Candidate<Vec<Way>>) -> bool {
         let Scored { gain, physical, .. } = &candidate.scored;
-        let rows = self.apart.mask.iter().filter(|inside| **inside).count() as f64;
-        let removed_rms = (gain.removed.max(0.0) / rows.max(1.0)).sqrt();
         let is_relevant = self.shows_in_force(&candidate.model)
             || gain.removed >= DIFFERENCE_SHARE_OF_ALL * self.before;
         let is_by_force = matches!(candidate.model.last(), Some(Way::Flanks(_)));
@@ -239,11 +245,15 @@ impl Output for MotorLoad<'_> {
             && gain.share >= DIFFERENCE_SHARE
             && is_certain
             && is_relevant
-            && removed_rms >= DIFFERENCE_RMS_COUNTS * self.count
+            && self.is_beyond_counts(gain)
     }
 
-    /// Friction of the motor's own side may show only beside what came in.
-    fn refined(&self, ways: Vec<Way>) -> Vec<Way> {
+    /// Friction of the motor's own side may show only beside what came in. A wave number goes
+    /// beyond its grid, so that no second wave is what is left of the first.
+    fn refined(&self, mut ways: Vec<Way>) -> Vec<Way> {
+        if has(&ways, EffectName::PitchError) {
+            ways = intervals::with_wave_numbers(&self.apart, ways);
+        }
         let is_wind_up = |way: &Way| matches!(way, Way::WindUp { .. } | Way::HalfOf { .. });
         let Some(place) = ways.iter().position(is_wind_up) else {
             return ways;
@@ -256,7 +266,7 @@ impl Output for MotorLoad<'_> {
     }
 
     fn most(&self) -> usize {
-        EFFECTS.len()
+        EFFECTS.into_iter().map(most_of).sum()
     }
 }
 
@@ -368,9 +378,51 @@ impl MotorLoad<'_> {
             per_length: periods / TAU,
         });
         let left = |way: &Way| apart.blocks(&[ways, &[*way]].concat()).fit().sse;
-        let of_orders = best_order(apart, ways, &self.orders);
+        let known = ways.iter().filter_map(Way::wave_number);
+        let known: Vec<f64> = known.collect();
+        let is_another = |k: &f64| {
+            let periods = |known: &f64| (known - k).abs() * (high - low);
+            known.iter().map(periods).all(|apart| apart >= ANOTHER_WAVE)
+        };
+        let orders: Vec<f64> = self.orders.iter().copied().filter(is_another).collect();
+        let of_orders = best_order(apart, ways, &orders);
         let all = scanned.into_iter().chain(of_turns).chain(of_orders);
-        all.min_by(|a, b| left(a).total_cmp(&left(b)))
+        let others = all.filter(|way| way.wave_number().is_none_or(|k| is_another(&k)));
+        others.min_by(|a, b| left(a).total_cmp(&left(b)))
+    }
+
+    /// The same without waves that those after them made superfluous; as many stay as are declared.
+    fn without_idle_waves(&self, mut ways: Vec<Way>, declared: &[Way]) -> Vec<Way> {
+        let waves = |ways: &[Way]| count_of(ways, EffectName::PitchError);
+        while waves(&ways) > waves(declared) {
+            let places = (0..ways.len()).filter(|place| ways[*place].wave_number().is_some());
+            let gains = places.map(|place| (place, self.worth(&ways, place)));
+            let least = gains.min_by(|a, b| a.1.removed.total_cmp(&b.1.removed));
+            match least {
+                Some((place, gain)) if !self.is_worth_it(&gain) => ways.remove(place),
+                _ => break,
+            };
+        }
+        ways
+    }
+
+    /// What the way at a place removes on held-out blocks.
+    fn worth(&self, ways: &[Way], place: usize) -> Gain {
+        let mut without = ways.to_vec();
+        without.remove(place);
+        let apart = self.apart.where_known(ways);
+        Gain::of(&apart.cross_validate(&without), &apart.cross_validate(ways))
+    }
+
+    /// Whether a gain is relevant, certain, and more than the counts.
+    fn is_worth_it(&self, gain: &Gain) -> bool {
+        gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T && self.is_beyond_counts(gain)
+    }
+
+    fn is_beyond_counts(&self, gain: &Gain) -> bool {
+        let rows = self.apart.mask.iter().filter(|inside| **inside).count() as f64;
+        let removed_rms = (gain.removed.max(0.0) / rows.max(1.0)).sqrt();
+        removed_rms >= DIFFERENCE_RMS_COUNTS * self.count
     }
 
     /// What the motor's balance says of a gap, where it shows the flanks.
@@ -513,6 +565,20 @@ impl MotorLoad<'_> {
     }
 }
 
+/// How often ways have an effect.
+fn count_of(ways: &[Way], name: EffectName) -> usize {
+    ways.iter().filter(|way| way.called() == name).count()
+}
+
+/// How often ways may have an effect: a scale is off by the turns of its screw, by those of a wheel
+/// before it, and by harmonics of both.
+const fn most_of(name: EffectName) -> usize {
+    match name {
+        EffectName::PitchError => MOST_PITCH_ERRORS,
+        _ => 1,
+    }
+}
+
 /// Whether ways have an effect.
 fn has(ways: &[Way], name: EffectName) -> bool {
     ways.iter().any(|way| way.called() == name)
@@ -550,10 +616,21 @@ fn stiffness(gap: Option<(Way, &[f64])>, wind_up: Way, own: &[f64]) -> f64 {
     }
 }
 
+/// Each name once, in the order of the first.
+fn once(names: impl Iterator<Item = EffectName>) -> Vec<EffectName> {
+    let mut each = Vec::new();
+    for name in names {
+        if !each.contains(&name) {
+            each.push(name);
+        }
+    }
+    each
+}
+
 impl Difference {
-    /// What the load's scale is off by, where its error was found or declared.
-    pub(crate) fn scale_error(&self) -> Option<ScaleError> {
-        self.extended.scale_error()
+    /// What the load's scale is off by: the pitch errors that were found or declared.
+    pub(crate) fn scale_errors(&self) -> Vec<ScaleError> {
+        self.extended.scale_errors()
     }
 
     fn of([declared, extended]: [FittedWays; 2], scored: Vec<Scored>) -> Self {
@@ -561,7 +638,7 @@ impl Difference {
         let gap = extended.of(EffectName::Backlash);
         let wind_up = extended.of(EffectName::Compliance);
         Self {
-            found: extended.names().filter(|name| !is_declared(name)).collect(),
+            found: once(extended.names().filter(|name| !is_declared(name))),
             scored,
             before_um: 0.0,
             after_um: 0.0,
@@ -569,7 +646,7 @@ impl Difference {
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
                 .map(|(way, own)| Known::new(stiffness(gap, way, own), 0.0)),
-            pitch: None,
+            pitch: Vec::new(),
             by_the_load: None,
             left: None,
             declared,
@@ -610,7 +687,8 @@ impl Difference {
                     let size = own[0].hypot(own[1]);
                     let off = (own[0] * half_widths.own[0]).hypot(own[1] * half_widths.own[1]);
                     let amplitude = Known::new(size, off / size.max(f64::MIN_POSITIVE));
-                    self.pitch = Some((amplitude, Known::new(per_length, searched)));
+                    self.pitch
+                        .push((amplitude, Known::new(per_length, searched)));
                 }
                 Way::Constant | Way::WindUp { .. } | Way::HalfOf { .. } | Way::Carried(_) => {}
             }
@@ -723,6 +801,12 @@ mod tests {
         (amplitude.value, per_length.value)
     }
 
+    /// The one pitch error.
+    fn only(difference: &Difference) -> (f64, f64) {
+        assert_eq!(difference.pitch.len(), 1);
+        values(difference.pitch[0])
+    }
+
     /// A motor with a load that is late by what is told of row, position and effort.
     fn axis(lag: impl Fn(&[f64], usize) -> f64) -> Axis {
         let position = two_sines(6000);
@@ -788,7 +872,7 @@ mod tests {
         };
         let (names, pitch) = found(&|x| 3.0 * (TAU * x / lead + 0.4).cos());
         assert_eq!(names, [EffectName::PitchError]);
-        let (amplitude, per_length) = pitch.map(values).unwrap();
+        let (amplitude, per_length) = values(pitch[0]);
         assert!((amplitude / 3.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
         assert!((per_length * lead - 1.0).abs() < 1.0e-9, "{per_length}");
         let u = |x: f64| 2.0 * x / travel;
@@ -807,7 +891,7 @@ mod tests {
         assert!(difference.found.is_empty() && !difference.moves_apart());
         assert_eq!(
             (difference.gap, difference.stiffness, difference.pitch),
-            (None, None, None)
+            (None, None, Vec::new())
         );
         assert!(difference.after_um < 0.03, "{}", difference.after_um);
     }
@@ -817,7 +901,7 @@ mod tests {
         let axis = axis(|x, row| 2.0e-6 * (TAU * 500.0 * x[row] + 0.4).cos());
         let difference = judged(&axis);
         assert_eq!(difference.found, [EffectName::PitchError]);
-        let (amplitude, per_length) = difference.pitch.map(values).unwrap();
+        let (amplitude, per_length) = only(&difference);
         assert!((amplitude / 2.0e-6 - 1.0).abs() < 0.05, "{amplitude}");
         assert!((per_length / 500.0 - 1.0).abs() < 0.01, "{per_length}");
         // 2 µm of amplitude are 1.4 µm rms.
@@ -834,6 +918,27 @@ mod tests {
         };
         let (before, after) = difference.on(&axis.motion, path).unwrap();
         assert_eq!((before, after), (difference.before_um, difference.after_um));
+    }
+
+    #[test]
+    fn every_wave_of_a_pitch_error_is_found_and_no_further_one() {
+        // 500, 725 and 230 waves a metre.
+        let waves = [(2.0e-6, 500.0), (1.1e-6, 725.0), (0.6e-6, 230.0)];
+        for count in 1..=waves.len() {
+            let wave = |x: f64| {
+                let each = waves[..count].iter();
+                each.map(|(size, k)| size * (TAU * k * x + 0.4).cos()).sum()
+            };
+            let difference = judged(&axis(|x, row| wave(x[row])));
+            assert_eq!(difference.found, [EffectName::PitchError], "{count}");
+            let found: Vec<(f64, f64)> = difference.pitch.iter().copied().map(values).collect();
+            assert_eq!(found.len(), count, "{found:?}");
+            for ((amplitude, per_length), (size, k)) in found.iter().zip(waves) {
+                assert!((amplitude / size - 1.0).abs() < 0.05, "{found:?}");
+                assert!((per_length / k - 1.0).abs() < 1.0e-3, "{found:?}");
+            }
+            assert!(difference.after_um < 0.1, "{}", difference.after_um);
+        }
     }
 
     #[test]
@@ -888,7 +993,7 @@ mod tests {
             let gap = difference.gap.unwrap();
             assert!((gap.value / 20.0e-6 - 1.0).abs() < 0.1, "{gap:?}");
             assert!((gap.value - 20.0e-6).abs() < gap.half_width, "{gap:?}");
-            let (amplitude, _) = difference.pitch.map(values).unwrap();
+            let (amplitude, _) = only(&difference);
             assert!((amplitude / 6.0e-6 - 1.0).abs() < 0.03, "{amplitude}");
             assert!(difference.after_um < 1.0, "{}", difference.after_um);
         }
@@ -945,7 +1050,7 @@ mod tests {
         axis.dataset.declared.push(EffectName::PitchError);
         let difference = judged(&axis);
         assert!(difference.found.is_empty());
-        assert!(difference.before_um < 0.3 && difference.pitch.is_some());
+        assert!(difference.before_um < 0.3 && difference.pitch.len() == 1);
     }
 
     fn output(axis: &Axis, count: f64) -> MotorLoad<'_> {
@@ -1078,7 +1183,7 @@ mod tests {
             })
         };
         assert!(of_all(99.0) && !of_all(101.0));
-        assert_eq!(output.most(), 3);
+        assert_eq!(output.most(), 6);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 use crate::motion::derivatives::Derivatives;
 use crate::record::dataset::Dataset;
 use crate::record::samples::Record;
+use crate::record::scale_error::along;
 
 /// The bodies of a record.
 pub(crate) struct Bodies {
@@ -36,9 +37,10 @@ impl Bodies {
         let load = record.load.as_deref().map(by_position);
         let apart = |load: &Derivatives| minus(&load.acceleration, &motor.acceleration);
         let mut load_acceleration = load.as_ref().map(apart);
-        if let Some((apart, error)) = load_acceleration.as_mut().zip(dataset.scale_error) {
-            let never_was = by_position(&error.along(&record.position)).acceleration;
-            let rows = apart.iter_mut().zip(never_was);
+        if !dataset.scale_errors.is_empty() {
+            let never_was = by_position(&along(&dataset.scale_errors, &record.position));
+            let apart = load_acceleration.iter_mut().flatten();
+            let rows = apart.zip(never_was.acceleration);
             rows.for_each(|(apart, never_was)| *apart += never_was);
         }
         let Some(measured) = record.velocity.as_deref() else {
@@ -76,10 +78,10 @@ mod tests {
     use crate::record::units::EffortHold;
     use crate::simulate::made::{dataset, record, two_sines};
 
-    fn bodies(record: Record, scale_error: Option<ScaleError>) -> Bodies {
+    fn bodies(record: Record, scale_errors: Vec<ScaleError>) -> Bodies {
         let dataset = Dataset {
             hold: EffortHold::Instant,
-            scale_error,
+            scale_errors,
             ..dataset(record, None)
         };
         Bodies::of(&dataset, &dataset.train)
@@ -104,7 +106,7 @@ mod tests {
     fn without_a_measured_velocity_both_bodies_are_those_of_their_positions() {
         let record = jittered(None);
         let own = Derivatives::new(record.load.as_deref().unwrap(), 1.0e-3, EffortHold::Instant);
-        let bodies = bodies(record, None);
+        let bodies = bodies(record, Vec::new());
         assert_eq!(bodies.with_friction().velocity, own.velocity);
         assert_eq!(bodies.with_friction().acceleration, own.acceleration);
     }
@@ -112,7 +114,7 @@ mod tests {
     #[test]
     fn with_it_the_jitter_of_both_positions_is_gone_from_both_but_for_their_difference() {
         let exact = Derivatives::new(&two_sines(3000), 1.0e-3, EffortHold::Instant);
-        let bodies = bodies(jittered(Some(exact.velocity.clone())), None);
+        let bodies = bodies(jittered(Some(exact.velocity.clone())), Vec::new());
         let worst = |one: &[f64], other: &[f64]| {
             let apart = one[5..2990].iter().zip(&other[5..2990]);
             apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -135,19 +137,20 @@ mod tests {
             cos: 2.0e-6,
             sin: -1.0e-6,
         };
-        let apart = |scale_error: Option<ScaleError>| {
+        let apart = |scale_errors: Vec<ScaleError>| {
             let path = two_sines(3000);
-            let seen = minus(&path, &error.along(&path));
+            let seen = minus(&path, &along(&[error], &path));
             let off = Record {
                 load: Some(seen),
                 ..record(1.0e-3, path)
             };
-            let apart = bodies(off, scale_error).load_acceleration.unwrap();
+            let apart = bodies(off, scale_errors).load_acceleration.unwrap();
             apart[5..2990]
                 .iter()
                 .fold(0.0_f64, |most, a| most.max(a.abs()))
         };
-        assert!(apart(None) > 1.0e-3, "{}", apart(None));
-        assert!(apart(Some(error)) < 1.0e-6 * apart(None));
+        let seen = apart(Vec::new());
+        assert!(seen > 1.0e-3, "{seen}");
+        assert!(apart(vec![error]) < 1.0e-6 * seen);
     }
 }

@@ -264,7 +264,7 @@ mod tests {
             held_back: false,
             full_band: false,
             is_sharpened: false,
-            scale_error: None,
+            scale_errors: Vec::new(),
             notes: Vec::new(),
         }
     }

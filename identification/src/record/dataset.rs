@@ -57,7 +57,7 @@ pub struct Dataset {
     pub is_sharpened: bool,
     /// What the load's scale is off by, where that is a force of the size of an effect. The load's
     /// acceleration is without it, its position is as it was recorded.
-    pub(crate) scale_error: Option<ScaleError>,
+    pub(crate) scale_errors: Vec<ScaleError>,
     /// What is odd in `dataset.toml` or in the records but no reason to refuse them.
     pub notes: Vec<String>,
 }
@@ -127,7 +127,7 @@ impl Dataset {
             held_back: records.held_back,
             full_band: false,
             is_sharpened: false,
-            scale_error: None,
+            scale_errors: Vec::new(),
             notes,
         }
     }
@@ -155,6 +155,7 @@ impl Dataset {
             name: self.name.clone(),
             controller: self.controller.clone(),
             declared: self.declared.clone(),
+            scale_errors: self.scale_errors.clone(),
             notes: self.notes.clone(),
             train,
             validate,

@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 
 use axis_model::{Effect, EffectName, Estimate, Parameter, TorqueRipple};
 
+use crate::evidence::thresholds::MOST_EFFECTS;
 use crate::model::effects::curve;
 use crate::model::effects::position_dependent_friction::knot_name;
 use crate::report::forms::Report;
@@ -40,12 +41,15 @@ pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> 
     let table = in_shares(&report.parameters.known, travel);
     let mut effects = Vec::new();
     for name in EffectName::ALL {
-        let each = (1..).map(|times| assemble(*name, times, &table));
-        effects.extend(each.map_while(|effect| effect));
+        let each = (1..=MOST_TIMES).filter_map(|times| assemble(*name, times, &table));
+        effects.extend(each);
     }
     effects.extend(at_reversals(report));
     effects
 }
+
+/// The most that one effect is found. One of them may have a size that nobody knows.
+const MOST_TIMES: usize = MOST_EFFECTS;
 
 /// An effect that was found for the first time, the second, …; `None` where it was not.
 fn assemble(name: EffectName, times: usize, table: &Table) -> Option<Effect<Estimate>> {
@@ -423,6 +427,18 @@ mod tests {
         let found = effects(&report, travel(0.0, 0.2));
         let names: Vec<EffectName> = found.iter().map(Effect::name).collect();
         assert_eq!(names, [EffectName::Viscous]);
+    }
+
+    #[test]
+    fn a_wave_of_a_size_that_nobody_knows_hides_none_after_it() {
+        let report = report(&[
+            ("pitch_error_period", 3.0e-3),
+            ("pitch_error_amplitude_2", 2.0e-6),
+            ("pitch_error_period_2", 1.0e-2),
+        ]);
+        let found = effects(&report, travel(0.0, 0.1));
+        let parts = only(&found, EffectName::PitchError);
+        assert_eq!(parts[0].1, 2.0e-6);
     }
 
     #[test]

@@ -279,13 +279,13 @@ fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Ef
             damping: None,
         })
     });
-    let pitch_error = difference.pitch.map(|(amplitude, per_length)| {
+    let pitch_errors = difference.pitch.iter().map(|(amplitude, per_length)| {
         Effect::from(PitchError {
-            amplitude: known(amplitude, length),
+            amplitude: known(*amplitude, length),
             period: known(per_length.inverse(), length),
         })
     });
-    let all = gap.into_iter().chain(compliance).chain(pitch_error);
+    let all = gap.into_iter().chain(compliance).chain(pitch_errors);
     all.collect()
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn dataset(train: Record, controller: Option<ControllerForm>) -> Data
         held_back: false,
         full_band: false,
         is_sharpened: false,
-        scale_error: None,
+        scale_errors: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -103,7 +103,7 @@ pub(super) fn told(
 }
 
 /// The same, judged where the load does not rest.
-fn where_the_load_moves<'a>(apart: Apart<'a>, moving_velocity: f64) -> Apart<'a> {
+fn where_the_load_moves(apart: Apart<'_>, moving_velocity: f64) -> Apart<'_> {
     let (path, slowest) = (apart.path, REST * moving_velocity);
     let mask = where_it_moves(apart.motion, path.position, apart.raw, &apart.mask, slowest);
     Apart { mask, ..apart }

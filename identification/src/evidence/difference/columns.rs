@@ -24,7 +24,7 @@ use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
-use crate::record::scale_error::ScaleError;
+use crate::record::scale_error::{ScaleError, along};
 use crate::record::units::EffortHold;
 use crate::simulate::load::Behind;
 
@@ -75,6 +75,14 @@ pub(crate) enum Way {
 }
 
 impl Way {
+    /// Of a pitch error.
+    pub(super) const fn wave_number(&self) -> Option<f64> {
+        match *self {
+            Self::Pitch { per_length } => Some(per_length),
+            _ => None,
+        }
+    }
+
     /// What it is called.
     pub(crate) const fn called(self) -> Called {
         match self {
@@ -159,16 +167,16 @@ impl FittedWays {
         Some((own.0, &own.1))
     }
 
-    /// The pitch error among them.
-    pub(crate) fn scale_error(&self) -> Option<ScaleError> {
-        let (Way::Pitch { per_length }, own) = self.of(EffectName::PitchError)? else {
-            return None;
+    /// The pitch errors among them.
+    pub(crate) fn scale_errors(&self) -> Vec<ScaleError> {
+        let error = |(way, own): &(Way, Vec<f64>)| {
+            Some(ScaleError {
+                per_length: way.wave_number()?,
+                cos: own[0],
+                sin: own[1],
+            })
         };
-        Some(ScaleError {
-            per_length,
-            cos: own[0],
-            sin: own[1],
-        })
+        self.0.iter().filter_map(error).collect()
     }
 
     /// What its effects are called, in their order.
@@ -222,10 +230,11 @@ impl<'a> Apart<'a> {
 
     /// Motor − load at the rows without the pitch error of fitted ways.
     pub(super) fn cleared(&self, fitted: &FittedWays) -> Cow<'a, [f64]> {
-        let Some(error) = fitted.scale_error() else {
+        let errors = fitted.scale_errors();
+        if errors.is_empty() {
             return Cow::Borrowed(self.raw);
-        };
-        minus(self.raw, &error.along(self.path.position)).into()
+        }
+        minus(self.raw, &along(&errors, self.path.position)).into()
     }
 
     /// The same with such a motor − load at the rows.
