@@ -36,11 +36,10 @@ const COUNT_UM: f64 = 0.01;
 /// The machine whose loop bounces outside wide gaps, and the narrowest of them, µm.
 const BOUNCING: (u64, u32) = (5, 50);
 
-/// Machines whose loops oscillate with such a gap.
-const OSCILLATING: [(u64, u32, Loop); 6] = [
+/// Machines whose loops oscillate with such a gap. That of 16 rings with 0 and 2 µm inside it too,
+/// in a few seconds of its record: it is not told there (docs/identification.md).
+const OSCILLATING: [(u64, u32, Loop); 4] = [
     (25, 0, Loop::Outside),
-    (16, 0, Loop::Inside),
-    (16, 2, Loop::Inside),
     (16, 0, Loop::Outside),
     (16, 20, Loop::Outside),
     (25, 100, Loop::Outside),
