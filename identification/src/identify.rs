@@ -142,6 +142,9 @@ fn scale_errors(findings: &Findings<'_>, bench: &Bench<'_>) -> Option<Vec<ScaleE
         return None;
     }
     let errors = findings.stages.difference.as_ref()?.scale_errors();
+    if errors.is_empty() {
+        return None;
+    }
     let off = Derivatives::new(
         &along(&errors, &dataset.train.position),
         motion.period_s,
