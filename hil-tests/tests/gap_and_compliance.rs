@@ -34,11 +34,13 @@ const OF_THE_MACHINE: [&str; 4] = ["stribeck", "presliding", "backlash", "compli
 /// One count of the load scale, µm.
 const COUNT_UM: f64 = 0.01;
 /// The machine whose loop bounces outside wide gaps, and the narrowest of them, µm.
-const BOUNCING: (u64, u32) = (5, 50);
+const BOUNCING: (u64, u32) = (5, 20);
 
-/// Machines whose loops oscillate with such a gap. That of 16 rings with 0 and 2 µm inside it too,
-/// in a few seconds of its record: it is not told there (docs/identification.md).
-const OSCILLATING: [(u64, u32, Loop); 4] = [
+/// Machines whose loops oscillate with such a gap; that of 16 rings in a few seconds of its record
+/// where the gap is inside.
+const OSCILLATING: [(u64, u32, Loop); 6] = [
+    (16, 2, Loop::Inside),
+    (16, 0, Loop::Inside),
     (25, 0, Loop::Outside),
     (16, 0, Loop::Outside),
     (16, 20, Loop::Outside),

@@ -135,6 +135,16 @@ pub(crate) const WAVE_LEFT: f64 = 0.05;
 /// loops that oscillate have 1.06 and more, springy flanks of 100 µm that ring up to 0.85.
 pub(crate) const OSCILLATION: f64 = 1.0;
 
+/// A half second rings by itself where two samples leave at most this part of the next one's
+/// square: loops at the edge of their stability leave 0.0005 and less, impacts at their largest
+/// 0.01 and more.
+pub(crate) const STRETCH_LEFT: f64 = 0.005;
+
+/// Such a half second is told from this multiple of the acceleration of the record's slower motion
+/// on. Chosen: the two loops that spoil their records have 5.7, the next of the same machine, whose
+/// sizes come out right, 1.9.
+pub(crate) const STRETCH_OSCILLATION: f64 = 3.0;
+
 // ---- Motor − load: `difference` and its rooms ----
 
 /// Smallest share of the held-out variance that an effect between motor and load removes.
