@@ -6,7 +6,8 @@
 //! Screening is everything on the inverse model; the whole adds the free-run fits, the judgement of
 //! all rows and the files. All cores that the process may use (`taskset -c 0,1` for two).
 //!
-//! DIR is the folder of a dataset: with any, those are measured instead.
+//! DIR is the folder of a dataset: with any, those are measured instead. A second table says which
+//! step took how much of the processor time.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,6 +30,8 @@ struct Cost {
     cores_s: f64,
     peak_mb: f64,
     found: Vec<String>,
+    /// Steps as they began, with the time of all cores until then, s.
+    steps: Vec<(&'static str, f64)>,
 }
 
 fn main() {
@@ -38,16 +41,70 @@ fn main() {
     println!(
         "| record | rows | reading, s | screening, s | whole, s | screening per 25 000 rows, s | whole per 25 000 rows, s | all cores, s | peak memory, MB | found |\n|---|---|---|---|---|---|---|---|---|---|"
     );
+    let mut costs = Vec::new();
     for folder in &folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
-        print(&name, &cost(folder));
+        let cost = cost(folder);
+        print(&name, &cost);
+        costs.push((name.into_owned(), cost));
     }
     if folders.is_empty() {
         for rows in ROWS {
             let folder = tempfile::tempdir().expect("a temporary folder can be made");
             write_record(folder.path(), rows);
-            print("ripple and presliding", &cost(folder.path()));
+            let cost = cost(folder.path());
+            print("ripple and presliding", &cost);
+            costs.push((format!("{rows} rows"), cost));
         }
+    }
+    print_steps(&costs);
+}
+
+/// The steps of an identification in a word.
+const STEPS: [&str; 11] = [
+    "reading",
+    "declared",
+    "candidates",
+    "motor and load",
+    "rigid",
+    "bristle",
+    "gap",
+    "bristle and gap",
+    "validating",
+    "all rows",
+    "files",
+];
+
+fn word(step: &Step) -> &'static str {
+    match step {
+        Step::Declared => "declared",
+        Step::Candidates | Step::Found { .. } => "candidates",
+        Step::MotorAndLoad => "motor and load",
+        Step::Rigid => "rigid",
+        Step::Bristle => "bristle",
+        Step::Gap => "gap",
+        Step::BristleAndGap => "bristle and gap",
+        Step::Validating => "validating",
+        Step::AllRows => "all rows",
+    }
+}
+
+fn print_steps(costs: &[(String, Cost)]) {
+    println!("\n| record, s of all cores | {} |", STEPS.join(" | "));
+    println!("|---{}|", "|---".repeat(STEPS.len()));
+    for (name, cost) in costs {
+        let ends = cost.steps.iter().skip(1).map(|(_, at)| *at);
+        let ends = ends.chain([cost.cores_s]);
+        let of = |word: &str| {
+            let spans = cost.steps.iter().zip(ends.clone());
+            let spans = spans.filter(|((step, _), _)| *step == word);
+            spans.map(|((_, from), to)| to - from).sum::<f64>()
+        };
+        let cells: Vec<String> = STEPS
+            .iter()
+            .map(|step| format!("{:.2}", of(step)))
+            .collect();
+        println!("| {name} | {} |", cells.join(" | "));
     }
 }
 
@@ -92,26 +149,30 @@ fn write_record(folder: &Path, rows: usize) {
 
 fn cost(folder: &Path) -> Cost {
     forget_peak();
-    let (start, cores_s) = (Instant::now(), cores_s());
+    let (start, before_s) = (Instant::now(), cores_s());
     let dataset = Dataset::read(folder, None, None).unwrap_or_else(|why| panic!("{why}"));
     let read_s = start.elapsed().as_secs_f64();
     let mut screening_s = 0.0;
+    let mut steps = vec![("reading", 0.0)];
     let result = identify(&dataset, &mut |step| {
+        steps.push((word(step), cores_s() - before_s));
         if matches!(step, Step::Rigid) {
             screening_s = start.elapsed().as_secs_f64() - read_s;
         }
     })
     .unwrap_or_else(|why| panic!("{why}"));
     let out = tempfile::tempdir().expect("a temporary folder can be made");
+    steps.push(("files", cores_s() - before_s));
     write_folder(out.path(), &dataset, &result).expect("the folder can be written");
     Cost {
         rows: dataset.train.len(),
         read_s,
         screening_s,
         whole_s: start.elapsed().as_secs_f64(),
-        cores_s: self::cores_s() - cores_s,
+        cores_s: cores_s() - before_s,
         peak_mb: peak_mb(),
         found: result.report.found,
+        steps,
     }
 }
 
