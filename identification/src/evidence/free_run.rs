@@ -12,10 +12,12 @@
 //! number) is no evidence for anything: its rms is nothing to compare with.
 
 pub(crate) mod decision;
+mod excerpt;
 
 use axis_model::{Effect, Estimate};
 
 use crate::evidence::free_run::decision::{Accepted, Left, Scene, Tried};
+use crate::evidence::free_run::excerpt::Excerpt;
 use crate::evidence::thresholds::{FEWEST_COUNTS, SHAPE_RATIO, VISIBLE_ROUNDINGS};
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
@@ -51,6 +53,8 @@ const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
 const LOAD_SHARE: f64 = 0.45;
 /// So many of the best gaps are fitted.
 const STARTS: usize = 3;
+/// Another start is fitted to the whole record where it leaves this share on the excerpt.
+const WORTH_A_FIT: f64 = 0.97;
 
 /// What a shape leaves.
 #[derive(Clone)]
@@ -115,6 +119,8 @@ struct Judge<'a> {
     block_rows: usize,
     /// From end to end of the travel.
     travel: f64,
+    /// Some of the blocks that are fitted, on which a fit comes near before it sees all of them.
+    excerpt: Excerpt,
 }
 
 impl<'a> Judge<'a> {
@@ -129,6 +135,7 @@ impl<'a> Judge<'a> {
             record,
             block_rows,
             travel: 2.0 * dataset.travel().1,
+            excerpt: Excerpt::of(record, block_rows),
         }
     }
 
@@ -136,7 +143,22 @@ impl<'a> Judge<'a> {
         (row / self.block_rows).is_multiple_of(2)
     }
 
+    /// The fit from one start, or from what comes near on the excerpt where that is nearer.
     fn fitted(&self, start: &Simulated) -> Judged {
+        let error = |model: &Simulated| {
+            let run = simulate(model, &self.drive, self.record);
+            position_rms(&run, self.record, &|row| self.is_fitted(row))
+        };
+        let near = self.excerpt.near(start, &self.drive);
+        self.fitted_from(if error(&near) <= error(start) {
+            &near
+        } else {
+            start
+        })
+    }
+
+    /// The fit to all of the record.
+    fn fitted_from(&self, start: &Simulated) -> Judged {
         let model = fit(start, &self.drive, self.record, &|row| self.is_fitted(row));
         let run = simulate(&model, &self.drive, self.record);
         self.judged(model, &run)
@@ -159,29 +181,32 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The best fit from the best of several starts.
+    /// The best fit from the best of several starts, as the excerpt tells them.
     fn best(&self, starts: &[Simulated], count: usize) -> Option<Judged> {
-        let error = |model: &Simulated| {
-            position_rms(
-                &simulate(model, &self.drive, self.record),
-                self.record,
-                &|row| self.is_fitted(row),
-            )
-        };
-        let best = nearest(side_by_side(starts, error), starts, count).into_iter();
-        let fitted = best.map(|start| self.fitted(start));
-        fitted.reduce(Judged::better)
+        let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
+        let best = nearest(side_by_side(starts, error), starts, count);
+        let near = best
+            .iter()
+            .map(|start| self.excerpt.near(start, &self.drive));
+        let near: Vec<Simulated> = near.collect();
+        let nearest = nearest(near.iter().map(error).collect(), &near, 1);
+        nearest.first().map(|start| self.fitted_from(start))
     }
 
-    /// A shape, started once more from the masses and forces of other fits; the best is kept.
+    /// A shape, started once more from the masses and forces of other fits, as far as the excerpt
+    /// tells that this leaves less; the best is kept.
     fn restarted(&self, judged: Judged, others: &[&Judged]) -> Judged {
         let shape = judged.model.mechanics.shape;
-        let from = others.iter().map(|other| {
+        let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
+        let worth = WORTH_A_FIT * error(&judged.model);
+        let near = others.iter().map(|other| {
             let mut start = other.model.clone();
             start.mechanics.shape = shape;
-            self.fitted(&start)
+            self.excerpt.near(&start, &self.drive)
         });
-        from.fold(judged, Judged::better)
+        let nearer = near.filter(|near| error(near) <= worth);
+        let fitted = nearer.map(|near| self.fitted_from(&near));
+        fitted.fold(judged, Judged::better)
     }
 }
 
@@ -618,6 +643,7 @@ mod tests {
             record: &dataset.train,
             block_rows: 400,
             travel: 1.0,
+            excerpt: Excerpt::of(&dataset.train, 400),
         };
         let fitted = [0, 399, 400, 799, 800, 2400].map(|row| judge.is_fitted(row));
         assert_eq!(fitted, [true, true, false, false, true, true]);

@@ -55,6 +55,10 @@ pub(crate) struct Bench<'a> {
     kept: Mutex<Kept>,
 }
 
+/// Low-passed columns are fitted on so many rows a period of the cut-off: what the low-pass leaves
+/// beyond half of that is nothing. Half as many would do for a fit, but not for the search of a
+/// time: its error has small valleys then.
+const ROWS_A_PERIOD: f64 = 10.0;
 /// So many coefficients of one part are a curve.
 const FEWEST_OF_A_CURVE: usize = 4;
 /// Coefficients of another day are known to within this share of themselves.
@@ -220,10 +224,16 @@ impl<'a> Bench<'a> {
 
     fn rows(&self, design: &Design) -> Rows {
         let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
+        self.thinned(&columns, &design.target, &self.motion.fitted)
+    }
+
+    /// The rows of low-passed columns and a target, as many as the low-pass leaves different.
+    fn thinned(&self, columns: &[&[f64]], target: &[f64], mask: &[bool]) -> Rows {
         let Kinematics {
-            fitted, period_s, ..
+            period_s, filter, ..
         } = self.motion;
-        Rows::new(&columns, &design.target, fitted, *period_s)
+        let every = 1.0 / (ROWS_A_PERIOD * filter.cutoff_hz * period_s);
+        Rows::thinned(columns, target, mask, (*period_s, every.max(1.0) as usize))
     }
 
     /// Gram matrices of a design over the samples that are fitted.
@@ -366,7 +376,7 @@ impl<'a> Bench<'a> {
         let mut design = self.design(fitted.model());
         design.columns.push(slope);
         let columns: Vec<&[f64]> = design.columns.iter().map(Vec::as_slice).collect();
-        let rows = Rows::new(&columns, &design.target, mask, self.motion.period_s);
+        let rows = self.thinned(&columns, &design.target, mask);
         let blocks = Blocks::with(&rows, &[]);
         let last = |all: Vec<f64>| all.last().copied().unwrap_or(0.0);
         last(blocks.half_widths()).hypot(last(blocks.fit().coefficients))
@@ -521,6 +531,12 @@ fn in_shapes(columns: Vec<Vec<f64>>, fitted: &Fitted) -> (Vec<Vec<f64>>, Vec<f64
 }
 
 impl Gathered {
+    /// The model alone.
+    #[must_use]
+    pub(crate) fn fit(&self) -> Fit {
+        Blocks::with(&self.rows, &[]).fit()
+    }
+
     /// Blocks with more low-passed columns.
     fn with(&self, columns: &[Vec<f64>]) -> Blocks {
         let mut more = all_shifted(columns, self.shift_rows);

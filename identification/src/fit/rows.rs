@@ -29,21 +29,37 @@ pub(crate) struct Rows {
     blocks: Vec<Range<usize>>,
     /// Gram matrices of `[columns, target]`, one per block.
     grams: Vec<DMatrix<f64>>,
+    /// So many samples each gathered row stands for.
+    weight: f64,
 }
 
 impl Rows {
     /// The samples of a mask, without those near the ends of a block.
     #[must_use]
     pub(crate) fn new(columns: &[&[f64]], target: &[f64], mask: &[bool], period_s: f64) -> Self {
-        let (places, blocks) = places(mask, period_s);
+        Self::thinned(columns, target, mask, (period_s, 1))
+    }
+
+    /// The same with one of so many samples, which stands for all of them: for columns and a target
+    /// that a low-pass has left nothing between them.
+    #[must_use]
+    pub(crate) fn thinned(
+        columns: &[&[f64]],
+        target: &[f64],
+        mask: &[bool],
+        (period_s, every): (f64, usize),
+    ) -> Self {
+        let (places, blocks) = places(mask, period_s, every);
         let all: Vec<&[f64]> = columns.iter().copied().chain([target]).collect();
         let columns = gathered(&all, &places);
-        let gram = |block: &Range<usize>| products(&columns, &columns, block);
+        let weight = every as f64;
+        let gram = |block: &Range<usize>| products(&columns, &columns, block, weight);
         Self {
             grams: blocks.iter().map(gram).collect(),
             columns,
             places,
             blocks,
+            weight,
         }
     }
 
@@ -67,16 +83,16 @@ impl Rows {
         let pairs = self.blocks.iter().zip(&self.grams);
         pairs
             .map(|(block, gram)| {
-                let beside = products(&more, &self.columns, block);
-                let among = products(&more, &more, block);
+                let beside = products(&more, &self.columns, block, self.weight);
+                let among = products(&more, &more, block, self.weight);
                 inserted(gram, &beside, &among)
             })
             .collect()
     }
 }
 
-/// The rows that are fitted, and which of them are those of each block.
-fn places(mask: &[bool], period_s: f64) -> (Vec<usize>, Vec<Range<usize>>) {
+/// The rows that are fitted, of those in a row one of so many, and which are those of each block.
+fn places(mask: &[bool], period_s: f64, every: usize) -> (Vec<usize>, Vec<Range<usize>>) {
     let per_block = ((BLOCK_S / period_s).round() as usize)
         .min(mask.len() / FOLDS)
         .max(1);
@@ -85,7 +101,7 @@ fn places(mask: &[bool], period_s: f64) -> (Vec<usize>, Vec<Range<usize>>) {
     for (block, inside) in mask.chunks(per_block).enumerate() {
         let from = places.len();
         let within = guard..inside.len().min(per_block - guard);
-        let fitted = within.filter(|row| inside[*row]);
+        let fitted = within.step_by(every).filter(|row| inside[*row]);
         places.extend(fitted.map(|row| block * per_block + row));
         blocks.extend((places.len() > from).then_some(from..places.len()));
     }
@@ -98,10 +114,16 @@ fn gathered(columns: &[&[f64]], places: &[usize]) -> Vec<Vec<f64>> {
     columns.iter().map(at_places).collect()
 }
 
-/// Dot products, over the rows of a block, of each column of one table with each of another.
-fn products(one: &[Vec<f64>], other: &[Vec<f64>], block: &Range<usize>) -> DMatrix<f64> {
+/// Dot products, over the rows of a block of such a weight, of each column of one table with each
+/// of another.
+fn products(
+    one: &[Vec<f64>],
+    other: &[Vec<f64>],
+    block: &Range<usize>,
+    weight: f64,
+) -> DMatrix<f64> {
     DMatrix::from_fn(one.len(), other.len(), |i, j| {
-        dot(&one[i][block.clone()], &other[j][block.clone()])
+        weight * dot(&one[i][block.clone()], &other[j][block.clone()])
     })
 }
 
@@ -142,6 +164,24 @@ mod tests {
         let sum: f64 = rows.map(|row| a[row] * target[row]).sum();
         assert_eq!(all.grams().len(), 10);
         assert!((all.grams()[0][(0, 3)] - sum).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn one_of_two_samples_stands_for_both_where_a_low_pass_left_nothing_between_them() {
+        // 30 and 41 Hz at 1 kHz.
+        let wave = |hz: f64| -> Vec<f64> {
+            (0..4000)
+                .map(|i| (6.283e-3 * hz * f64::from(i)).sin())
+                .collect()
+        };
+        let (column, target, mask) = (wave(30.0), wave(41.0), vec![true; 4000]);
+        let of = |every| Rows::thinned(&[&column], &target, &mask, (1.0e-3, every)).grams();
+        let (all, half) = (of(1), of(2));
+        assert_eq!(all.len(), half.len());
+        for (all, half) in all.iter().zip(&half) {
+            let apart = (all - half).norm() / all.norm();
+            assert!(apart < 5.0e-3, "{apart}");
+        }
     }
 
     #[test]

@@ -24,6 +24,9 @@ pub(crate) const SMOOTH_DEGREE: f64 = 4.0;
 /// A smooth function beside a wave that is declared is a spring where it removes this share of what
 /// the wave leaves alone: waves of less than a period within the travel need none.
 const WORTH_A_SPRING: f64 = 0.05;
+/// A parameter is refined where the best of its grid removes this share of the squares: less is not
+/// in reach of what an effect must remove.
+const WORTH_A_DESCENT: f64 = 0.01;
 /// Rounds of the refinement of one parameter after the other.
 const ROUNDS: usize = 2;
 /// Most steps of all parameters together.
@@ -124,13 +127,25 @@ pub(crate) fn extended(
             bench.sse(&settled(bench, with(parameter), effect))
         }
     };
+    let alone = || match effect.stage() {
+        Stage::Force => fixed.fit().sse,
+        _ => bench.sse(model),
+    };
     let bounds = effect.bounds(bench.motion);
     let inside = |k: &f64| !effect.is_tuned() || (*k >= bounds.0 && *k <= bounds.1);
     let grid = effect.grid(bench.motion, setting).into_iter();
     let grid = grid.filter(|k| inside(k) && is_new(bench, model, effect, *k));
     let start = smallest(&grid.collect::<Vec<f64>>(), &sse)?;
     let step = effect.first_step(bench.motion, start);
-    let parameter = descend(start, step, bounds, &sse);
+    // A choice has no step, and what removes nothing on its grid is not worth one; but what comes
+    // and goes may show at both times together only.
+    let removes = || sse(start) < (1.0 - WORTH_A_DESCENT) * alone();
+    let is_worth_it = step > 0.0 && (effect.comes_and_goes() || removes());
+    let parameter = if is_worth_it {
+        descend(start, step, bounds, &sse)
+    } else {
+        start
+    };
     let settled = settled(bench, with(parameter), effect);
     Some(told::of_the_others(pair.bench, settled))
 }

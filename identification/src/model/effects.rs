@@ -189,6 +189,43 @@ impl Action {
     }
 }
 
+/// What an effect does to a simulated axis at every place and at every time alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Steady {
+    /// Part of the friction level.
+    pub level: f64,
+    /// Force against positive motion.
+    pub force: f64,
+    /// Force by the velocity.
+    pub by_velocity: f64,
+    /// Force by its magnitude.
+    pub by_speed: f64,
+}
+
+impl Steady {
+    /// What it is at a velocity.
+    #[inline]
+    #[must_use]
+    pub(crate) fn at(&self, velocity: f64) -> Action {
+        Action {
+            level: self.level,
+            force: self.force + self.by_velocity * velocity + self.by_speed * velocity.abs(),
+            mass: 0.0,
+        }
+    }
+
+    /// This and another one.
+    #[must_use]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            level: self.level + other.level,
+            force: self.force + other.force,
+            by_velocity: self.by_velocity + other.by_velocity,
+            by_speed: self.by_speed + other.by_speed,
+        }
+    }
+}
+
 /// What an effect is best seen against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Against {
@@ -238,8 +275,15 @@ pub(crate) trait Effect: Sync {
     }
 
     /// What it does to a simulated axis; `own` are the coefficients of its columns.
-    fn action(&self, _at: &Instant, _parameter: f64, _own: &[f64]) -> Action {
-        Action::default()
+    fn action(&self, at: &Instant, _parameter: f64, own: &[f64]) -> Action {
+        let steady = self.steady(own);
+        steady.map_or_else(Action::default, |steady| steady.at(at.velocity))
+    }
+
+    /// The same, where it is so at every place and time. Such an effect acts on the load's side;
+    /// the one that has a level is Coulomb friction.
+    fn steady(&self, _own: &[f64]) -> Option<Steady> {
+        None
     }
 
     /// Number of columns at a nonlinear parameter.
@@ -454,6 +498,40 @@ mod tests {
         TorqueConstantRipple, TorqueRipple, TorqueSaturation, Viscous, ViscousAsymmetry,
     };
     use std::f64::consts::PI;
+
+    #[test]
+    fn what_is_the_same_everywhere_acts_on_the_load_and_its_level_is_coulombs() {
+        let own = [2.0, 3.0];
+        let mut called = Vec::new();
+        for effect in LIBRARY {
+            let Some(steady) = effect.steady(&own) else {
+                continue;
+            };
+            called.push(effect.called());
+            assert!(!effect.acts_on_motor() && !effect.comes_and_goes());
+            let is_coulomb = effect.called() == Coulomb;
+            assert_eq!(steady.level != 0.0, is_coulomb, "{:?}", effect.called());
+        }
+        let wanted = [Coulomb, Viscous, Offset, ViscousAsymmetry];
+        assert!(
+            wanted
+                .iter()
+                .all(|name| called.contains(&Called::from(*name)))
+        );
+        assert_eq!(called.len(), wanted.len());
+        let both = Steady {
+            force: 1.0,
+            by_velocity: 2.0,
+            ..Steady::default()
+        };
+        let more = Steady {
+            level: 5.0,
+            by_speed: 3.0,
+            ..Steady::default()
+        };
+        let action = both.and(more).at(-2.0);
+        assert_eq!((action.level, action.force), (5.0, 3.0));
+    }
 
     /// A parameter at which each effect is tried.
     fn parameter(effect: &dyn Effect) -> f64 {

@@ -62,18 +62,7 @@ impl LowPass {
     /// records.
     #[must_use]
     pub(crate) fn apply(&self, signal: &[f64]) -> Vec<f64> {
-        let [signal] = self.filter.both_ways([signal]);
-        signal
-    }
-
-    /// The same for several signals of one length, in pairs: half the time.
-    #[must_use]
-    pub(crate) fn apply_to_all(&self, signals: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let pairs = signals.chunks(2).flat_map(|pair| match pair {
-            [one, other] => self.filter.both_ways([one, other]).to_vec(),
-            rest => rest.iter().map(|one| self.apply(one)).collect(),
-        });
-        pairs.collect()
+        self.filter.both_ways(signal)
     }
 }
 

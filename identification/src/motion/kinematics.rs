@@ -178,10 +178,7 @@ impl Kinematics {
     /// The same for several signals.
     #[must_use]
     pub(crate) fn all_low_passed(&self, signals: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        match &self.pieces[..] {
-            [_] => self.filter.apply_to_all(signals),
-            _ => signals.iter().map(|one| self.low_passed(one)).collect(),
-        }
+        signals.iter().map(|one| self.low_passed(one)).collect()
     }
 
     /// Whether a sample is away from the low-pass's ends in its piece.

@@ -26,6 +26,8 @@ const PATIENCE: usize = 12;
 /// Relative changes below which a fit ends: of the cost, of the parameters, of the gradient. The
 /// numerical Jacobian is not better than these.
 const COST_TOLERANCE: f64 = 1.0e-4;
+/// Of the cost, for a fit that only comes near.
+const NEAR_COST_TOLERANCE: f64 = 3.0e-3;
 const PARAMETER_TOLERANCE: f64 = 1.0e-5;
 const GRADIENT_TOLERANCE: f64 = 1.0e-6;
 /// A simulation that leaves the numbers is this far off in every row.
@@ -57,7 +59,16 @@ struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     fn new(start: &'a Simulated, course: Course<'a>, rows: Vec<usize>, scale: f64) -> Self {
-        let parameters = start.parameters();
+        Self::moving(start.parameters(), start, course, (rows, scale))
+    }
+
+    /// A problem in which only some of the parameters move.
+    fn moving(
+        parameters: Vec<Parameter>,
+        start: &'a Simulated,
+        course: Course<'a>,
+        (rows, scale): (Vec<usize>, f64),
+    ) -> Self {
         let at = parameters.iter().map(Parameter::scaled);
         Self {
             start,
@@ -146,14 +157,39 @@ pub(crate) fn fit(
     record: &Record,
     mask: &dyn Fn(usize) -> bool,
 ) -> Simulated {
+    let course = Course { drive, record };
+    fit_within(start, start.parameters(), course, mask, COST_TOLERANCE)
+}
+
+/// The same of the parameters that are known least, ended where it goes on slowly: a start for
+/// another fit.
+#[must_use]
+pub(crate) fn near(
+    start: &Simulated,
+    drive: &Drive,
+    record: &Record,
+    mask: &dyn Fn(usize) -> bool,
+) -> Simulated {
+    let (parameters, course) = (start.core_parameters(), Course { drive, record });
+    fit_within(start, parameters, course, mask, NEAR_COST_TOLERANCE)
+}
+
+fn fit_within(
+    start: &Simulated,
+    parameters: Vec<Parameter>,
+    course: Course<'_>,
+    mask: &dyn Fn(usize) -> bool,
+    cost_tolerance: f64,
+) -> Simulated {
+    let Course { drive, record } = course;
     let settled = record.settled(SETTLING_ROWS).step_by(STRIDE);
     let inside = |row: &usize| mask(*row) && !record.interpolated[*row];
     let rows = settled.filter(inside).collect();
     let left = position_rms(&simulate(start, drive, record), record, mask);
-    let course = Course { drive, record };
-    let problem = Problem::new(start, course, rows, left.max(f64::MIN_POSITIVE));
+    let scale = left.max(f64::MIN_POSITIVE);
+    let problem = Problem::moving(parameters, start, course, (rows, scale));
     let (problem, _) = LevenbergMarquardt::new()
-        .with_ftol(COST_TOLERANCE)
+        .with_ftol(cost_tolerance)
         .with_xtol(PARAMETER_TOLERANCE)
         .with_gtol(GRADIENT_TOLERANCE)
         .with_stepbound(1.0)

@@ -59,10 +59,16 @@ pub(crate) fn bend_after(bend: Bend, step: f64, deflection: f64) -> Bend {
 }
 
 impl Push {
+    /// Change of velocity by a unit of force.
+    #[inline]
+    fn per_force(&self) -> f64 {
+        self.step_s / self.mass
+    }
+
     /// Velocity after the sub-step, were there no friction.
     #[inline]
     fn free(&self, body: Body) -> f64 {
-        body.v + self.step_s * self.force / self.mass
+        body.v + self.per_force() * self.force
     }
 }
 
@@ -81,7 +87,7 @@ impl Body {
     #[must_use]
     pub(crate) fn rigid(self, push: &Push) -> Self {
         let free = push.free(self);
-        let most = push.step_s * push.level.max(0.0) / push.mass;
+        let most = push.per_force() * push.level.max(0.0);
         let v = free - free.clamp(-most, most);
         // Friction opposes the motion that there is: where the velocity changes sign within the
         // sub-step, it first stops.

@@ -13,7 +13,7 @@ use axis_model::EffectName;
 
 use crate::fit::fitted::Fitted;
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Action, Effect, Instant, Stage};
+use crate::model::effects::{Action, Effect, Instant, Stage, Steady};
 use crate::model::inverse::Part;
 use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
@@ -102,13 +102,21 @@ impl Simulated {
     /// Its forces, ready to act.
     #[must_use]
     pub(crate) fn at_work(&self) -> Forces<'_> {
+        let steady = |force: &Force| force.part.effect.steady(&force.own);
         let of = |follows_load: bool| {
             let is_one = move |force: &&Force| force.part.effect.follows_load() == follows_load;
             let forces = self.forces.iter().filter(is_one);
+            let forces = forces.filter(|force| steady(force).is_none());
             forces.map(AtWork::of).collect()
         };
+        let (middle, half) = self.travel;
+        let all_steady = self.forces.iter().filter_map(steady);
         Forces {
             model: self,
+            middle,
+            per_half: 1.0 / half,
+            per_duration: 1.0 / self.duration_s,
+            steady: all_steady.fold(Steady::default(), Steady::and),
             by_motion: of(false),
             by_load: of(true),
         }
@@ -139,6 +147,12 @@ impl<'a> AtWork<'a> {
 /// the motion, then those that follow the load.
 pub(crate) struct Forces<'a> {
     model: &'a Simulated,
+    /// Middle of the travel, one over its half, and one over the duration of the training record.
+    middle: f64,
+    per_half: f64,
+    per_duration: f64,
+    /// All that are the same everywhere; their level is the Coulomb friction.
+    steady: Steady,
     by_motion: Vec<AtWork<'a>>,
     by_load: Vec<AtWork<'a>>,
 }
@@ -153,13 +167,12 @@ impl Forces<'_> {
 
     #[inline]
     fn instant(&self, now: Moment) -> Instant {
-        let (middle, half) = self.model.travel;
         Instant {
             position: now.position,
-            scaled: (now.position - middle) / half,
+            scaled: (now.position - self.middle) * self.per_half,
             velocity: now.velocity,
             time_s: now.time_s,
-            time_share: now.time_s / self.model.duration_s,
+            time_share: now.time_s * self.per_duration,
             ..Instant::default()
         }
     }
@@ -173,6 +186,7 @@ impl Forces<'_> {
             motor: self.model.saturation.delivered(now.commanded),
             ..Acting::default()
         };
+        acting.add(self.steady.at(now.velocity), false);
         acting.add_all(&self.by_motion, &instant);
         if self.by_load.is_empty() {
             return acting;
@@ -191,11 +205,13 @@ impl Forces<'_> {
     fn surface(&self, at: &Instant) -> f64 {
         let level = |force: &AtWork<'_>| force.effect.action(at, force.parameter, force.own).level;
         let of_surface = |force: &&AtWork<'_>| !force.effect.comes_and_goes();
-        let is_coulomb = |force: &&AtWork<'_>| force.effect.called() == EffectName::Coulomb;
-        let forces = || self.by_motion.iter();
-        let coulomb: f64 = forces().filter(is_coulomb).map(level).sum();
-        let all: f64 = forces().filter(of_surface).map(level).sum();
-        if coulomb > 0.0 { all / coulomb } else { 1.0 }
+        let coulomb = self.steady.level;
+        let more: f64 = self.by_motion.iter().filter(of_surface).map(level).sum();
+        if coulomb > 0.0 {
+            (coulomb + more) / coulomb
+        } else {
+            1.0
+        }
     }
 }
 

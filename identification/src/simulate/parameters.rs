@@ -145,6 +145,21 @@ impl Simulated {
             .collect()
     }
 
+    /// What an inverse model knows least of an axis that reverses: its mass, the forces that are
+    /// the same everywhere, and what makes a reversal.
+    #[must_use]
+    pub(crate) fn core_parameters(&self) -> Vec<Parameter> {
+        let is_core = |parameter: &Parameter| match parameter.place {
+            Place::Coefficient { force, .. } => {
+                let Force { part, own } = &self.forces[force];
+                part.effect.steady(own).is_some()
+            }
+            Place::Nonlinear { .. } | Place::Saturation | Place::Delay => false,
+            _ => true,
+        };
+        self.parameters().into_iter().filter(is_core).collect()
+    }
+
     /// The model with other values of its parameters, within their limits.
     #[must_use]
     pub(crate) fn with(&self, parameters: &[Parameter]) -> Self {
@@ -302,6 +317,23 @@ mod tests {
         let jagged: Vec<usize> = (0..14).filter(|row| table[*row].is_jagged()).collect();
         assert_eq!((free, jagged), (vec![2, 3, 4], vec![10, 11, 12, 13]));
         assert_eq!((table[0].step, table[10].step), (1.0e-3, 0.04));
+    }
+
+    #[test]
+    fn known_least_are_the_mass_what_is_the_same_everywhere_and_the_shape() {
+        let everything = everything();
+        let core = everything.core_parameters();
+        let known = |place: &Place| match place {
+            Place::Coefficient { force, .. } => {
+                everything.forces[*force].part.is(EffectName::TorqueRipple)
+            }
+            Place::Nonlinear { .. } | Place::Saturation | Place::Delay => true,
+            _ => false,
+        };
+        let all = everything.parameters();
+        let wanted = all.iter().filter(|parameter| !known(&parameter.place));
+        assert!(wanted.eq(&core));
+        assert!(core.len() < all.len());
     }
 
     #[test]

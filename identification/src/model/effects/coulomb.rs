@@ -2,7 +2,7 @@
 
 use axis_model::EffectName;
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use super::{Effect, Kinematics, Named, Naming, Steady};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -26,8 +26,11 @@ impl Effect for Coulomb {
         true
     }
 
-    fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::level(own[0])
+    fn steady(&self, own: &[f64]) -> Option<Steady> {
+        Some(Steady {
+            level: own[0],
+            ..Steady::default()
+        })
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

@@ -3,7 +3,7 @@
 
 use axis_model::EffectName;
 
-use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming};
+use super::{Against, Effect, Kinematics, Named, Naming, Steady};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -31,8 +31,11 @@ impl Effect for Offset {
         Against::Time
     }
 
-    fn action(&self, _: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::force(own[0])
+    fn steady(&self, own: &[f64]) -> Option<Steady> {
+        Some(Steady {
+            force: own[0],
+            ..Steady::default()
+        })
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

@@ -3,12 +3,28 @@
 //! From k to k + Δ the angle of a place x grows by the same amount every time, so the pair is
 //! turned by one fixed rotation: four products instead of two trigonometric functions. Scans of
 //! thousands of k over thousands of rows live on that. Each turn rounds by some 10⁻¹⁶, and every
-//! [`RENEWED`] turns the pair is computed anew: no scan is off by more than 10⁻¹³.
+//! [`RENEWED`] turns the pair is computed anew.
+//!
+//! Anew means: from the nearest of [`NODES`] angles, turned by what is left of the angle, δ, with
+//! `cos δ = 1 − δ²/2 + δ⁴/24` and `sin δ = δ − δ³/6`. That is right to δ⁵/120, 3·10⁻¹⁵, in a
+//! quarter of the time of the two functions.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 /// Turns after which the pairs are computed anew.
 pub(super) const RENEWED: usize = 64;
+
+/// Angles of a turn whose cosine and sine are kept; a power of two.
+const NODES: usize = 1024;
+
+/// Cosine and sine at the nodes.
+static AT_NODES: LazyLock<[[f64; 2]; NODES]> = LazyLock::new(|| {
+    std::array::from_fn(|node| {
+        let (sin, cos) = (TAU * node as f64 / NODES as f64).sin_cos();
+        [cos, sin]
+    })
+});
 
 /// A wave at a place.
 #[derive(Clone, Copy, Debug)]
@@ -44,15 +60,39 @@ impl Turning {
 }
 
 /// Cosine and sine of `2π k x`.
+#[inline]
 #[must_use]
 pub(super) fn wave(k: f64, x: f64) -> [f64; 2] {
-    let (sin, cos) = (TAU * k * x).sin_cos();
-    [cos, sin]
+    let nodes = k * x * NODES as f64;
+    let nearest = (nodes + 0.5_f64.copysign(nodes)) as i64;
+    let left = (nodes - nearest as f64) * (TAU / NODES as f64);
+    // The low bits of a node are its place in the turn, below zero too.
+    let [cos, sin] = AT_NODES[nearest as usize % NODES];
+    let square = left * left;
+    let (c, s) = (
+        1.0 - square * (0.5 - square / 24.0),
+        left * (1.0 - square / 6.0),
+    );
+    [cos * c - sin * s, sin * c + cos * s]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wave_is_cosine_and_sine() {
+        for i in -4000..4000 {
+            let turns = 0.001_37 * f64::from(i);
+            let (sin, cos) = (TAU * turns).sin_cos();
+            let [c, s] = wave(0.5, 2.0 * turns);
+            assert!((c - cos).abs() < 1.0e-13, "{turns}: {c} {cos}");
+            assert!((s - sin).abs() < 1.0e-13, "{turns}: {s} {sin}");
+        }
+        // A place far out, and no number.
+        assert!((wave(1.0e9, 1.25)[0] - 1.0).abs() < 1.0e-6);
+        assert!(wave(f64::NAN, 1.0)[0].is_nan());
+    }
 
     #[test]
     fn turned_pairs_are_cosine_and_sine_to_ten_to_the_minus_thirteen() {

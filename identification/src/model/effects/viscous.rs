@@ -2,7 +2,7 @@
 
 use axis_model::EffectName;
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use super::{Effect, Kinematics, Named, Naming, Steady};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -22,8 +22,11 @@ impl Effect for Viscous {
         vec![motion.velocity.clone()]
     }
 
-    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::force(own[0] * at.velocity)
+    fn steady(&self, own: &[f64]) -> Option<Steady> {
+        Some(Steady {
+            by_velocity: own[0],
+            ..Steady::default()
+        })
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {

@@ -4,7 +4,7 @@
 
 use axis_model::EffectName;
 
-use super::{Action, Effect, Instant, Kinematics, Named, Naming};
+use super::{Effect, Kinematics, Named, Naming, Steady};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -24,8 +24,11 @@ impl Effect for ViscousAsymmetry {
         vec![motion.velocity.iter().map(|v| v.abs()).collect()]
     }
 
-    fn action(&self, at: &Instant, _: f64, own: &[f64]) -> Action {
-        Action::force(own[0] * at.velocity.abs())
+    fn steady(&self, own: &[f64]) -> Option<Steady> {
+        Some(Steady {
+            by_speed: own[0],
+            ..Steady::default()
+        })
     }
 
     fn parameters(&self, naming: &Naming<'_>) -> Vec<Named> {
