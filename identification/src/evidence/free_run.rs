@@ -31,7 +31,7 @@ use crate::simulate::drive::Drive;
 use crate::simulate::fit::{fit, half_widths};
 use crate::simulate::friction::Bristle;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{Run, position_rms, simulate, strays};
+use crate::simulate::run::{Run, error_along, position_rms, simulate, strays};
 
 /// Length of the blocks that are fitted and judged in turn, s.
 const BLOCK_S: f64 = 2.0;
@@ -146,15 +146,11 @@ impl<'a> Judge<'a> {
     /// The fit from one start, or from what comes near on the excerpt where that is nearer.
     fn fitted(&self, start: &Simulated) -> Judged {
         let error = |model: &Simulated| {
-            let run = simulate(model, &self.drive, self.record);
-            position_rms(&run, self.record, &|row| self.is_fitted(row))
+            error_along(model, &self.drive, self.record, &|row| self.is_fitted(row))
         };
         let near = self.excerpt.near(start, &self.drive);
-        self.fitted_from(if error(&near) <= error(start) {
-            &near
-        } else {
-            start
-        })
+        let is_nearer = error(&near) <= error(start);
+        self.fitted_from(if is_nearer { &near } else { start })
     }
 
     /// The fit to all of the record.

@@ -17,7 +17,7 @@ use crate::record::samples::Record;
 use crate::simulate::drive::Drive;
 use crate::simulate::model::Simulated;
 use crate::simulate::parameters::Parameter;
-use crate::simulate::run::{SETTLING_ROWS, position_rms, simulate};
+use crate::simulate::run::{SETTLING_ROWS, error_along, simulate};
 
 /// Of five rows one is compared: positions are smooth.
 const STRIDE: usize = 5;
@@ -185,7 +185,7 @@ fn fit_within(
     let settled = record.settled(SETTLING_ROWS).step_by(STRIDE);
     let inside = |row: &usize| mask(*row) && !record.interpolated[*row];
     let rows = settled.filter(inside).collect();
-    let left = position_rms(&simulate(start, drive, record), record, mask);
+    let left = error_along(start, drive, record, mask);
     let scale = left.max(f64::MIN_POSITIVE);
     let problem = Problem::moving(parameters, start, course, (rows, scale));
     let (problem, _) = LevenbergMarquardt::new()

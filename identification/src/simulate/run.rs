@@ -121,6 +121,17 @@ pub(crate) fn position_rms(run: &Run, record: &Record, mask: &dyn Fn(usize) -> b
     (sum / f64::max(count, 1.0)).sqrt()
 }
 
+/// The same of the simulation of a model along the record.
+#[must_use]
+pub(crate) fn error_along(
+    model: &Simulated,
+    drive: &Drive,
+    record: &Record,
+    mask: &dyn Fn(usize) -> bool,
+) -> f64 {
+    position_rms(&simulate(model, drive, record), record, mask)
+}
+
 /// Whether a simulation strays from its record by more than a distance, or leaves the numbers.
 #[must_use]
 pub(crate) fn strays(run: &Run, record: &Record, distance: f64) -> bool {

@@ -10,7 +10,7 @@ use crate::record::samples::Record;
 use crate::simulate::drive::Drive;
 use crate::simulate::fit::near;
 use crate::simulate::model::Simulated;
-use crate::simulate::run::{SETTLING_ROWS, position_rms, simulate};
+use crate::simulate::run::{SETTLING_ROWS, error_along};
 
 /// So many blocks at least are enough to come near.
 const FEWEST: usize = 4;
@@ -50,8 +50,7 @@ impl Excerpt {
 
     /// Rms of the motor position on them.
     pub(super) fn error(&self, model: &Simulated, drive: &Drive) -> f64 {
-        let run = simulate(model, drive, &self.record);
-        position_rms(&run, &self.record, &|row| self.compared[row])
+        error_along(model, drive, &self.record, &|row| self.compared[row])
     }
 }
 
