@@ -20,6 +20,34 @@ pub enum CurrentLoop {
     Second(f64, f64),
 }
 
+impl CurrentLoop {
+    /// How far a ramp that it follows is ahead of it, s.
+    #[must_use]
+    pub fn lag_s(self) -> f64 {
+        match self {
+            Self::Ideal => 0.0,
+            Self::First(time_constant_s) => time_constant_s,
+            Self::Second(frequency_hz, damping) => 2.0 * damping / (TAU * frequency_hz),
+        }
+    }
+
+    /// What it has not yet followed of a step so long ago, as a share of it; damping below one.
+    #[must_use]
+    pub fn behind(self, since_s: f64) -> f64 {
+        match self {
+            Self::Ideal => 0.0,
+            Self::First(time_constant_s) => libm::exp(-since_s / time_constant_s),
+            Self::Second(frequency_hz, damping) => {
+                let w = TAU * frequency_hz;
+                let swing = libm::sqrt(1.0 - damping * damping);
+                let angle = swing * w * since_s;
+                let turned = libm::cos(angle) + damping / swing * libm::sin(angle);
+                libm::exp(-damping * w * since_s) * turned
+            }
+        }
+    }
+}
+
 /// Ripple of the torque constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantRipple {

@@ -79,6 +79,9 @@ pub fn truth(make: &str, form: &str, rig: &Rig, declared: &[Effect], lacking: &[
     }
 }
 
+/// A current loop has followed a step after so many ticks.
+const STEPS_BEHIND: i32 = 2000;
+
 /// Inertia, Coulomb and viscous friction in the unit of the record, and what the make knows.
 fn parameters(rig: &Rig) -> Vec<Known> {
     let per = rig.column.per_effort();
@@ -103,11 +106,11 @@ fn parameters(rig: &Rig) -> Vec<Known> {
     ];
     let of_make = |own: &Known| match own.name {
         "logged_late" => Known {
-            value: stands_for(rig, own.value),
+            value: lateness(rig, own.value),
             ..own.clone()
         },
         "delay" => Known {
-            value: rig.drive.dead_steps(rig.step_s()) as f64 * rig.step_s(),
+            value: rig.drive.dead_steps(rig.step_s()) as f64 * rig.step_s() - lateness(rig, 0.0),
             ..own.clone()
         },
         "compliance_stiffness" => known(own.name, own.value, format!("{effort}/{position}")),
@@ -117,15 +120,30 @@ fn parameters(rig: &Rig) -> Vec<Known> {
     all
 }
 
-/// How late a log is that is read so late: what it reads is held over a tick of the controller. A
-/// command is stated as held from its row on, a current as that of its instant, which in the mean
-/// is the middle of the tick.
-fn stands_for(rig: &Rig, late_s: f64) -> f64 {
+/// How late the effort of a log is that is read so late; below zero where it acts later.
+///
+/// What is read is held over a tick of the controller, and the current loop follows it. A command is
+/// stated as held from its row on, and acts as much later as that loop lags. A current is stated as
+/// that of its instant: a ramp of commands is a staircase, half a tick and that lag behind it, and
+/// what is read of it is behind by what the loop has not yet followed of each step. Rows whose
+/// stamps jitter begin anywhere in a tick.
+fn lateness(rig: &Rig, late_s: f64) -> f64 {
     let tick_s = rig.controller.period_s;
-    let begun_s = (late_s / tick_s).ceil() * tick_s;
+    let begun_s = if rig.sensing.stamps.jitter_s > 0.0 {
+        late_s + 0.5 * tick_s
+    } else {
+        (late_s / tick_s).ceil() * tick_s
+    };
+    let follows = rig.drive.current_loop;
     match rig.sensing.effort.source {
-        Source::Command => begun_s,
-        Source::Current => begun_s - 0.5 * tick_s,
+        Source::Command => begun_s - follows.lag_s(),
+        Source::Current => {
+            let since = |tick: i32| begun_s - late_s + f64::from(tick) * tick_s;
+            let behind: f64 = (0..STEPS_BEHIND)
+                .map(|tick| follows.behind(since(tick)))
+                .sum();
+            begun_s - 0.5 * tick_s - follows.lag_s() + tick_s * behind
+        }
     }
 }
 
@@ -234,7 +252,34 @@ mod tests {
     #[test]
     fn a_delay_is_as_long_as_the_simulation_makes_it() {
         let all = known("die-bonder-declared");
-        let steps = of(&all, "delay").value / 12.5e-6;
+        // The current loop lags by 40 µs.
+        let steps = (of(&all, "delay").value - 4.0e-5) / 12.5e-6;
         assert!((steps - steps.round()).abs() < 1.0e-6, "{steps}");
+    }
+
+    #[test]
+    fn a_current_that_is_smooth_over_a_tick_is_as_late_as_it_is_read_and_a_staircase_half_of_one() {
+        use super::lateness;
+        use crate::drive::CurrentLoop;
+        use crate::make::Presence;
+        use crate::sensing::Source;
+        let mut makes = crate::make::logs::MAKES.iter();
+        let fieldbus = makes.find(|make| make.name == "fieldbus-log").unwrap();
+        let mut rig = fieldbus.rig(Presence::Present, 1);
+        let tick_s = rig.controller.period_s;
+        for (current_loop, late_ticks, wanted_ticks) in [
+            (CurrentLoop::First(20.0 * tick_s), 4.3, 4.3),
+            (CurrentLoop::Second(0.01 / tick_s, 0.8), 4.3, 4.3),
+            (CurrentLoop::Ideal, 4.3, 4.5),
+            (CurrentLoop::Ideal, 4.0, 3.5),
+        ] {
+            rig.drive.current_loop = current_loop;
+            rig.sensing.effort.source = Source::Current;
+            let ticks = lateness(&rig, late_ticks * tick_s) / tick_s;
+            assert!(
+                (ticks - wanted_ticks).abs() < 0.01,
+                "{current_loop:?} {ticks}"
+            );
+        }
     }
 }
