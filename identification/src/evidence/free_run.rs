@@ -257,7 +257,7 @@ pub(crate) fn reversals(
         alone: accepted,
         something_left,
     };
-    Some(reversals.asked_on(&dataset.validate, judge.travel))
+    Some(reversals.asked_on(&dataset.validate, &judge, &start(Shape::default())?))
 }
 
 /// What was tried at reversals beside each other.
@@ -465,19 +465,22 @@ impl Judged {
 }
 
 impl Reversals {
-    /// What is accepted after a look at another record.
-    fn asked_on(mut self, other: &Record, travel: f64) -> Self {
+    /// What is accepted after a look at another record. Rigid friction has the best of its fits
+    /// there: the one to the fitted blocks, and one to the whole record from a start.
+    fn asked_on(mut self, other: &Record, judge: &Judge<'_>, rigid: &Simulated) -> Self {
         if self.accepted.backlash {
-            let left = |judged: &Judged| {
-                let run = simulate(&judged.model, &self.drive, other);
+            let left = |model: &Simulated| {
+                let run = simulate(model, &self.drive, other);
                 let all = position_rms(&run, other, &|_| true);
-                if strays(&run, other, travel) {
+                if strays(&run, other, judge.travel) {
                     f64::INFINITY
                 } else {
                     all
                 }
             };
-            let [shape, rigid] = [self.best(), &self.rigid].map(left);
+            let whole = fit(rigid, &self.drive, judge.record, &|_| true);
+            let rigid = left(&self.rigid.model).min(left(&whole));
+            let shape = left(&self.best().model);
             self.accepted = self.accepted.after_another_record(shape, rigid);
             self.alone = self.accepted;
         }
