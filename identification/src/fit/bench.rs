@@ -14,7 +14,7 @@ use crate::fit::rows::Rows;
 use crate::fit::span::Span;
 use crate::model::effects::by_motion::{Others, place_among_usual};
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Effect, Instant, place_among_forms};
+use crate::model::effects::{Effect, Instant, Stage, place_among_forms};
 use crate::model::inverse::{Beside, Model, Part};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
@@ -94,16 +94,22 @@ impl<'a> Bench<'a> {
         if let Some(itself) = of.beside.iter().find(itself) {
             others.ratio = itself.own[0];
         }
-        if parts
-            .iter()
-            .any(|beside| place_among_usual(beside.part.called()).is_none())
-        {
+        let is_actuator = |part: &Part| part.effect.stage() == Stage::Actuator;
+        let is_other = |one: &Beside| {
+            place_among_usual(one.part.called()).is_none() && !is_actuator(&one.part)
+        };
+        if parts.iter().any(|one| is_other(one)) {
             let none = || vec![0.0; self.motion.len()];
             (others.load, others.motor, others.level) = (none(), none(), none());
         }
         for Beside { part, own } in parts {
             if let Some(place) = place_among_usual(part.called()) {
                 others.usual.get_or_insert_default()[place] = own[0];
+                continue;
+            }
+            if is_actuator(part) {
+                let per_effort = part.parameter;
+                others.drive = Saturation { per_effort };
                 continue;
             }
             let on_motor = part.effect.acts_on_motor();

@@ -100,7 +100,8 @@ fn tell(model: &mut Model, told: &[Beside]) {
 
 /// Whether a part is told of: those that follow the load do not know each other.
 fn is_told(part: &Part) -> bool {
-    part.effect.stage() == Stage::Force && !part.effect.follows_load()
+    let acts = matches!(part.effect.stage(), Stage::Force | Stage::Actuator);
+    acts && !part.effect.follows_load()
 }
 
 /// Whether a part is told of while the usual ones are still fitted beside.
@@ -123,11 +124,13 @@ mod tests {
     use super::*;
     use crate::fit::made::{USUAL, axis, found, model, usual};
     use crate::model::effects::find;
+    use crate::model::effects::torque_saturation::Saturation;
     use crate::model::name::Called;
     use crate::motion::kinematics::Kinematics;
     use axis_model::EffectName;
     use axis_model::EffectName::{
-        Coulomb, Inertia, LoadDependentFriction, Offset, Payload, TorqueConstantRipple, Viscous,
+        Coulomb, Inertia, LoadDependentFriction, Offset, Payload, TorqueConstantRipple,
+        TorqueSaturation, Viscous,
     };
     use std::f64::consts::TAU;
 
@@ -181,5 +184,32 @@ mod tests {
         let told = of_the_others(&bench, untold.clone());
         let [before, after] = [&untold, &told].map(|model| bench.sse(model));
         assert!(after < 0.1 * before, "{before} {after}");
+    }
+
+    #[test]
+    fn a_torque_constant_ripples_by_the_effort_that_a_saturating_drive_delivers() {
+        let drive = Saturation { per_effort: 1.5e-3 };
+        let wave = |x: f64| 0.1 * (TAU * 400.0 * x).cos();
+        let axis = axis(|motion, row| {
+            let force = usual(motion, row);
+            drive.commanded(force / (1.0 + wave(motion.position_lp[row])))
+        });
+        let bench = axis.bench();
+        let mut of_both = model(&DECLARED)
+            .with(found(TorqueSaturation, drive.per_effort))
+            .with(found(TorqueConstantRipple, 400.0));
+        for _ in 0..3 {
+            of_both = of_the_others(&bench, of_both);
+            let about = bench.fit(&of_both);
+            for (part, term) in of_both.parts.iter_mut().zip(about.terms()) {
+                part.about = term.own.to_vec();
+            }
+        }
+        let ripple = bench.fit(&of_both);
+        let [a, b] = *ripple.of(TorqueConstantRipple).unwrap() else {
+            panic!("a wave has two coefficients");
+        };
+        // By the effort that is asked for it would be smaller by what the drive loses.
+        assert!((a.hypot(b) - 0.1).abs() < 0.001, "{a} {b}");
     }
 }

@@ -7,12 +7,14 @@
 //! agree by a few rounds. A handful of numbers from thousands of rows hold no noise of a row.
 //!
 //! What else the model has ([`Others`]) is a part of the effort as it was fitted last: a payload is
-//! carried, and friction that grows with the load grows with it.
+//! carried, and friction that grows with the load grows with it. Where the drive saturates, it is
+//! the effort that the drive delivers.
 
 use nalgebra::DMatrix;
 
 use axis_model::EffectName;
 
+use crate::model::effects::torque_saturation::Saturation;
 use crate::model::name::Called;
 use crate::motion::dot::dot;
 use crate::motion::kinematics::Kinematics;
@@ -36,6 +38,8 @@ pub(crate) struct Others {
     pub motor: Vec<f64>,
     /// Friction level beside Coulomb's, as far as it is a matter of the surface.
     pub level: Vec<f64>,
+    /// What the drive makes of its effort.
+    pub drive: Saturation,
 }
 
 impl Others {
@@ -106,6 +110,7 @@ impl<'a> ByMotion<'a> {
         let places: Vec<usize> = (0..motion.len())
             .filter(|row| motion.fitted[*row])
             .collect();
+        let drive = others.drive;
         let others = if others.has_forces() {
             let all: Vec<f64> = (0..motion.len()).map(|row| others.all(row)).collect();
             motion.low_passed(&all)
@@ -114,7 +119,7 @@ impl<'a> ByMotion<'a> {
         };
         let row = |row: &usize| {
             let velocity = motion.velocity_lp[*row];
-            let effort = motion.effort_lp[*row] - others[*row];
+            let effort = drive.delivered(motion.effort_lp[*row]) - others[*row];
             [acceleration[*row], velocity, direction[*row], 1.0, effort]
         };
         let rows: Vec<Row> = places.iter().map(row).collect();
