@@ -50,11 +50,11 @@ fn of_machine(place: u64) -> Vec<Draw> {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     identified_axes::record(&Stand::in_process(&machine), folder.path())
         .expect("the reference machine can be recorded");
-    let draws = on_all_cores(&machine.axes, |axis| drawn(folder.path(), axis));
+    let draws = on_all_cores(&machine.axes, |axis| drawn(folder.path(), axis, place));
     draws.into_iter().flatten().collect()
 }
 
-fn drawn(folder: &Path, axis: &MachineAxis) -> Vec<Draw> {
+fn drawn(folder: &Path, axis: &MachineAxis, place: u64) -> Vec<Draw> {
     let records = folder.join(format!("records-{}", axis.name));
     let dataset = Dataset::read(&records, None, None).unwrap_or_else(|why| panic!("{why}"));
     let identified = identify(&dataset, &mut |_| ()).unwrap_or_else(|why| panic!("{why}"));
@@ -62,6 +62,7 @@ fn drawn(folder: &Path, axis: &MachineAxis) -> Vec<Draw> {
     let said = |name| Said::in_table(table.get(name), table.unknown.contains_key(name));
     let draw = |(name, truth): (&'static str, f64)| Draw {
         make: "reference".into(),
+        seed: place,
         name,
         truth,
         said: said(name),

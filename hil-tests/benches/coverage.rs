@@ -5,7 +5,7 @@
 //! interval. A draw is a machine, its motion and its noise. Each parameter has so many draws (200),
 //! spread over the makes that have it; NAME takes the makes with that in their name.
 //!
-//! What a table says: [`hil_tests::intervals`].
+//! The draws that miss are told on standard error. What a table says: [`hil_tests::intervals`].
 
 use std::collections::BTreeMap;
 
@@ -39,6 +39,9 @@ fn main() {
         let drawn: Vec<Draw> = drawn.into_iter().flatten().collect();
         println!("{title}:\n");
         intervals::print(&drawn);
+        for miss in intervals::missed(&drawn) {
+            eprintln!("{miss}");
+        }
         println!();
     }
 }
@@ -104,6 +107,7 @@ fn drawn(form: Form, make: &str, seed: u64) -> Vec<Draw> {
     }
     let of_parameter = |known: &Known| Draw {
         make: make.to_owned(),
+        seed,
         name: known.name,
         truth: known.value,
         said: result

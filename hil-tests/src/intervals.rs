@@ -13,6 +13,8 @@ use axis_model::Estimate;
 pub struct Draw {
     /// The machine.
     pub make: String,
+    /// Of its motion and its noise.
+    pub seed: u64,
     /// The parameter.
     pub name: &'static str,
     /// Its true size.
@@ -58,6 +60,21 @@ struct Beside {
     /// Half width of the interval.
     half: f64,
     truth: f64,
+}
+
+/// The draws whose interval does not hold the truth, with how many half widths they are off.
+pub fn missed(drawn: &[Draw]) -> impl Iterator<Item = String> {
+    drawn.iter().filter_map(|draw| {
+        let Said::Known(value, half) = draw.said else {
+            return None;
+        };
+        let off = (value - draw.truth).abs() / half;
+        (half > 0.0 && off > 1.0).then(|| {
+            let (make, seed, name) = (&draw.make, draw.seed, draw.name);
+            let truth = draw.truth;
+            format!("{make} {seed}: {name} {value:.5e} ± {half:.2e} for {truth:.5e}, {off:.1} off")
+        })
+    })
 }
 
 /// Prints the table: each parameter over all machines, on each of them, and all together.
@@ -139,6 +156,7 @@ mod tests {
         ];
         let draws = said.map(|said| Draw {
             make: "a".into(),
+            seed: 1,
             name: "inertia",
             truth: 100.0,
             said,
