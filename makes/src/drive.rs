@@ -21,32 +21,23 @@ pub enum CurrentLoop {
 }
 
 impl CurrentLoop {
-    /// How far a ramp that it follows is ahead of it, s.
+    /// What it has not yet followed of a step of the command, as a share of it, step by step of a
+    /// simulation.
     #[must_use]
-    pub fn lag_s(self) -> f64 {
-        match self {
-            Self::Ideal => 0.0,
-            Self::First(time_constant_s) => time_constant_s,
-            Self::Second(frequency_hz, damping) => 2.0 * damping / (TAU * frequency_hz),
-        }
-    }
-
-    /// What it has not yet followed of a step so long ago, as a share of it; damping below one.
-    #[must_use]
-    pub fn behind(self, since_s: f64) -> f64 {
-        match self {
-            Self::Ideal => 0.0,
-            Self::First(time_constant_s) => libm::exp(-since_s / time_constant_s),
-            Self::Second(frequency_hz, damping) => {
-                let w = TAU * frequency_hz;
-                let swing = libm::sqrt(1.0 - damping * damping);
-                let angle = swing * w * since_s;
-                let turned = libm::cos(angle) + damping / swing * libm::sin(angle);
-                libm::exp(-damping * w * since_s) * turned
-            }
-        }
+    pub fn behind(self, step_s: f64) -> Vec<f64> {
+        let drive = Drive {
+            current_loop: self,
+            ..Drive::default()
+        };
+        let mut state = DriveState::default();
+        let steps = (FOLLOWED_S / step_s) as usize;
+        let behind = (0..steps).map(|_| 1.0 - drive.follow(&mut state, 1.0, step_s));
+        behind.collect()
     }
 }
+
+/// A current loop has followed a step after this time, s.
+const FOLLOWED_S: f64 = 0.1;
 
 /// Ripple of the torque constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
