@@ -8,9 +8,14 @@ use crate::evidence::inverse_dynamics::InverseDynamics;
 use crate::evidence::thresholds::OTHER_DAY_SHARE;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Estimate;
+use crate::model::effects::by_motion::place_among_usual;
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
+
+/// Another record knows a size as well as the first one where its interval is at most so many times
+/// as wide.
+const MOST_WIDER: f64 = 2.0;
 
 /// A coefficient that another record has in another size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,21 +28,53 @@ pub(crate) struct Change {
     pub half_width: f64,
 }
 
-/// The coefficients of a structure that differ between two records by more than their intervals.
-pub(crate) fn changes(
-    dataset: &Dataset,
-    records: [&Kinematics; 2],
-    model: &InverseDynamics,
-) -> Vec<Change> {
-    let [first, other] = records.map(|motion| {
-        let seen = model.motion(motion);
-        let bench = Bench::new(dataset, &seen);
-        bench.estimates_of_coefficients(&bench.fit(model.fitted.model()))
-    });
-    let pairs = first.iter().zip(&other);
-    pairs
-        .filter_map(|(first, other)| change(first, other))
-        .collect()
+/// The coefficients of a structure on two records.
+pub(crate) struct OnBoth {
+    first: Vec<Estimate>,
+    other: Vec<Estimate>,
+}
+
+impl OnBoth {
+    /// Of two records, the training record first.
+    pub(crate) fn of(
+        dataset: &Dataset,
+        records: [&Kinematics; 2],
+        model: &InverseDynamics,
+    ) -> Self {
+        let [first, other] = records.map(|motion| {
+            let seen = model.motion(motion);
+            let bench = Bench::new(dataset, &seen);
+            bench.estimates_of_coefficients(&bench.fit(model.fitted.model()))
+        });
+        Self { first, other }
+    }
+
+    /// Those that differ by more than their intervals.
+    pub(crate) fn changes(&self) -> Vec<Change> {
+        let pairs = self.first.iter().zip(&self.other);
+        let changed = pairs.filter_map(|(first, other)| change(first, other));
+        changed.collect()
+    }
+
+    /// Intervals of mass and friction of the first record with half of what the other one says
+    /// otherwise: two records of one axis are off by different parts of what a model lacks. What
+    /// the other one knows much less of counts for nothing, nor does what has changed from day to
+    /// day.
+    pub(crate) fn widen(&self, estimates: &mut [Estimate]) {
+        let pairs = self.first.iter().zip(&self.other);
+        for (estimate, (first, other)) in estimates.iter_mut().zip(pairs) {
+            if place_among_usual(first.part.called()).is_none() {
+                continue;
+            }
+            let ((here, half_here), (there, half_there)) = (first.own[0], other.own[0]);
+            let apart = (there - here).abs();
+            let is_same = apart < OTHER_DAY_SHARE * here.abs();
+            if is_same && half_there <= MOST_WIDER * half_here {
+                let (_, half_width) = &mut estimate.own[0];
+                *half_width = half_width.hypot(0.5 * apart);
+            }
+        }
+    }
 }
 
 /// The change of an effect with one coefficient.
@@ -62,8 +99,8 @@ mod tests {
     use super::*;
     use crate::fit::made::{axis, model};
 
-    /// Changes from 90 kg, 200 N s/m, 25 N and −4 N to other ones.
-    fn changes_to(other: [f64; 4]) -> Vec<Change> {
+    /// 90 kg, 200 N s/m, 25 N and −4 N, and other ones.
+    fn on_both(other: [f64; 4]) -> OnBoth {
         let made = |[mass, viscous, coulomb, offset]: [f64; 4]| {
             axis(move |motion, row| {
                 let friction = viscous * motion.velocity[row] + coulomb * motion.direction[row];
@@ -77,7 +114,41 @@ mod tests {
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
             bristle: None,
         };
-        changes(&first.dataset, [&first.motion, &other.motion], &fitted)
+        OnBoth::of(&first.dataset, [&first.motion, &other.motion], &fitted)
+    }
+
+    fn changes_to(other: [f64; 4]) -> Vec<Change> {
+        on_both(other).changes()
+    }
+
+    #[test]
+    fn an_interval_has_half_of_what_another_record_says_otherwise_in_it() {
+        let both = on_both([92.0, 200.0, 40.0, -4.0]);
+        let mut estimates = both.first.clone();
+        // Both know it as well as noise that there is not lets them.
+        for one in &mut estimates {
+            one.own[0].1 = 0.5;
+        }
+        let same = OnBoth {
+            first: estimates.clone(),
+            other: both.other.clone(),
+        };
+        same.widen(&mut estimates);
+        let halves: Vec<f64> = estimates.iter().map(|one| one.own[0].1).collect();
+        assert!((halves[0] - 0.5_f64.hypot(1.0)).abs() < 0.05, "{halves:?}");
+        // 15 N more is another day, and the rest is the same.
+        assert!(halves[1..].iter().all(|half| (half - 0.5).abs() < 0.01));
+        let mut unknown = both.other.clone();
+        for one in &mut unknown {
+            one.own[0].1 = 1.1;
+        }
+        let other = OnBoth {
+            first: same.first.clone(),
+            other: unknown,
+        };
+        let mut estimates = same.first.clone();
+        other.widen(&mut estimates);
+        assert!(estimates.iter().all(|one| one.own[0].1 == 0.5));
     }
 
     #[test]

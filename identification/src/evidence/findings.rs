@@ -8,7 +8,7 @@
 use axis_model::EffectName;
 
 use crate::evidence::amount;
-use crate::evidence::another_day::{self, Change};
+use crate::evidence::another_day::OnBoth;
 use crate::evidence::at_reversals::AtReversals;
 use crate::evidence::causes;
 use crate::evidence::difference::Difference;
@@ -122,8 +122,8 @@ pub(crate) struct Findings<'a> {
     pub train: Compared<Judgement>,
     /// What they leave of the validation record.
     pub validate: Compared<Judgement>,
-    /// What the validation record has in another size.
-    pub changes: Vec<Change>,
+    /// Coefficients of the extended model on both records.
+    pub on_both: OnBoth,
     /// The effects that are lacking.
     pub found: Found,
     /// Structure in the residual of the training record.
@@ -179,7 +179,7 @@ impl<'a> Findings<'a> {
         ));
         reasons.extend(signs::reasons(dataset, motion, &models.extended));
         let verdict = Verdict::of(reasons);
-        let changes = another_day::changes(dataset, [motion, validation], &models.extended);
+        let on_both = OnBoth::of(dataset, [motion, validation], &models.extended);
         Self {
             dataset,
             motion,
@@ -189,7 +189,7 @@ impl<'a> Findings<'a> {
             models,
             train,
             validate,
-            changes,
+            on_both,
             found,
             residual,
             verdict,

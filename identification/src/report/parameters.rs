@@ -200,7 +200,8 @@ fn plain(value: f64, unit: &str) -> Estimate {
 
 fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
     let extended = &findings.models.extended;
-    let estimates = extended.estimates(findings.dataset, [findings.motion, findings.low]);
+    let mut estimates = extended.estimates(findings.dataset, [findings.motion, findings.low]);
+    findings.on_both.widen(&mut estimates);
     let estimates = without_primes(estimates);
     let parameters = estimates.iter().flat_map(|estimate| {
         estimate.part.effect.parameters(&Naming {

@@ -36,7 +36,7 @@ pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> V
     };
     list.extend(said.sentence());
     list.extend(of_slip(findings));
-    list.extend(of_another_day(&findings.changes));
+    list.extend(of_another_day(&findings.on_both.changes()));
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
     let difference = findings.stages.difference.as_ref();
