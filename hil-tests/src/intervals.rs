@@ -62,16 +62,41 @@ struct Beside {
     truth: f64,
 }
 
+impl Draw {
+    /// What was said of it, where that is a value.
+    fn beside(&self) -> Option<Beside> {
+        let truth = self.truth;
+        match self.said {
+            Said::Known(value, half) => Some(Beside {
+                off: value - truth,
+                half,
+                truth,
+            }),
+            Said::Unknown | Said::Nothing => None,
+        }
+    }
+}
+
+impl Beside {
+    /// Whether it has an interval.
+    fn has_interval(&self) -> bool {
+        self.half > 0.0
+    }
+
+    /// Whether its interval holds the truth.
+    fn holds(&self) -> bool {
+        self.off.abs() <= self.half
+    }
+}
+
 /// The draws whose interval does not hold the truth, with how many half widths they are off.
 pub fn missed(drawn: &[Draw]) -> impl Iterator<Item = String> {
     drawn.iter().filter_map(|draw| {
-        let Said::Known(value, half) = draw.said else {
-            return None;
-        };
-        let off = (value - draw.truth).abs() / half;
-        (half > 0.0 && off > 1.0).then(|| {
-            let (make, seed, name) = (&draw.make, draw.seed, draw.name);
-            let truth = draw.truth;
+        let beside = draw.beside()?;
+        let Beside { off, half, truth } = beside;
+        let (make, seed, name) = (&draw.make, draw.seed, draw.name);
+        (beside.has_interval() && !beside.holds()).then(|| {
+            let (value, off) = (truth + off, off.abs() / half);
             format!("{make} {seed}: {name} {value:.5e} ± {half:.2e} for {truth:.5e}, {off:.1} off")
         })
     })
@@ -96,18 +121,10 @@ pub fn print(drawn: &[Draw]) {
 }
 
 fn row(name: &str, draws: &[&Draw]) -> String {
-    let beside = |draw: &&Draw| match draw.said {
-        Said::Known(value, half) => Some(Beside {
-            off: value - draw.truth,
-            half,
-            truth: draw.truth,
-        }),
-        Said::Unknown | Said::Nothing => None,
-    };
     let are = |said: Said| draws.iter().filter(|draw| draw.said == said).count();
-    let all: Vec<Beside> = draws.iter().filter_map(beside).collect();
-    let with: Vec<&Beside> = all.iter().filter(|one| one.half > 0.0).collect();
-    let held = with.iter().filter(|one| one.off.abs() <= one.half).count();
+    let all: Vec<Beside> = draws.iter().filter_map(|draw| draw.beside()).collect();
+    let with: Vec<&Beside> = all.iter().filter(|one| one.has_interval()).collect();
+    let held = with.iter().filter(|one| one.holds()).count();
     // A parameter whose truth is zero has no share of it: in its own unit, times a hundred.
     let share = |size: f64, truth: f64| size / if truth == 0.0 { 1.0 } else { truth.abs() };
     let off = sorted(with.iter().map(|one| share(one.off, one.truth)));
@@ -161,6 +178,11 @@ mod tests {
             truth: 100.0,
             said,
         });
+        let missed: Vec<String> = missed(&draws).collect();
+        assert_eq!(
+            missed,
+            ["a 1: inertia 1.03000e2 ± 2.00e0 for 1.00000e2, 1.5 off"]
+        );
         let draws: Vec<&Draw> = draws.iter().collect();
         // Errors −1, 1 and 3 %: the half of their range is 2 %.
         let wanted = "| inertia | 6 | 66.7 | +1.000% 0.50 | 2.000% 1.00 | 1 | 1 | 1 |";

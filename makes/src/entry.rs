@@ -218,6 +218,10 @@ fn controller(rig: &Rig) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::lateness;
+    use crate::drive::CurrentLoop;
+    use crate::make::Presence;
+    use crate::sensing::Source;
     use crate::truth::Known;
 
     fn known(record: &str) -> Vec<Known> {
@@ -260,10 +264,6 @@ mod tests {
 
     #[test]
     fn a_current_that_is_smooth_over_a_tick_is_as_late_as_it_is_read_and_a_staircase_half_of_one() {
-        use super::lateness;
-        use crate::drive::CurrentLoop;
-        use crate::make::Presence;
-        use crate::sensing::Source;
         let mut makes = crate::make::logs::MAKES.iter();
         let fieldbus = makes.find(|make| make.name == "fieldbus-log").unwrap();
         let mut rig = fieldbus.rig(Presence::Present, 1);

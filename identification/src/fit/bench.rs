@@ -15,7 +15,7 @@ use crate::fit::span::Span;
 use crate::model::effects::by_motion::{Others, place_among_usual};
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::effects::{Effect, Instant, Stage, place_among_forms};
-use crate::model::inverse::{Beside, Model, Part};
+use crate::model::inverse::{Beside, Model, Part, saturation};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
 use crate::motion::kinematics::Kinematics;
@@ -88,28 +88,27 @@ impl<'a> Bench<'a> {
 
     /// What the parts of an earlier fit did.
     fn others(&self, of: &Part) -> Others {
-        let mut others = Others::default();
+        let mut others = Others {
+            drive: saturation(of.beside.iter().map(|one| &one.part)),
+            ..Others::default()
+        };
         let itself = |beside: &&Beside| beside.part.called() == of.called();
-        let parts: Vec<&Beside> = of.beside.iter().filter(|one| !itself(one)).collect();
+        let acts = |one: &&Beside| one.part.effect.stage() == Stage::Force;
+        let forces = of.beside.iter().filter(acts);
+        let parts: Vec<&Beside> = forces.filter(|one| !itself(one)).collect();
         if let Some(itself) = of.beside.iter().find(itself) {
             others.ratio = itself.own[0];
         }
-        let is_actuator = |part: &Part| part.effect.stage() == Stage::Actuator;
-        let is_other = |one: &Beside| {
-            place_among_usual(one.part.called()).is_none() && !is_actuator(&one.part)
-        };
-        if parts.iter().any(|one| is_other(one)) {
+        if parts
+            .iter()
+            .any(|beside| place_among_usual(beside.part.called()).is_none())
+        {
             let none = || vec![0.0; self.motion.len()];
             (others.load, others.motor, others.level) = (none(), none(), none());
         }
         for Beside { part, own } in parts {
             if let Some(place) = place_among_usual(part.called()) {
                 others.usual.get_or_insert_default()[place] = own[0];
-                continue;
-            }
-            if is_actuator(part) {
-                let per_effort = part.parameter;
-                others.drive = Saturation { per_effort };
                 continue;
             }
             let on_motor = part.effect.acts_on_motor();

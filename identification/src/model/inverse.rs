@@ -173,11 +173,7 @@ impl Model {
     /// The actuator; an ideal one where it does not saturate.
     #[must_use]
     pub(crate) fn saturation(&self) -> Saturation {
-        Saturation {
-            per_effort: self
-                .of(EffectName::TorqueSaturation)
-                .map_or(0.0, |part| part.parameter),
-        }
+        saturation(&self.parts)
     }
 
     /// The model with one more part.
@@ -231,6 +227,16 @@ impl Model {
             }
         }
         list
+    }
+}
+
+/// What a drive makes of its effort by the parts of a model.
+#[must_use]
+pub(crate) fn saturation<'a>(parts: impl IntoIterator<Item = &'a Part>) -> Saturation {
+    let mut parts = parts.into_iter();
+    let saturates = parts.find(|part| part.is(EffectName::TorqueSaturation));
+    Saturation {
+        per_effort: saturates.map_or(0.0, |part| part.parameter),
     }
 }
 
