@@ -94,7 +94,7 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             rig.train.inertia(),
             format!("{effort} s2/{position}"),
         ),
-        known("coulomb", rig.train.coulomb(), effort.into()),
+        known("coulomb", rig.train.coulomb_amid(), effort.into()),
         known(
             "viscous",
             rig.train.viscous(),

@@ -200,8 +200,22 @@ impl<'a> Bench<'a> {
         if saturation.is_ideal() {
             linear
         } else {
-            linear.about(saturation, &about)
+            linear.about(saturation, &about, &self.lost_at_peaks(model))
         }
+    }
+
+    /// What a saturating drive loses beyond what low-passed efforts show
+    /// ([`Saturation::lost_at_peaks`]).
+    fn lost_at_peaks(&self, model: &Model) -> Vec<f64> {
+        let drive = model.saturation();
+        let lost = Called::Structure("lost at peaks");
+        let key = ((lost, drive.per_effort.to_bits(), 0, 1), Vec::new());
+        if let Some(known) = self.kept().get(&key) {
+            return known[0].clone();
+        }
+        let lost = drive.lost_at_peaks(self.motion);
+        self.keep(key, Arc::new(vec![lost.clone()]));
+        lost
     }
 
     /// The rows of a model, for parts that are tried beside it.
@@ -334,14 +348,16 @@ impl<'a> Bench<'a> {
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
     /// linearised, the nonlinear parameters, and the forms that are not the usual ones. What was
     /// searched elsewhere (a delay, at the lower cut-off) is as uncertain besides as the least lies
-    /// away here, and the coefficients beside it are.
+    /// away here, and the coefficients beside it are. A fall of friction is as uncertain as its
+    /// exponent is, the usual one too.
     #[must_use]
     pub(crate) fn estimates(&self, fitted: &Fitted) -> Vec<Estimate> {
         let model = fitted.model();
         let of_part = |place: usize| {
             let part = &model.parts[place];
             let parameter = part.effect.is_tuned().then_some(Searched::Parameter);
-            let form = part.is_reshaped().then_some(Searched::Form);
+            let has_form = part.is_reshaped() || part.effect.fall_exponent().is_some();
+            let form = has_form.then_some(Searched::Form);
             let searched = parameter.into_iter().chain(form);
             searched.map(move |what| (place, what))
         };
@@ -358,11 +374,21 @@ impl<'a> Bench<'a> {
     fn estimates_with(&self, fitted: &Fitted, searched: &[(usize, Searched)]) -> Vec<Estimate> {
         let design = self.design_about(fitted, searched);
         let blocks = self.blocks(&design);
-        let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
         let of_columns = design.columns.len() - searched.len();
-        let (own, others) = half_widths.split_at(of_columns);
         let mut least = blocks.fit().coefficients;
         let away = least.split_off(of_columns);
+        let is_usual = |(place, what): &(usize, Searched)| {
+            *what == Searched::Form && !fitted.model().parts[*place].is_reshaped()
+        };
+        // There is no form after the usual one: where the least lies there, that one stays.
+        let pairs = searched.iter().zip(&away);
+        let within = pairs.filter(|(one, step)| !is_usual(one) || **step <= 0.0);
+        let within: Vec<_> = within.map(|(one, _)| *one).collect();
+        if within.len() < searched.len() {
+            return self.estimates_with(fitted, &within);
+        }
+        let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
+        let (own, others) = half_widths.split_at(of_columns);
         let found = fitted.terms().flat_map(|term| term.own.iter().copied());
         let wider = own.iter().zip(least.iter().zip(found));
         let own: Vec<f64> = wider
@@ -370,7 +396,8 @@ impl<'a> Bench<'a> {
             .collect();
         fitted.estimates(&own, |place, what| {
             let among = searched.iter().position(|one| *one == (place, what))?;
-            Some(others[among].hypot(away[among]))
+            let half_width = others[among].hypot(away[among]);
+            Some(half_width).filter(|_| !is_usual(&searched[among]))
         })
     }
 
@@ -425,10 +452,14 @@ impl<'a> Bench<'a> {
         self.blocks(&self.design(model)).fit().sse
     }
 
-    /// Prediction from the columns of each part.
-    fn predicted(&self, fitted: &Fitted, columns: impl Fn(&Part) -> Columns) -> Vec<f64> {
+    /// Prediction from the columns of each part, beside an effort that is wanted besides.
+    fn predicted(
+        &self,
+        fitted: &Fitted,
+        mut wanted: Vec<f64>,
+        columns: impl Fn(&Part) -> Columns,
+    ) -> Vec<f64> {
         let shift_rows = self.shift_rows(fitted.model());
-        let mut wanted = vec![0.0; self.motion.len()];
         for term in fitted.terms() {
             let later = all_shifted(&columns(term.part), shift_rows);
             add(&mut wanted, &later, term.own);
@@ -440,23 +471,28 @@ impl<'a> Bench<'a> {
     /// Prediction in the low-passed domain.
     #[must_use]
     pub(crate) fn predict_lp(&self, fitted: &Fitted) -> Vec<f64> {
-        self.predicted(fitted, |part| self.columns(part))
+        let model = fitted.model();
+        let beside = if model.saturation().is_ideal() {
+            vec![0.0; self.motion.len()]
+        } else {
+            self.lost_at_peaks(model)
+        };
+        self.predicted(fitted, beside, |part| self.columns(part))
     }
 
     /// Prediction that is not low-passed.
     #[must_use]
     pub(crate) fn predict(&self, fitted: &Fitted) -> Vec<f64> {
-        self.predicted(fitted, |part| Arc::new(self.raw(part)))
+        let nothing = vec![0.0; self.motion.len()];
+        self.predicted(fitted, nothing, |part| Arc::new(self.raw(part)))
     }
 
     /// What the motor gives to the load side, but for its own mass: the delivered effort without
     /// what acts on the motor itself (ripple); low-passed.
     #[must_use]
     pub(crate) fn transmitted(&self, fitted: &Fitted) -> Vec<f64> {
-        let commanded = shifted(&self.motion.effort_lp, -self.shift_rows(fitted.model()));
-        let saturation = fitted.model().saturation();
-        let delivered = commanded.into_iter().map(|u| saturation.delivered(u));
-        let mut transmitted: Vec<f64> = delivered.collect();
+        let delivered = fitted.model().saturation().delivered_lp(self.motion);
+        let mut transmitted = shifted(&delivered, -self.shift_rows(fitted.model()));
         let on_motor = |term: &Term<'_>| term.part.effect.acts_on_motor();
         for term in fitted.terms().filter(on_motor) {
             for (column, coefficient) in self.columns(term.part).iter().zip(term.own) {
@@ -562,11 +598,14 @@ impl Design {
     }
 
     /// The design of a saturating actuator, linearised about a wanted effort q0:
-    /// `u − h(q0) + h'(q0) q0 = h'(q0) q`.
-    fn about(mut self, saturation: Saturation, wanted: &[f64]) -> Self {
-        let slope: Vec<f64> = wanted.iter().map(|q| saturation.slope(*q)).collect();
-        for ((target, q), slope) in self.target.iter_mut().zip(wanted).zip(&slope) {
-            *target += slope * q - saturation.commanded(*q);
+    /// `u − h(q0 + p) + h'(q0 + p) q0 = h'(q0 + p) q`, with p what it loses at peaks.
+    fn about(mut self, saturation: Saturation, wanted: &[f64], at_peaks: &[f64]) -> Self {
+        let pairs = wanted.iter().zip(at_peaks);
+        let all: Vec<f64> = pairs.map(|(q, peaks)| q + peaks).collect();
+        let slope: Vec<f64> = all.iter().map(|q| saturation.slope(*q)).collect();
+        let rows = wanted.iter().zip(&all).zip(&slope);
+        for (target, ((q, all), slope)) in self.target.iter_mut().zip(rows) {
+            *target += slope * q - saturation.commanded(*all);
         }
         for column in &mut self.columns {
             multiply(column, &slope);
@@ -659,9 +698,20 @@ mod tests {
     fn a_saturating_drive_is_linearised_about_the_fit_and_then_fits() {
         let k = 2.0e-3;
         let saturation = Saturation { per_effort: k };
-        let mut axis = axis(usual);
-        let wanted = axis.motion.effort_lp.clone();
-        axis.motion.effort_lp = wanted.iter().map(|q| saturation.commanded(*q)).collect();
+        // What is wanted has peaks, in which the low-pass sees less lost than was.
+        let peaks = |row: usize| 60.0 * f64::from(u8::from(row % 50 < 4));
+        let wanted = |motion: &Kinematics, row| usual(motion, row) + peaks(row);
+        let mut axis = axis(|motion, row| saturation.commanded(wanted(motion, row)));
+        let raw: Vec<f64> = (0..axis.motion.len()).map(peaks).collect();
+        axis.motion
+            .acceleration
+            .iter_mut()
+            .zip(&raw)
+            .for_each(|(a, force)| *a += force / USUAL[0]);
+        let all: Vec<f64> = (0..axis.motion.len())
+            .map(|row| usual(&axis.motion, row))
+            .collect();
+        let wanted = axis.motion.low_passed(&all);
         let bench = axis.bench();
         let ideal = bench.fit(&model(&DECLARED));
         let mut saturated = model(&DECLARED).with(found(TorqueSaturation, k));
@@ -683,10 +733,35 @@ mod tests {
         let rows = 300..5700;
         assert!(
             rows.into_iter()
-                .all(|row| (transmitted[row] - wanted[row]).abs() < 1.0e-9)
+                .all(|row| (transmitted[row] - wanted[row]).abs() < 0.05)
         );
         let half = bench.estimates(&fitted)[4].parameter_half_width.unwrap();
         assert!(half > 0.0 && half < 0.1 * k, "{half}");
+    }
+
+    #[test]
+    fn a_fall_is_as_uncertain_as_its_exponent_and_none_is_beyond_the_last() {
+        // A fall of an exponent of 1.8 or 2.2, told by the usual one.
+        let half_widths = |exponent: f64| {
+            let axis = axis(|motion, row| {
+                let fall = (-(motion.velocity_lp[row] / 0.02).abs().powf(exponent)).exp();
+                usual(motion, row) + 8.0 * motion.direction[row] * fall
+            });
+            let bench = axis.bench();
+            let fitted = bench.fit(&model(&DECLARED).with(found(Stribeck, 0.02)));
+            let open = bench.estimates(&fitted).remove(4);
+            let usual = bench.estimates_with(&fitted, &[(4, Searched::Parameter)]);
+            assert_eq!(open.form_half_width, None);
+            let off = (open.own[0].0 - 8.0).abs();
+            (open.own[0].1, usual[4].own[0].1, off)
+        };
+        let (open, known, off) = half_widths(1.8);
+        assert!(
+            off > 5.0 * known && off < 1.2 * open,
+            "{off} {open} {known}"
+        );
+        let (open, known, _) = half_widths(2.2);
+        assert_eq!(open, known);
     }
 
     #[test]

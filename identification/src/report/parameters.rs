@@ -20,6 +20,9 @@ use crate::model::inverse::{Model, Part};
 use crate::model::name::Called;
 use crate::report::ranking;
 
+/// What the vocabulary calls the deflection of a bristle.
+const DEFLECTION: &str = "presliding_deflection";
+
 /// A parameter with its name.
 type Entry = (String, Estimate);
 
@@ -94,10 +97,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
     );
     let extended = &findings.models.extended;
     if matches!(extended.bristle, Some(Bristle::Dahl(_))) {
-        own.push((
-            "presliding_deflection",
-            known(told.deflection, length.into()),
-        ));
+        own.push((DEFLECTION, known(told.deflection, length.into())));
         let bristle = told.bristle_damping;
         if bristle.value > bristle.half_width {
             let unit = format!("{effort} s/{length}");
@@ -216,8 +216,41 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
 }
 
 /// Deflection and gap, with their output: from the free run with their intervals where that
-/// decided, else the deflection that the effort about reversals gave.
+/// decided, else the deflection that the effort about reversals gave. A deflection is the Coulomb
+/// level over the stiffness at standstill. The bristle of effort and free run turns over by the
+/// level at its velocity: where that falls, it is as stiff as the level at rest says. Elements that
+/// slip have the stiffness of the Coulomb level already.
 fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
+    let (output, mut shape) = of_the_shape_as_fitted(findings);
+    let extended = &findings.models.extended;
+    let first = |name| extended.fitted.of(name).and_then(<[f64]>::first).copied();
+    if let Some(Bristle::Slip(_)) = extended.bristle {
+        return (output, shape);
+    }
+    let levels = first(EffectName::Coulomb).zip(first(EffectName::Stribeck));
+    if let Some(share) = levels.and_then(|(sliding, excess)| share_of_rest(sliding, excess)) {
+        let deflections = shape.iter_mut().filter(|(name, _)| name == DEFLECTION);
+        deflections.for_each(|(_, deflection)| *deflection = scaled(deflection, share));
+    }
+    (output, shape)
+}
+
+/// The sliding level over that at rest.
+fn share_of_rest(sliding: f64, excess: f64) -> Option<f64> {
+    (sliding > 0.0 && excess > 0.0).then(|| sliding / (sliding + excess))
+}
+
+/// An estimate times a factor above zero.
+fn scaled(estimate: &Estimate, factor: f64) -> Estimate {
+    Estimate {
+        value: factor * estimate.value,
+        low: factor * estimate.low,
+        high: factor * estimate.high,
+        unit: estimate.unit.clone(),
+    }
+}
+
+fn of_the_shape_as_fitted(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
     let Some(reversals) = findings.stages.reversals.accepted_shape() else {
         let length = findings.dataset.kind.position_unit();
         let gap = findings.stages.reversals.gap_by_effort();
@@ -333,6 +366,19 @@ mod tests {
         assert!(has_usual_friction(&usual.with(found(Stribeck, 0.02))));
         assert!(!has_usual_friction(&usual.with(found(FrictionDrift, 2.0))));
         assert!(!has_usual_friction(&model(&[Inertia, Coulomb, Offset])));
+    }
+
+    #[test]
+    fn a_deflection_is_that_of_the_coulomb_level_where_the_level_is_higher_at_rest() {
+        // 24 N while it slides, 32 N at rest.
+        let share = share_of_rest(24.0, 8.0).unwrap();
+        let deflection = scaled(&about(4.0, 2.0, "m".into()), share);
+        assert_eq!(deflection, about(3.0, 1.5, "m".into()));
+        // A level that rises from rest is none of a bristle's, nor is none at all.
+        assert_eq!(
+            (share_of_rest(20.0, -5.0), share_of_rest(0.0, 5.0)),
+            (None, None)
+        );
     }
 
     #[test]

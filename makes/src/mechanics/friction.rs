@@ -368,7 +368,7 @@ pub enum Scale {
 }
 
 /// Where and how a surface slides.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Position.
     pub position: f64,
@@ -383,6 +383,15 @@ pub struct Contact {
 }
 
 impl Scale {
+    /// The factor of a curve over the travel in its middle; of anything else, one.
+    #[must_use]
+    pub fn amid(&self) -> f64 {
+        match self {
+            Self::Slope(_) | Self::Bowl(_) | Self::Bump { .. } => self.factor(&Contact::default()),
+            _ => 1.0,
+        }
+    }
+
     /// The factor.
     #[must_use]
     pub fn factor(&self, at: &Contact) -> f64 {

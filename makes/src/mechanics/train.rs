@@ -8,7 +8,7 @@
 //! exactly.
 
 use crate::mechanics::field::{Drag, Field};
-use crate::mechanics::friction::{Contact, Surface};
+use crate::mechanics::friction::{Contact, Scale, Surface};
 use crate::mechanics::inertia::Inertia;
 use crate::mechanics::joint::Joint;
 
@@ -87,6 +87,16 @@ impl Train {
     #[must_use]
     pub fn coulomb(&self) -> f64 {
         self.surfaces.iter().map(|s| s.law.level()).sum()
+    }
+
+    /// The same in the middle of the travel, where a report has its Coulomb friction.
+    #[must_use]
+    pub fn coulomb_amid(&self) -> f64 {
+        let level = |surface: &Surface| {
+            let factors = surface.scales.iter().map(Scale::amid);
+            surface.law.level() * factors.product::<f64>()
+        };
+        self.surfaces.iter().map(level).sum()
     }
 
     /// Viscous friction of all bodies, mean of both directions.
@@ -410,5 +420,19 @@ mod tests {
         let day = Train::one(2.0, 10.0, 4.0).on_another_day(1.15, 0.9);
         assert_eq!(day.inertia(), 2.0);
         assert!((day.coulomb() - 11.5).abs() < 1e-12 && (day.viscous() - 3.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_bump_beside_the_middle_of_the_travel_is_in_the_level_there() {
+        let mut train = Train::one(2.0, 10.0, 4.0);
+        let bump = Scale::Bump {
+            centre: -0.3,
+            width: 0.3,
+            share: 0.5,
+        };
+        train.surfaces[0].scales = vec![Scale::Slope(2.0), bump, Scale::Load(3.0)];
+        assert_eq!(train.coulomb(), 10.0);
+        let wanted = 10.0 + 5.0 * libm::exp(-1.0);
+        assert!((train.coulomb_amid() - wanted).abs() < 1e-12);
     }
 }

@@ -110,7 +110,7 @@ impl<'a> ByMotion<'a> {
         let places: Vec<usize> = (0..motion.len())
             .filter(|row| motion.fitted[*row])
             .collect();
-        let drive = others.drive;
+        let delivered = others.drive.delivered_lp(motion);
         let others = if others.has_forces() {
             let all: Vec<f64> = (0..motion.len()).map(|row| others.all(row)).collect();
             motion.low_passed(&all)
@@ -119,7 +119,7 @@ impl<'a> ByMotion<'a> {
         };
         let row = |row: &usize| {
             let velocity = motion.velocity_lp[*row];
-            let effort = drive.delivered(motion.effort_lp[*row]) - others[*row];
+            let effort = delivered[*row] - others[*row];
             [acceleration[*row], velocity, direction[*row], 1.0, effort]
         };
         let rows: Vec<Row> = places.iter().map(row).collect();

@@ -48,6 +48,30 @@ impl Saturation {
         commanded / (1.0 + self.per_effort * commanded.abs())
     }
 
+    /// What the low-pass makes of what is lost of an effort, beyond what is lost of the low-passed
+    /// effort: `delivered(LP u) = LP(delivered u) + this`. A drive loses most at the peaks, and a
+    /// low-pass takes them off: a fit that does not know of them finds too small a loss.
+    #[must_use]
+    pub(crate) fn lost_at_peaks(self, motion: &Kinematics) -> Vec<f64> {
+        let lost = |effort: &[f64]| -> Vec<f64> {
+            effort.iter().map(|u| u - self.delivered(*u)).collect()
+        };
+        let of_low_passed = lost(&motion.effort_lp);
+        let low_passed = motion.low_passed(&lost(&motion.effort));
+        let pairs = low_passed.iter().zip(of_low_passed);
+        pairs.map(|(all, without)| all - without).collect()
+    }
+
+    /// Low-passed delivered effort for a commanded one.
+    #[must_use]
+    pub(crate) fn delivered_lp(self, motion: &Kinematics) -> Vec<f64> {
+        if self.is_ideal() {
+            return motion.effort_lp.clone();
+        }
+        let delivered: Vec<f64> = motion.effort.iter().map(|u| self.delivered(*u)).collect();
+        motion.low_passed(&delivered)
+    }
+
     /// Commanded over wanted effort, for small changes.
     #[must_use]
     pub(crate) fn slope(self, wanted: f64) -> f64 {
