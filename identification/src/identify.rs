@@ -255,7 +255,19 @@ fn beside_the_load(
         difference = difference::difference(dataset, motion, path(dataset, &force))?;
     }
     let path = path(dataset, &force);
-    Some(difference::settled(difference, dataset, motion, path))
+    let settled = difference::settled(difference, dataset, motion, path);
+    let force = other.transmitted(&other.fit(&effort.model));
+    let path = difference::Path {
+        position: &dataset.validate.position,
+        transmitted: &force,
+        hold: dataset.hold,
+    };
+    Some(
+        match difference::elsewhere(&settled, dataset, other.motion, path) {
+            Some(elsewhere) => settled.beside(&elsewhere),
+            None => settled,
+        },
+    )
 }
 
 /// What the training record gives to motor − load.

@@ -8,7 +8,6 @@ use crate::evidence::inverse_dynamics::InverseDynamics;
 use crate::evidence::thresholds::OTHER_DAY_SHARE;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Estimate;
-use crate::model::effects::by_motion::place_among_usual;
 use crate::model::name::Called;
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
@@ -56,22 +55,21 @@ impl OnBoth {
         changed.collect()
     }
 
-    /// Intervals of mass and friction of the first record with half of what the other one says
+    /// Intervals of the coefficients of the first record with half of what the other one says
     /// otherwise: two records of one axis are off by different parts of what a model lacks. What
     /// the other one knows much less of counts for nothing, nor does what has changed from day to
     /// day.
     pub(crate) fn widen(&self, estimates: &mut [Estimate]) {
         let pairs = self.first.iter().zip(&self.other);
         for (estimate, (first, other)) in estimates.iter_mut().zip(pairs) {
-            if place_among_usual(first.part.called()).is_none() {
-                continue;
-            }
-            let ((here, half_here), (there, half_there)) = (first.own[0], other.own[0]);
-            let apart = (there - here).abs();
-            let is_same = apart < OTHER_DAY_SHARE * here.abs();
-            if is_same && half_there <= MOST_WIDER * half_here {
-                let (_, half_width) = &mut estimate.own[0];
-                *half_width = half_width.hypot(0.5 * apart);
+            let pairs = first.own.iter().zip(&other.own);
+            for ((_, half_width), (first, other)) in estimate.own.iter_mut().zip(pairs) {
+                let ((here, half_here), (there, half_there)) = (first, other);
+                let apart = (there - here).abs();
+                let is_same = apart < OTHER_DAY_SHARE * here.abs();
+                if is_same && *half_there <= MOST_WIDER * half_here {
+                    *half_width = half_width.hypot(0.5 * apart);
+                }
             }
         }
     }

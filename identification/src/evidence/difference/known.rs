@@ -25,6 +25,12 @@ impl Known {
         Self::new(1.0 / self.value, self.half_width / self.value.powi(2))
     }
 
+    /// The same, with a share of itself in its interval.
+    pub(super) fn within_share(self, share: f64) -> Self {
+        let half_width = self.half_width.hypot(share * self.value);
+        Self { half_width, ..self }
+    }
+
     /// The same, as uncertain as another value of it is different.
     pub(super) fn beside(self, other: Self) -> Self {
         let half_width = self.half_width.hypot(self.value - other.value);
