@@ -4,8 +4,11 @@
 //! only in linear coefficients contradicts no effect, but its errors are larger for it, and that
 //! has to be told from a wrong model.
 
+use axis_model::EffectName;
+
 use crate::evidence::inverse_dynamics::InverseDynamics;
 use crate::evidence::thresholds::OTHER_DAY_SHARE;
+use crate::evidence::verdict::Reason;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::Estimate;
 use crate::model::name::Called;
@@ -25,6 +28,20 @@ pub(crate) struct Change {
     pub share: f64,
     /// Half width of its 95 % interval.
     pub half_width: f64,
+}
+
+impl Change {
+    /// Whether it is friction whose whole interval has the other sign.
+    fn turns(&self) -> bool {
+        let friction = [
+            EffectName::Coulomb,
+            EffectName::Viscous,
+            EffectName::Stribeck,
+            EffectName::QuadraticDrag,
+        ];
+        let is_friction = friction.iter().any(|name| self.effect == *name);
+        is_friction && self.share + self.half_width < -1.0
+    }
 }
 
 /// The coefficients of a structure on two records.
@@ -53,6 +70,20 @@ impl OnBoth {
         let pairs = self.first.iter().zip(&self.other);
         let changed = pairs.filter_map(|(first, other)| change(first, other));
         changed.collect()
+    }
+
+    /// Friction that has turned from one record to the other. Another day makes it more or less; what
+    /// pushes where it braked is another effect, of which the first record saw a part.
+    pub(crate) fn reason(&self) -> Option<Reason> {
+        let changes = self.changes();
+        let turned = changes.iter().find(|change| change.turns())?;
+        Some(Reason::unexplained(format!(
+            "{} of the other sign on the validation record ({:+.0} ± {:.0} %): it stands for \
+             something else; record the motions of both in one",
+            turned.effect,
+            100.0 * turned.share,
+            100.0 * turned.half_width
+        )))
     }
 
     /// Intervals of the coefficients of the first record with half of what the other one says
@@ -95,6 +126,7 @@ mod tests {
     use axis_model::EffectName::{Coulomb, Inertia, Offset, Viscous};
 
     use super::*;
+    use crate::evidence::verdict::Verdict;
     use crate::fit::made::{axis, model};
 
     /// 90 kg, 200 N s/m, 25 N and −4 N, and other ones.
@@ -157,6 +189,18 @@ mod tests {
         assert_eq!(effects, [Viscous, Coulomb]);
         assert!((changes[0].share + 0.10).abs() < 0.01, "{:?}", changes[0]);
         assert!((changes[1].share - 0.15).abs() < 0.01, "{:?}", changes[1]);
+    }
+
+    #[test]
+    fn friction_that_turns_is_none_and_less_of_it_is_another_day() {
+        let said = |viscous: f64| {
+            let reason = on_both([90.0, viscous, 25.0, -4.0]).reason();
+            reason.map(|reason| Verdict::of(vec![reason]).looks_like)
+        };
+        assert_eq!(said(20.0), None);
+        let turned = said(-60.0).unwrap();
+        assert!(turned.starts_with("viscous of the other sign"), "{turned}");
+        assert!(turned.contains("(-130 ± "), "{turned}");
     }
 
     #[test]

@@ -178,8 +178,9 @@ impl<'a> Findings<'a> {
             off_percent,
         ));
         reasons.extend(signs::reasons(dataset, motion, &models.extended));
-        let verdict = Verdict::of(reasons);
         let on_both = OnBoth::of(dataset, [motion, validation], &models.extended);
+        reasons.extend(on_both.reason());
+        let verdict = Verdict::of(reasons);
         Self {
             dataset,
             motion,
