@@ -72,8 +72,8 @@ impl OnBoth {
         changed.collect()
     }
 
-    /// Friction that has turned from one record to the other. Another day makes it more or less; what
-    /// pushes where it braked is another effect, of which the first record saw a part.
+    /// Friction that has turned from one record to the other. Another day makes it more or less;
+    /// what pushes where it braked is another effect, of which the first record saw a part.
     pub(crate) fn reason(&self) -> Option<Reason> {
         let changes = self.changes();
         let turned = changes.iter().find(|change| change.turns())?;

@@ -164,21 +164,13 @@ impl<'a> Findings<'a> {
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
         reasons.extend(residual.reasons(has_gap));
-        reasons.extend(amount::on_another_record(
-            dataset,
-            validation,
-            &models.extended,
-        ));
+        let extended = &models.extended;
+        reasons.extend(amount::on_another_record(dataset, validation, extended));
         let records = [motion, validation];
         let off_percent = validate.extended.force_percent;
-        reasons.extend(rank::reason(
-            dataset,
-            records,
-            &models.extended,
-            off_percent,
-        ));
-        reasons.extend(signs::reasons(dataset, motion, &models.extended));
-        let on_both = OnBoth::of(dataset, [motion, validation], &models.extended);
+        reasons.extend(rank::reason(dataset, records, extended, off_percent));
+        reasons.extend(signs::reasons(dataset, motion, extended));
+        let on_both = OnBoth::of(dataset, records, extended);
         reasons.extend(on_both.reason());
         let verdict = Verdict::of(reasons);
         Self {

@@ -348,16 +348,14 @@ impl<'a> Bench<'a> {
     /// Everything that was fitted with half widths of 95 % intervals: the columns' own and,
     /// linearised, the nonlinear parameters, and the forms that are not the usual ones. What was
     /// searched elsewhere (a delay, at the lower cut-off) is as uncertain besides as the least lies
-    /// away here, and the coefficients beside it are. A fall of friction is as uncertain as its
-    /// exponent is, the usual one too.
+    /// away here, and the coefficients beside it are.
     #[must_use]
     pub(crate) fn estimates(&self, fitted: &Fitted) -> Vec<Estimate> {
         let model = fitted.model();
         let of_part = |place: usize| {
             let part = &model.parts[place];
             let parameter = part.effect.is_tuned().then_some(Searched::Parameter);
-            let has_form = part.is_reshaped() || part.effect.fall_exponent().is_some();
-            let form = has_form.then_some(Searched::Form);
+            let form = part.is_reshaped().then_some(Searched::Form);
             let searched = parameter.into_iter().chain(form);
             searched.map(move |what| (place, what))
         };
@@ -374,21 +372,11 @@ impl<'a> Bench<'a> {
     fn estimates_with(&self, fitted: &Fitted, searched: &[(usize, Searched)]) -> Vec<Estimate> {
         let design = self.design_about(fitted, searched);
         let blocks = self.blocks(&design);
+        let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
         let of_columns = design.columns.len() - searched.len();
+        let (own, others) = half_widths.split_at(of_columns);
         let mut least = blocks.fit().coefficients;
         let away = least.split_off(of_columns);
-        let is_usual = |(place, what): &(usize, Searched)| {
-            *what == Searched::Form && !fitted.model().parts[*place].is_reshaped()
-        };
-        // There is no form after the usual one: where the least lies there, that one stays.
-        let pairs = searched.iter().zip(&away);
-        let within = pairs.filter(|(one, step)| !is_usual(one) || **step <= 0.0);
-        let within: Vec<_> = within.map(|(one, _)| *one).collect();
-        if within.len() < searched.len() {
-            return self.estimates_with(fitted, &within);
-        }
-        let half_widths = blocks.half_widths_beside_steps(self.independent_samples());
-        let (own, others) = half_widths.split_at(of_columns);
         let found = fitted.terms().flat_map(|term| term.own.iter().copied());
         let wider = own.iter().zip(least.iter().zip(found));
         let own: Vec<f64> = wider
@@ -396,8 +384,7 @@ impl<'a> Bench<'a> {
             .collect();
         fitted.estimates(&own, |place, what| {
             let among = searched.iter().position(|one| *one == (place, what))?;
-            let half_width = others[among].hypot(away[among]);
-            Some(half_width).filter(|_| !is_usual(&searched[among]))
+            Some(others[among].hypot(away[among]))
         })
     }
 
@@ -737,31 +724,6 @@ mod tests {
         );
         let half = bench.estimates(&fitted)[4].parameter_half_width.unwrap();
         assert!(half > 0.0 && half < 0.1 * k, "{half}");
-    }
-
-    #[test]
-    fn a_fall_is_as_uncertain_as_its_exponent_and_none_is_beyond_the_last() {
-        // A fall of an exponent of 1.8 or 2.2, told by the usual one.
-        let half_widths = |exponent: f64| {
-            let axis = axis(|motion, row| {
-                let fall = (-(motion.velocity_lp[row] / 0.02).abs().powf(exponent)).exp();
-                usual(motion, row) + 8.0 * motion.direction[row] * fall
-            });
-            let bench = axis.bench();
-            let fitted = bench.fit(&model(&DECLARED).with(found(Stribeck, 0.02)));
-            let open = bench.estimates(&fitted).remove(4);
-            let usual = bench.estimates_with(&fitted, &[(4, Searched::Parameter)]);
-            assert_eq!(open.form_half_width, None);
-            let off = (open.own[0].0 - 8.0).abs();
-            (open.own[0].1, usual[4].own[0].1, off)
-        };
-        let (open, known, off) = half_widths(1.8);
-        assert!(
-            off > 5.0 * known && off < 1.2 * open,
-            "{off} {open} {known}"
-        );
-        let (open, known, _) = half_widths(2.2);
-        assert_eq!(open, known);
     }
 
     #[test]
