@@ -101,6 +101,8 @@ fn parameters(rig: &Rig) -> Vec<Known> {
             format!("{effort} s/{position}"),
         ),
     ];
+    let motor_coulomb = motor_coulomb(rig);
+    all.extend(motor_coulomb.map(|level| known("motor_coulomb", level, effort.into())));
     let of_make = |own: &Known| match own.name {
         "logged_late" => Known {
             value: lateness(rig, own.value),
@@ -115,6 +117,17 @@ fn parameters(rig: &Rig) -> Vec<Known> {
     };
     all.extend(rig.known.iter().map(of_make));
     all
+}
+
+/// Coulomb friction of the motor's own side, before a spring without a gap, where a scale at the
+/// load shows it apart from that of the load.
+fn motor_coulomb(rig: &Rig) -> Option<f64> {
+    let train = &rig.train;
+    let [joint] = &train.joints[..] else {
+        return None;
+    };
+    let level = train.coulomb_amid_of(0);
+    (rig.sensing.load.is_some() && joint.gap == 0.0 && level > 0.0).then_some(level)
 }
 
 /// How late the effort of a log is that is read so late; below zero where it acts later.

@@ -81,6 +81,8 @@ pub(crate) struct Difference {
     pub gap: Option<Known>,
     /// Stiffness, if compliance was found or declared: effort per length.
     pub stiffness: Option<Known>,
+    /// Coulomb friction of the motor's own side, before a spring without a gap.
+    pub motor_coulomb: Option<Known>,
     /// Amplitude and wave number of each pitch error that was found or declared.
     pub pitch: Vec<(Known, Known)>,
     /// What the load's own motion tells, where it explains the wind-up better than the effort.
@@ -180,11 +182,13 @@ pub(crate) fn settled(
     let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place, smallest));
     let told = told.filter(|told| difference.agrees_with(told));
     difference.know(&apart);
+    let spring = spring::on_moving_rows(&apart, &difference.extended.ways());
+    difference.motor_coulomb = spring.map(|spring| spring.motor_coulomb);
     if let Some(told) = told {
         difference.stiffness = Some(told.stiffness);
         difference.gap = told.gap.or(difference.gap);
     } else {
-        difference.doubt_stiffness(&apart);
+        difference.doubt_stiffness(spring.map(|spring| spring.stiffness));
         let stiffness = difference.stiffness;
         difference.stiffness = stiffness.map(|known| known.within_share(METHOD_OF_STIFFNESS));
     }
@@ -660,6 +664,7 @@ impl Difference {
             stiffness: wind_up
                 .filter(|(_, own)| own[0] > 0.0)
                 .map(|(way, own)| Known::new(stiffness(gap, way, own), 0.0)),
+            motor_coulomb: None,
             pitch: Vec::new(),
             by_the_load: None,
             left: None,
@@ -725,13 +730,13 @@ impl Difference {
     /// The stiffness of a spring without a gap: by the rows in which the motor moves, where they
     /// contradict that of all rows, else as well known as they tell it. Where they do not tell it,
     /// it may be anything up to twice what it was taken for.
-    fn doubt_stiffness(&mut self, apart: &Apart<'_>) {
+    fn doubt_stiffness(&mut self, on_moving_rows: Option<Known>) {
         let ways = self.extended.ways();
         let Some(stiffness) = self.stiffness.filter(|_| !has(&ways, EffectName::Backlash)) else {
             return;
         };
         let of_all = stiffness.value;
-        let known = spring::on_moving_rows(apart, &ways).map(|seen| {
+        let known = on_moving_rows.map(|seen| {
             let apart = (seen.value - of_all).abs();
             if apart > seen.half_width {
                 seen

@@ -59,10 +59,27 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
             parameters.replace(name, estimate);
         }
     }
+    if let Some(motor) = difference.and_then(|difference| difference.motor_coulomb) {
+        let unit = findings.dataset.effort.unit();
+        parameters.share_out_coulomb(about(motor.value, motor.half_width, unit.into()));
+    }
     parameters
 }
 
 impl Parameters {
+    /// The Coulomb friction on either side of a spring, where the motor's own side is seen to have
+    /// some: that, and what is left of the whole for the load.
+    fn share_out_coulomb(&mut self, motor: Estimate) {
+        let whole = self.estimates.get("coulomb");
+        let Some(whole) = whole.filter(|_| motor.low > 0.0) else {
+            return;
+        };
+        let half_width = whole.half_width().hypot(motor.half_width());
+        let load = about(whole.value - motor.value, half_width, motor.unit.clone());
+        self.replace("motor_coulomb", motor);
+        self.replace("load_coulomb", load);
+    }
+
     /// A parameter by motion of the load, which knows it better than any output before.
     fn replace(&mut self, name: &str, estimate: Estimate) {
         self.from.insert(name.into(), ranking::DIFFERENCE);
@@ -343,6 +360,23 @@ mod tests {
             half_width,
             unit: "N".into(),
         }
+    }
+
+    #[test]
+    fn the_load_has_what_the_motors_side_leaves_of_the_friction() {
+        let newtons = |value, half_width| about(value, half_width, "N".into());
+        let mut all = table([("effort", vec![("coulomb".into(), newtons(25.0, 0.3))])]);
+        all.share_out_coulomb(newtons(10.0, 0.4));
+        assert_eq!(all.estimates["motor_coulomb"], newtons(10.0, 0.4));
+        assert_eq!(all.estimates["load_coulomb"], newtons(15.0, 0.5));
+        assert_eq!(all.from["load_coulomb"], ranking::DIFFERENCE);
+        // No friction of the motor is seen, or none at all.
+        let mut unseen = table([("effort", vec![("coulomb".into(), newtons(25.0, 0.3))])]);
+        unseen.share_out_coulomb(newtons(10.0, 11.0));
+        assert_eq!(unseen.estimates.len(), 1);
+        let mut none = table([("effort", Vec::new())]);
+        none.share_out_coulomb(newtons(10.0, 0.4));
+        assert!(none.estimates.is_empty());
     }
 
     #[test]

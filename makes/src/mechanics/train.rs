@@ -92,11 +92,20 @@ impl Train {
     /// The same in the middle of the travel, where a report has its Coulomb friction.
     #[must_use]
     pub fn coulomb_amid(&self) -> f64 {
+        (0..self.inertias.len())
+            .map(|body| self.coulomb_amid_of(body))
+            .sum()
+    }
+
+    /// The same of one body.
+    #[must_use]
+    pub fn coulomb_amid_of(&self, body: usize) -> f64 {
         let level = |surface: &Surface| {
             let factors = surface.scales.iter().map(Scale::amid);
             surface.law.level() * factors.product::<f64>()
         };
-        self.surfaces.iter().map(level).sum()
+        let own = self.surfaces.iter().filter(|own| own.body == body);
+        own.map(level).sum()
     }
 
     /// Viscous friction of all bodies, mean of both directions.
@@ -434,5 +443,8 @@ mod tests {
         assert_eq!(train.coulomb(), 10.0);
         let wanted = 10.0 + 5.0 * libm::exp(-1.0);
         assert!((train.coulomb_amid() - wanted).abs() < 1e-12);
+        let two = train.then(Joint::stiff(1e6, 1.0), 3.0, 7.0, 1.0);
+        assert!((two.coulomb_amid() - wanted - 7.0).abs() < 1e-12);
+        assert_eq!(two.coulomb_amid_of(1), 7.0);
     }
 }

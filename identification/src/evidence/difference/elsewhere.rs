@@ -50,6 +50,7 @@ impl Difference {
         };
         self.gap = both(self.gap, other.gap);
         self.stiffness = both(self.stiffness, other.stiffness);
+        self.motor_coulomb = both(self.motor_coulomb, other.motor_coulomb);
         let told = self.by_the_load.zip(other.by_the_load);
         self.by_the_load = told.map_or(self.by_the_load, |(own, other)| {
             Some(ByTheLoad {

@@ -1,4 +1,5 @@
-//! The stiffness of a spring between motor and load, by the rows in which the motor moves.
+//! A spring between motor and load, and the friction of the motor's own side before it, by the
+//! rows in which the motor moves.
 //!
 //! A spring is wound up by the effort less what the motor's own side takes of it: inertia, Coulomb
 //! and viscous friction, and a damper beside the spring follows the rate of the effort. Where the
@@ -12,9 +13,18 @@ use super::columns::{Apart, Way};
 use super::known::Known;
 use crate::fit::plain::Plain;
 
-/// The stiffness of the spring among ways without a gap; `None` where the motor comes out with a
-/// mass or a friction that it cannot have: then the record does not tell it.
-pub(super) fn on_moving_rows(apart: &Apart<'_>, ways: &[Way]) -> Option<Known> {
+/// What moving rows tell of a spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spring {
+    /// Its stiffness.
+    pub stiffness: Known,
+    /// Coulomb friction of the motor's own side.
+    pub motor_coulomb: Known,
+}
+
+/// The spring among ways without a gap; `None` where the motor comes out with a mass or a friction
+/// that it cannot have: then the record does not tell it.
+pub(super) fn on_moving_rows(apart: &Apart<'_>, ways: &[Way]) -> Option<Spring> {
     let place = ways
         .iter()
         .position(|way| way.called() == EffectName::Compliance)?;
@@ -29,22 +39,33 @@ pub(super) fn on_moving_rows(apart: &Apart<'_>, ways: &[Way]) -> Option<Known> {
     let moving = apart.where_moving();
     let first: usize = ways[..place].iter().map(|way| way.width()).sum();
     let mut columns = moving.design(&ways);
-    let undamped = stiffness(&moving, &columns, first)?;
+    let undamped = spring(&moving, &columns, first)?;
     columns.push(moving.rate_of_force());
-    Some(stiffness(&moving, &columns, first)?.beside(undamped))
+    let damped = spring(&moving, &columns, first)?;
+    Some(Spring {
+        stiffness: damped.stiffness.beside(undamped.stiffness),
+        motor_coulomb: damped.motor_coulomb.beside(undamped.motor_coulomb),
+    })
 }
 
-/// The stiffness by columns of which those of the wind-up begin at a place: softness, what the
-/// motor's mass takes of it, and its friction.
-fn stiffness(apart: &Apart<'_>, columns: &[Vec<f64>], first: usize) -> Option<Known> {
+/// The spring by columns of which those of the wind-up begin at a place: softness, what the motor's
+/// mass takes of it, and its friction.
+fn spring(apart: &Apart<'_>, columns: &[Vec<f64>], first: usize) -> Option<Spring> {
     let blocks = apart.blocks_of(columns, &apart.target);
     let (own, half_widths) = (blocks.fit().coefficients, blocks.half_widths());
-    let [softness, inertia, friction] = [own[first], own[first + 1], own[first + 2]];
-    let motor_mass = -inertia / softness;
+    let known = |place: usize| Known::new(own[first + place], half_widths[first + place]);
+    let [softness, inertia, friction] = [0, 1, 2].map(known);
+    let motor_mass = -inertia.value / softness.value;
     let masses = 0.0..Plain::moved_mass(apart.motion);
-    let rubs = friction <= half_widths[first + 2];
-    let can_be = softness > 0.0 && masses.contains(&motor_mass) && rubs;
-    can_be.then(|| Known::new(softness, half_widths[first]).inverse())
+    let rubs = friction.value <= friction.half_width;
+    let can_be = softness.value > 0.0 && masses.contains(&motor_mass) && rubs;
+    can_be.then(|| {
+        let stiffness = softness.inverse();
+        Spring {
+            stiffness,
+            motor_coulomb: friction.times(stiffness).of(-1.0),
+        }
+    })
 }
 
 #[cfg(test)]
@@ -56,7 +77,7 @@ mod tests {
 
     /// 30 of 90 kg and 10 of the 25 N of friction on the motor, the rest behind 5 N/µm with a
     /// damper that lets it follow over so many seconds; 30 N change with position.
-    fn known(follows_s: f64) -> Option<Known> {
+    fn known(follows_s: f64) -> Option<Spring> {
         let mut axis = made::axis(|motion, row| {
             usual(motion, row) + 30.0 * (700.0 * motion.position_lp[row]).sin()
         });
@@ -82,12 +103,14 @@ mod tests {
     }
 
     #[test]
-    fn the_moving_rows_tell_the_stiffness_with_a_damper_and_without() {
+    fn the_moving_rows_tell_spring_and_friction_of_the_motor_with_a_damper_and_without() {
         for follows_s in [1.0e-6, 2.0e-3] {
             let known = known(follows_s).unwrap();
-            let off = (known.value - 5.0e6).abs();
-            assert!(off < 0.02 * 5.0e6, "{follows_s} {known:?}");
-            assert!(known.half_width < 0.05 * 5.0e6, "{follows_s} {known:?}");
+            for (known, wanted) in [(known.stiffness, 5.0e6), (known.motor_coulomb, 10.0)] {
+                let off = (known.value - wanted).abs();
+                assert!(off < 0.02 * wanted, "{follows_s} {known:?}");
+                assert!(known.half_width < 0.05 * wanted, "{follows_s} {known:?}");
+            }
         }
     }
 
