@@ -53,13 +53,11 @@ impl Saturation {
     /// low-pass takes them off: a fit that does not know of them finds too small a loss.
     #[must_use]
     pub(crate) fn lost_at_peaks(self, motion: &Kinematics) -> Vec<f64> {
-        let lost = |effort: &[f64]| -> Vec<f64> {
-            effort.iter().map(|u| u - self.delivered(*u)).collect()
-        };
-        let of_low_passed = lost(&motion.effort_lp);
-        let low_passed = motion.low_passed(&lost(&motion.effort));
-        let pairs = low_passed.iter().zip(of_low_passed);
-        pairs.map(|(all, without)| all - without).collect()
+        let of_low_passed = motion.effort_lp.iter().map(|u| self.delivered(*u));
+        let pairs = of_low_passed.zip(self.delivered_lp(motion));
+        pairs
+            .map(|(of_low_passed, low_passed)| of_low_passed - low_passed)
+            .collect()
     }
 
     /// Low-passed delivered effort for a commanded one.
