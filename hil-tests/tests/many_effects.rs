@@ -22,23 +22,28 @@ const LACKS: [&str; 7] = [
     "viscous_asymmetry",
 ];
 
-/// Parameters with the unit of the table and what makes it from the report's. The truth of each is
-/// in the notes of the table.
-const PARAMETERS: [(&str, f64, &str); 14] = [
-    ("inertia", 1.0, "kg"),
-    ("load_inertia", 1.0, "kg"),
-    ("coulomb", 1.0, "N"),
-    ("viscous", 1.0, "N s/m"),
-    ("viscous_asymmetry", 1.0, "N s/m"),
-    ("stribeck_excess", 1.0, "N"),
-    ("stribeck_velocity", 1.0e3, "mm/s"),
-    ("presliding_deflection", 1.0e6, "µm"),
-    ("backlash_gap", 1.0e6, "µm"),
-    ("compliance_stiffness", 1.0e-6, "N/µm"),
-    ("torque_ripple_amplitude", 1.0, "N"),
-    ("torque_ripple_period", 1.0e3, "mm"),
-    ("pitch_error_amplitude", 1.0e6, "µm"),
-    ("pitch_error_period", 1.0e3, "mm"),
+/// What a parameter may be off by, as a share of the truth.
+const MOST_OFF: f64 = 0.05;
+/// What a period may be off by.
+const MOST_OFF_OF_A_PERIOD: f64 = 1.0e-3;
+
+/// Parameters with the truth in the unit of the table, what makes that from the report's, and the
+/// unit.
+const PARAMETERS: [(&str, f64, f64, &str); 14] = [
+    ("inertia", 931.65, 1.0, "kg"),
+    ("load_inertia", 300.0, 1.0, "kg"),
+    ("coulomb", 400.0, 1.0, "N"),
+    ("viscous", 2000.0, 1.0, "N s/m"),
+    ("viscous_asymmetry", 300.0, 1.0, "N s/m"),
+    ("stribeck_excess", 120.0, 1.0, "N"),
+    ("stribeck_velocity", 1.5, 1.0e3, "mm/s"),
+    ("presliding_deflection", 4.348, 1.0e6, "µm"),
+    ("backlash_gap", 10.0, 1.0e6, "µm"),
+    ("compliance_stiffness", 120.0, 1.0e-6, "N/µm"),
+    ("torque_ripple_amplitude", 20.0, 1.0, "N"),
+    ("torque_ripple_period", 2.0, 1.0e3, "mm"),
+    ("pitch_error_amplitude", 2.0, 1.0e6, "µm"),
+    ("pitch_error_period", 10.0, 1.0e3, "mm"),
 ];
 
 #[test]
@@ -69,19 +74,30 @@ fn scenario(axis: &MachineAxis) -> String {
 }
 
 fn rows_of(axis: &str, result: &Identification) -> Vec<Measured> {
-    let measured = |(name, factor, unit): (&str, f64, &'static str)| {
+    let measured = |(name, truth, factor, unit): (&str, f64, f64, &'static str)| {
         let known = result.report.parameters.get(name);
         let known = known.unwrap_or_else(|| panic!("{name} is not known"));
-        row(format!("axis {axis}, {name}"), factor * known.value, unit)
+        let value = factor * known.value;
+        let most = if name.ends_with("_period") {
+            MOST_OFF_OF_A_PERIOD
+        } else {
+            MOST_OFF
+        };
+        assert_near(&format!("axis {axis}, {name}"), value, truth, most);
+        row(format!("axis {axis}, {name}"), value, unit)
     };
-    let over_position = row(
-        format!("axis {axis}, friction over position"),
-        100.0 * change_of_friction_per_m(result),
-        "%/m",
-    );
+    let change = 100.0 * change_of_friction_per_m(result);
+    let over_position = format!("axis {axis}, friction over position");
+    assert_near(&over_position, change, 48.0, MOST_OFF);
+    let over_position = row(over_position, change, "%/m");
     let mut rows = PARAMETERS.map(measured).to_vec();
     rows.push(over_position);
     rows
+}
+
+fn assert_near(what: &str, value: f64, truth: f64, most: f64) {
+    let off = (value / truth - 1.0).abs();
+    assert!(off <= most, "{what}: {value} for {truth}");
 }
 
 /// As a share of the level at position zero.

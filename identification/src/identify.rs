@@ -32,7 +32,9 @@ use crate::motion::motions::{self, Motions};
 use crate::progress::Step;
 use crate::record::dataset::Dataset;
 use crate::record::excerpt::{EXCERPT, ExcerptSize, excerpt};
+use crate::record::samples::Record;
 use crate::record::scale_error::{ScaleError, along};
+use crate::record::units::EffortHold;
 use crate::report;
 use crate::report::forms::Identification;
 
@@ -243,7 +245,8 @@ fn beside_the_load(
     let (dataset, motion) = (bench.dataset, bench.motion);
     let transmitted = |effort: &Selection| bench.transmitted(&bench.fit(&effort.model));
     let mut force = transmitted(effort);
-    let mut difference = difference::difference(dataset, motion, path(dataset, &force))?;
+    let mut difference =
+        difference::difference(dataset, motion, path(&dataset.train, dataset.hold, &force))?;
     if difference.moves_apart() {
         if effort::lacks_load_inertia(bench, &effort.model) {
             let start = effort::with_load(bench, declared);
@@ -252,30 +255,27 @@ fn beside_the_load(
         }
         effort::remove_beside_load(bench, &mut effort.model);
         force = transmitted(effort);
-        difference = difference::difference(dataset, motion, path(dataset, &force))?;
+        difference =
+            difference::difference(dataset, motion, path(&dataset.train, dataset.hold, &force))?;
     }
-    let path = path(dataset, &force);
-    let settled = difference::settled(difference, dataset, motion, path);
+    let own = path(&dataset.train, dataset.hold, &force);
+    let settled = difference::settled(difference, dataset, motion, own);
     let force = other.transmitted(&other.fit(&effort.model));
-    let path = difference::Path {
-        position: &dataset.validate.position,
-        transmitted: &force,
-        hold: dataset.hold,
-    };
+    let others = path(&dataset.validate, dataset.hold, &force);
     Some(
-        match difference::elsewhere(&settled, dataset, other.motion, path) {
+        match difference::elsewhere(&settled, dataset, other.motion, others) {
             Some(elsewhere) => settled.beside(&elsewhere),
             None => settled,
         },
     )
 }
 
-/// What the training record gives to motor − load.
-fn path<'a>(dataset: &'a Dataset, transmitted: &'a [f64]) -> difference::Path<'a> {
+/// What a record gives to motor − load.
+fn path<'a>(record: &'a Record, hold: EffortHold, transmitted: &'a [f64]) -> difference::Path<'a> {
     difference::Path {
-        position: &dataset.train.position,
+        position: &record.position,
         transmitted,
-        hold: dataset.hold,
+        hold,
     }
 }
 

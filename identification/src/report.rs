@@ -80,7 +80,8 @@ fn report(findings: &Findings<'_>) -> Report {
     let dataset = findings.dataset;
     let found = &findings.found;
     let parameters = parameters::parameters(findings);
-    let bristle = findings.models.extended.bristle.as_ref();
+    let bristle = parameters::bristle(findings);
+    let bristle = bristle.as_deref();
     let whole = dataset.whole();
     let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
     let presliding = bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates));

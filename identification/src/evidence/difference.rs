@@ -25,7 +25,10 @@ mod known;
 mod left;
 mod linearised;
 mod load;
+mod refined;
+mod rubbing;
 mod search;
+mod slipping;
 mod spring;
 
 use std::cell::OnceCell;
@@ -110,6 +113,10 @@ const MOST_PITCH_ERRORS: usize = 4;
 /// (2026-11-25).
 const METHOD_OF_STIFFNESS: f64 = 0.02;
 
+/// Counts, rms, of which no other law of the load's friction is asked: a bristle that is right
+/// leaves a third of one.
+const ENOUGH_COUNTS: f64 = 1.0;
+
 /// Rounds in which a pitch error and what the flanks do beside it settle.
 const PITCH_ROUNDS: usize = 3;
 
@@ -160,18 +167,20 @@ pub(crate) fn settled(
     let raw = apart.cleared(&difference.extended);
     let apart = apart.seen(&raw);
     let unit = dataset.moving_velocity;
-    let refitted = |fitted: &FittedWays| {
-        let carried = carried::instead(&apart, &fitted.ways(), unit);
+    let count = dataset.resolution.max(dataset.load_resolution);
+    let refitted = |fitted: &FittedWays, enough: f64| {
+        let carried = carried::instead(&apart, &fitted.ways(), unit, enough);
         let ways = carried.unwrap_or_else(|| fitted.ways());
         let ways = intervals::with_wave_numbers(&apart, ways);
         apart.where_known(&ways).fit(&ways)
     };
     let is_same = difference.declared.ways() == difference.extended.ways();
-    difference.extended = refitted(&difference.extended);
+    difference.extended = refitted(&difference.extended, ENOUGH_COUNTS * count);
     difference.declared = if is_same {
         difference.extended.clone()
     } else {
-        refitted(&difference.declared)
+        // What is declared lacks more than the shape of its friction.
+        refitted(&difference.declared, f64::INFINITY)
     };
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
@@ -184,7 +193,7 @@ pub(crate) fn settled(
     difference.know(&apart);
     let spring = spring::on_moving_rows(&apart, &difference.extended.ways());
     difference.motor_coulomb = spring.map(|spring| spring.motor_coulomb);
-    if let Some(told) = told {
+    if let Some(told) = &told {
         difference.stiffness = Some(told.stiffness);
         difference.gap = told.gap.or(difference.gap);
     } else {
@@ -199,7 +208,6 @@ pub(crate) fn settled(
     let residual = apart.residual(&difference.extended);
     let wound = difference.extended.of(EffectName::Compliance);
     let wound = wound.map(|(way, own)| apart.predicted(way, own));
-    let count = dataset.resolution.max(dataset.load_resolution);
     difference.left = left::left(&apart, &residual, wound, count);
     difference
 }

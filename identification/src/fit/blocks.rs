@@ -275,18 +275,40 @@ impl Blocks {
         folds.into_iter().map(|fold| fold - &mean).collect()
     }
 
-    /// Coefficients over all blocks of which none is negative.
+    /// Coefficients over all blocks of which none is negative, of all columns but the first ones,
+    /// which are free.
     #[must_use]
-    pub(crate) fn non_negative(&self) -> Vec<f64> {
-        non_negative(&sum(&self.grams, self.scale.len()))
+    pub(crate) fn non_negative_beside(&self, free: usize) -> Vec<f64> {
+        non_negative(&self.beside(free, &sum(&self.grams, self.scale.len())))
     }
 
     /// The same without each fold.
     #[must_use]
-    pub(crate) fn non_negative_without_folds(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn non_negative_beside_without_folds(&self, free: usize) -> Vec<Vec<f64>> {
         let total = sum(&self.grams, self.scale.len());
-        let without = |fold: usize| non_negative(&self.gram_without(&total, fold));
+        let without = |fold: usize| {
+            let rest = self.gram_without(&total, fold);
+            non_negative(&self.beside(free, &rest))
+        };
         (0..self.folds).map(without).collect()
+    }
+
+    /// A Gram matrix of what the first columns leave of the others (Schur's complement).
+    fn beside(&self, free: usize, gram: &DMatrix<f64>) -> DMatrix<f64> {
+        let size = self.scale.len();
+        let scaled = |i: usize, j: usize| gram[(i, j)] / (self.scale[i] * self.scale[j]);
+        let mut own = DMatrix::from_fn(free, free, scaled);
+        let ridge = RIDGE * own.trace().max(f64::MIN_POSITIVE) / free.max(1) as f64;
+        (0..free).for_each(|i| own[(i, i)] += ridge);
+        let cross = DMatrix::from_fn(free, size - free, |i, j| scaled(i, free + j));
+        let explained = own
+            .cholesky()
+            .map_or_else(|| 0.0 * &cross, |c| c.solve(&cross));
+        let left = cross.transpose() * explained;
+        DMatrix::from_fn(size - free, size - free, |i, j| {
+            let (i, j, left) = (free + i, free + j, left[(i, j)]);
+            (scaled(i, j) - left) * self.scale[i] * self.scale[j]
+        })
     }
 
     /// Variance of what all folds give over the squares of what each leaves.

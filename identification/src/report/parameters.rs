@@ -4,6 +4,7 @@
 //! deflection and gap from the free run where that decided, gap, stiffness and pitch error from
 //! motor − load where there is a load scale.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use axis_model::EffectName::{self, TorqueRipple};
@@ -113,7 +114,12 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
             .map(|gap| ("backlash_gap", known(gap, length.into()))),
     );
     let extended = &findings.models.extended;
-    if matches!(extended.bristle, Some(Bristle::Dahl(_))) {
+    let is_of_its_law = match extended.bristle {
+        Some(Bristle::Dahl(_)) => true,
+        Some(Bristle::Slip(_)) => told.elements.is_some(),
+        None => false,
+    };
+    if is_of_its_law {
         own.push((DEFLECTION, known(told.deflection, length.into())));
         let bristle = told.bristle_damping;
         if bristle.value > bristle.half_width {
@@ -136,6 +142,17 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
         ));
     }
     own
+}
+
+/// The bristle of the extended model; that of the load's motion where elements slip there.
+pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>> {
+    let own = findings.models.extended.bristle.as_ref()?;
+    let told = findings.stages.difference.as_ref();
+    let told = told.and_then(|difference| difference.by_the_load.as_ref());
+    let elements = told.and_then(|told| told.elements.clone());
+    Some(elements.map_or(Cow::Borrowed(own), |elements| {
+        Cow::Owned(Bristle::Slip(elements))
+    }))
 }
 
 /// Effects beside which Coulomb and viscous friction are those of the load alone: none of them is a

@@ -32,6 +32,11 @@ impl Steps {
         }
     }
 
+    /// Number of rows.
+    pub(super) const fn len(&self) -> usize {
+        self.steps.len()
+    }
+
     /// A state at the rows that goes on by step and velocity of each part.
     pub(super) fn followed(&self, mut on: impl FnMut(f64, f64) -> f64) -> Vec<f64> {
         let mut state = 0.0;

@@ -11,15 +11,18 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
-use super::carried::stepped;
 use super::columns::{Apart, Way};
 use super::flanks::{Balance, Stiffness};
 use super::known::Known;
 use super::linearised::Linearised;
-use super::load::{Carried, LoadFriction, where_it_moves};
+use super::load::{Carried, where_it_moves};
+use super::refined::stepped;
+use super::rubbing::LoadFriction;
+use super::slipping;
+use crate::evidence::reversal::slip::Elements;
 
 /// What the load's motion tells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ByTheLoad {
     /// Stiffness between motor and load.
     pub stiffness: Known,
@@ -35,6 +38,8 @@ pub(crate) struct ByTheLoad {
     pub viscous: Known,
     /// Deflection of its bristle: Coulomb level over its stiffness.
     pub deflection: Known,
+    /// Elements that slip, where they take the place of its bristle.
+    pub elements: Option<Elements>,
     /// Damping of its bristle.
     pub bristle_damping: Known,
     /// Friction at rest beyond the Coulomb level.
@@ -98,8 +103,9 @@ pub(super) fn told(
     };
     let told = turning(SMALLEST_TURN)?;
     let mut others = OTHER_TURNS.into_iter();
-    let told = others.try_fold(told, |told, counts| Some(told.beside(turning(counts)?)))?;
-    Some(told.within(TIMING * apart.motion.period_s))
+    let told = others.try_fold(told, |told, counts| Some(told.beside(&turning(counts)?)))?;
+    let told = told.within(TIMING * apart.motion.period_s);
+    Some(told.slipping(slipping::elements(&apart, ways, place)))
 }
 
 /// The same, judged where the load does not rest.
@@ -117,16 +123,20 @@ fn near(
     stiffness: Known,
     motor_rubs: bool,
 ) -> Option<ByTheLoad> {
+    let Some(Way::Carried(carried)) = ways.get(place) else {
+        return None;
+    };
     let linearised = Linearised::of(apart, ways, place)?;
     let known = linearised.known();
     let LoadFriction {
         deflection,
         rise,
         velocity,
+        ..
     } = linearised.friction();
     // A step of Gauss and Newton from where the search ended.
     let of_friction = |value: f64, parameter: usize| {
-        let change = known[Carried::WIDTH + parameter];
+        let change = known[carried.width() + parameter];
         Known::new(1.0 + change.value, change.half_width).of(value)
     };
     let coulomb = known[Carried::FRICTION].times(stiffness);
@@ -141,10 +151,11 @@ fn near(
         coulomb,
         viscous: known[Carried::VISCOUS].times(stiffness),
         deflection,
+        elements: None,
         bristle_damping: bent.times(deflection.inverse()),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
-        gap: gap(&linearised.others, &known[Linearised::OTHERS..]),
+        gap: gap(&linearised.others, &known[linearised.others_from()..]),
     })
 }
 
@@ -163,8 +174,16 @@ impl ByTheLoad {
         }
     }
 
+    /// The same with elements that slip: what they leave open of the deflection beside its scale.
+    fn slipping(mut self, elements: Option<Elements>) -> Self {
+        let by_folds = elements.as_ref().map(Elements::known_deflection);
+        let open = by_folds.map_or(0.0, |deflection| deflection.half_width);
+        self.deflection = self.deflection.within(open);
+        Self { elements, ..self }
+    }
+
     /// The same, as uncertain as what else could be told is different.
-    fn beside(self, other: Self) -> Self {
+    fn beside(self, other: &Self) -> Self {
         let gap = self.gap.zip(other.gap);
         Self {
             damping: self.damping.beside(other.damping),
@@ -211,7 +230,7 @@ mod tests {
     fn masses_screw_and_friction_are_those_of_the_axis() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
-        let ways = instead(&apart, &WAYS, UNIT).unwrap();
+        let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let told = told(&apart, &ways, 1, SMALLEST).unwrap();
         let wanted = [
             (told.stiffness, STIFFNESS, 0.005),

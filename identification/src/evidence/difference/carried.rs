@@ -10,13 +10,13 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
-use axis_model::EffectName;
-
 use super::columns::{Apart, Way};
 use super::flanks::Balance;
-use super::linearised::Linearised;
-use super::load::{Carried, LoadFriction, LoadMotion};
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, GAP_FACTOR};
+use super::load::{Carried, LoadMotion, More};
+use super::refined::{between_refined_flanks, stepped};
+use super::rubbing::{Law, LoadFriction};
+use super::slipping::by_another_law;
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::descend;
@@ -33,14 +33,6 @@ const RISE: f64 = 0.3;
 /// Rounds of descents over the three, each with half the steps of the one before.
 const ROUNDS: i32 = 2;
 
-/// Most steps of Gauss and Newton, from where the descents end.
-const MOST_STEPS: usize = 5;
-/// Part of the squares that a step leaves where no further one is worth it.
-const SETTLED: f64 = 0.999;
-
-/// Rounds in which the width of a gap settles: what it is off by falls to less than a third in
-/// each.
-const FLANK_ROUNDS: usize = 5;
 /// Of what a wind-up leaves of the effort at least this part is left where its parts are free. Of
 /// machines with gaps of 100 µm whose flanks strike it is 0.84 and more, without strikes 0.99.
 /// Where a gap went into the friction it is 0.27 and less: what is swallowed unseen is less than
@@ -70,6 +62,7 @@ fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
         flanks,
         strike: unit * apart.motion.period_s,
         smallest_turn: 0.0,
+        more: More::default(),
     }
 }
 
@@ -82,6 +75,7 @@ fn start(unit: f64, left: &(dyn Fn(LoadFriction) -> f64 + Sync)) -> LoadFriction
             deflection,
             rise: RISE,
             velocity: velocity * unit,
+            law: Law::Dahl,
         })
     };
     let tried: Vec<LoadFriction> = deflections.into_iter().flat_map(at).collect();
@@ -120,8 +114,9 @@ fn descended(
 }
 
 /// The same ways with wind-up by the load's motion in the place of that by the effort, where that
-/// leaves less, can be, and is in the effort as well.
-pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<Way>> {
+/// leaves less, can be, and is in the effort as well. Its friction is a bristle unless that leaves
+/// more than so much, rms, and another law less.
+pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64, enough: f64) -> Option<Vec<Way>> {
     let place = ways
         .iter()
         .position(|way| matches!(way, Way::WindUp { .. } | Way::HalfOf { .. }))?;
@@ -132,61 +127,14 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64) -> Option<Vec<
     let apart = &apart.where_known(&changed);
     let changed = between_refined_flanks(apart, changed);
     let changed = stepped(apart, changed, place);
+    let changed = if apart.rms_um(&apart.fit(&changed)) > 1.0e6 * enough {
+        by_another_law(apart, changed, place)
+    } else {
+        changed
+    };
     let gain = Gain::of(&apart.cross_validate(ways), &apart.cross_validate(&changed));
     let is_better = gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T;
     (is_better && is_in_effort(apart, &changed, place)).then_some(changed)
-}
-
-/// The same ways with flanks as far apart as motor − load says. The balance of the motor's forces
-/// finds them through the noise of the effort; beside a wind-up without noise the factor of the
-/// way across the gap tells how much wider they stand, and comes to one.
-fn between_refined_flanks(apart: &Apart<'_>, mut ways: Vec<Way>) -> Vec<Way> {
-    for _ in 0..FLANK_ROUNDS {
-        let fitted = apart.fit(&ways);
-        let Some((Way::Flanks(flanks), own)) = fitted.of(EffectName::Backlash) else {
-            break;
-        };
-        if !GAP_FACTOR.contains(&own[0]) {
-            break;
-        }
-        let wider = flanks.wider_by(own[0]);
-        for way in &mut ways {
-            *way = match *way {
-                Way::Flanks(_) => Way::Flanks(wider),
-                Way::Carried(carried) => Way::Carried(Carried {
-                    flanks: Some(wider),
-                    ..carried
-                }),
-                other => other,
-            };
-        }
-    }
-    ways
-}
-
-/// The same ways with the bristle that leaves least (Gauss and Newton): a descent of one parameter
-/// after the other ends early where rise and velocity go together.
-pub(super) fn stepped(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
-    let apart = &apart.where_known(&ways);
-    let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
-    let mut before = left(&ways);
-    for _ in 0..MOST_STEPS {
-        let Some(moved) = Linearised::of(apart, &ways, place).and_then(|near| near.step()) else {
-            break;
-        };
-        let mut changed = ways.clone();
-        changed[place] = Way::Carried(moved);
-        let after = left(&changed);
-        if after >= before {
-            break;
-        }
-        let is_settled = after > SETTLED * before;
-        (ways, before) = (changed, after);
-        if is_settled {
-            break;
-        }
-    }
-    ways
 }
 
 /// Whether the effort has a wind-up in it: as well as each of its parts were it free.
@@ -218,6 +166,7 @@ pub(super) mod tests {
         deflection: 20.0e-6,
         rise: 0.4,
         velocity: 4.0e-3,
+        law: Law::Dahl,
     };
     pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;
     pub(in crate::evidence::difference) const STIFFNESS: f64 = 5.0e6;
@@ -225,12 +174,24 @@ pub(super) mod tests {
     /// 60 kg with 25 N and 200 N s/m behind 5 N/µm and 30 kg, 4 N of noise in the effort; `more` is
     /// what motor − load has beside the wind-up, by the bend.
     pub(in crate::evidence::difference) fn axis(more: impl Fn(f64) -> f64) -> Axis {
+        rubbed(FRICTION, 0.0, more)
+    }
+
+    /// The same with such a friction of the load, and so much more viscous friction forward than
+    /// backward.
+    pub(in crate::evidence::difference) fn rubbed(
+        friction: LoadFriction,
+        by_direction: f64,
+        more: impl Fn(f64) -> f64,
+    ) -> Axis {
         let load = two_sines(6000);
         let of = |x: &[f64]| Derivatives::new(x, 1.0e-3, EffortHold::Instant);
         let moved = of(&load);
-        let bend = FRICTION.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
+        let bend = friction.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
         let force = |row: usize| {
-            60.0 * moved.acceleration[row] + 200.0 * moved.velocity[row] + 25.0 * bend[row]
+            let v = moved.velocity[row];
+            let viscous = 200.0 * v + 0.5 * by_direction * v.abs();
+            60.0 * moved.acceleration[row] + viscous + 25.0 * bend[row]
         };
         let force: Vec<f64> = (0..6000).map(force).collect();
         let wound = force.iter().map(|force| force / STIFFNESS);
@@ -266,7 +227,7 @@ pub(super) mod tests {
     fn the_loads_motion_knows_the_wind_up_better_than_a_noisy_effort() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
-        let ways = instead(&apart, &WAYS, UNIT).unwrap();
+        let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let left_um = [&WAYS[..], &ways].map(|ways| apart.rms_um(&apart.fit(ways)));
         assert!(left_um[0] > 0.2, "{left_um:?}");
         assert!(left_um[1] < 0.02, "{left_um:?}");
@@ -278,6 +239,7 @@ pub(super) mod tests {
             deflection,
             rise,
             velocity,
+            ..
         } = carried.friction;
         assert!((deflection / 20.0e-6 - 1.0).abs() < 0.02, "{carried:?}");
         assert!((rise / 0.4 - 1.0).abs() < 0.15, "{carried:?}");
@@ -290,12 +252,12 @@ pub(super) mod tests {
     #[test]
     fn what_comes_with_the_direction_and_is_in_no_effort_is_no_wind_up() {
         let loose = axis(|bend| 5.0e-6 * bend);
-        assert_eq!(instead(&apart(&loose), &WAYS, UNIT), None);
+        assert_eq!(instead(&apart(&loose), &WAYS, UNIT, 0.0), None);
     }
 
     #[test]
     fn without_wind_up_there_is_nothing_to_carry() {
         let axis = axis(|_| 0.0);
-        assert_eq!(instead(&apart(&axis), &WAYS[..1], UNIT), None);
+        assert_eq!(instead(&apart(&axis), &WAYS[..1], UNIT, 0.0), None);
     }
 }

@@ -107,7 +107,7 @@ impl Way {
                 }
             }
             Self::HalfOf { .. } => 3,
-            Self::Carried(_) => Carried::WIDTH,
+            Self::Carried(carried) => carried.width(),
             Self::Pitch { .. } => 2,
         }
     }

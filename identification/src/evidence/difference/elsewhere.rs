@@ -8,7 +8,7 @@
 use axis_model::EffectName;
 
 use super::columns::{Apart, Path};
-use super::{ByTheLoad, Difference, Known, MotorLoad, settled};
+use super::{Difference, Known, MotorLoad, settled};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -51,16 +51,14 @@ impl Difference {
         self.gap = both(self.gap, other.gap);
         self.stiffness = both(self.stiffness, other.stiffness);
         self.motor_coulomb = both(self.motor_coulomb, other.motor_coulomb);
-        let told = self.by_the_load.zip(other.by_the_load);
-        self.by_the_load = told.map_or(self.by_the_load, |(own, other)| {
-            Some(ByTheLoad {
-                stiffness: widened(own.stiffness, other.stiffness),
-                damping: widened(own.damping, other.damping),
-                mass: widened(own.mass, other.mass),
-                gap: both(own.gap, other.gap),
-                ..own
-            })
-        });
+        let told = self.by_the_load.as_mut().zip(other.by_the_load.as_ref());
+        if let Some((own, other)) = told {
+            own.stiffness = widened(own.stiffness, other.stiffness);
+            own.damping = widened(own.damping, other.damping);
+            own.mass = widened(own.mass, other.mass);
+            own.gap = both(own.gap, other.gap);
+            own.deflection = widened(own.deflection, other.deflection);
+        }
         self
     }
 }

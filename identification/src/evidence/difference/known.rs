@@ -27,14 +27,18 @@ impl Known {
 
     /// The same, with a share of itself in its interval.
     pub(super) fn within_share(self, share: f64) -> Self {
-        let half_width = self.half_width.hypot(share * self.value);
+        self.within(share * self.value)
+    }
+
+    /// The same, with a half width that comes from elsewhere in its interval.
+    pub(super) fn within(self, half_width: f64) -> Self {
+        let half_width = self.half_width.hypot(half_width);
         Self { half_width, ..self }
     }
 
     /// The same, as uncertain as another value of it is different.
     pub(super) fn beside(self, other: Self) -> Self {
-        let half_width = self.half_width.hypot(self.value - other.value);
-        Self { half_width, ..self }
+        self.within(self.value - other.value)
     }
 
     /// The product with another.

@@ -3,7 +3,8 @@
 
 use super::columns::{Apart, Way};
 use super::known::Known;
-use super::load::{Carried, LoadFriction};
+use super::load::Carried;
+use super::rubbing::LoadFriction;
 use crate::fit::blocks::Blocks;
 
 /// Part of a parameter by which its columns are differentiated.
@@ -22,7 +23,9 @@ pub(super) struct Linearised {
 impl Linearised {
     /// Place of the coefficients of the other ways: after those of the wind-up, and the changes of
     /// deflection, rise and velocity.
-    pub(super) const OTHERS: usize = Carried::WIDTH + 3;
+    pub(super) const fn others_from(&self) -> usize {
+        self.carried.width() + 3
+    }
 
     /// About the wind-up at a place of such ways.
     pub(super) fn of(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Self> {
@@ -60,7 +63,7 @@ impl Linearised {
     /// The wind-up after a step of Gauss and Newton; `None` where there is none to take.
     pub(super) fn step(&self) -> Option<Carried> {
         let coefficients = self.blocks.fit().coefficients;
-        let changes: [f64; 3] = *coefficients.get(Carried::WIDTH..)?.first_chunk()?;
+        let changes: [f64; 3] = *coefficients.get(self.carried.width()..)?.first_chunk()?;
         let factors = changes.map(|change| (1.0 + change).clamp(FACTORS.0, FACTORS.1));
         let is_known = factors.iter().all(|factor| factor.is_finite());
         is_known.then(|| self.carried.scaled(factors))
@@ -91,7 +94,7 @@ mod tests {
     fn a_step_goes_to_where_nothing_is_to_be_stepped() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
-        let ways = instead(&apart, &WAYS, UNIT).unwrap();
+        let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let apart = apart.where_known(&ways);
         let Way::Carried(found) = ways[1] else {
             panic!("{ways:?}");
@@ -101,9 +104,10 @@ mod tests {
         let near = [ways[0], Way::Carried(moved)];
         let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
         assert!(left(&near) - left(&ways) < 0.05 * (left(&away) - left(&ways)));
-        let known = Linearised::of(&apart, &ways, 1).unwrap().known();
-        assert_eq!(known.len(), Linearised::OTHERS + 1);
-        for change in &known[Carried::WIDTH..Linearised::OTHERS] {
+        let linearised = Linearised::of(&apart, &ways, 1).unwrap();
+        let (known, others) = (linearised.known(), linearised.others_from());
+        assert_eq!(known.len(), others + 1);
+        for change in &known[others - 3..others] {
             assert!(change.value.abs() < 0.01, "{change:?}");
             assert!(change.half_width > 0.0, "{change:?}");
         }

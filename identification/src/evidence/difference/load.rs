@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! K·w + C·ẇ = M2·a2 + Fc2·z + d·ż + Fv2·v2 + F0
-//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·exp(−(v2/vs)²)
 //! ```
 //!
-//! w is the wind-up, z the bend of a bristle whose level falls with the velocity (LuGre: Canudas de
-//! Wit et al., IEEE TAC 40, 1995). Everything but δ, rise and vs is linear.
+//! w is the wind-up, z the bend of the load's friction ([`rubbing`](super::rubbing)): a bristle
+//! whose level falls with the velocity (LuGre: Canudas de Wit et al., IEEE TAC 40, 1995), or
+//! elements that slip. Everything but its deflections, rise and vs is linear.
 //!
 //! Units: m or rad, s, unit of the effort.
 
@@ -14,52 +14,14 @@ use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
+use super::rubbing::LoadFriction;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::mask::{unless_few, widened, without};
-use crate::simulate::friction::bend_after;
-
-/// Travel after which it is no matter how far the bristle was bent at the start, in deflections:
-/// less than a hundredth of it is left.
-const SETTLED: f64 = 5.0;
 
 /// Least share of the samples that has to be clear of strikes: else all are counted. Chosen: a loop
 /// that rings between its flanks leaves a third, and a tenth of a record still is thousands.
 const QUIET_SHARE: f64 = 0.1;
-
-/// Friction on the load over its own displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LoadFriction {
-    /// Deflection δ over which its force builds up.
-    pub deflection: f64,
-    /// How much higher the level is at rest, as a share of the Coulomb level.
-    pub rise: f64,
-    /// Velocity at which that has fallen to 1/e.
-    pub velocity: f64,
-}
-
-impl LoadFriction {
-    /// The same with deflection, rise and velocity times factors.
-    fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
-        Self {
-            deflection: self.deflection * deflection,
-            rise: self.rise * rise,
-            velocity: self.velocity * velocity,
-        }
-    }
-
-    /// The bend of the bristle along a path, in Coulomb levels.
-    pub(super) fn bend(self, path: &Steps) -> Vec<f64> {
-        let mut bend = 0.0_f64;
-        path.followed(|step, velocity| {
-            if step != 0.0 {
-                let level = 1.0 + self.rise * (-(velocity / self.velocity).powi(2)).exp();
-                bend = level * bend_after(bend / level, step, self.deflection * level);
-            }
-            bend
-        })
-    }
-}
 
 /// The load's motion at the rows.
 pub(super) struct LoadMotion {
@@ -107,6 +69,21 @@ impl LoadMotion {
         };
         let (bend, rate): (Vec<_>, Vec<_>) = self.steps.iter().map(of_piece).unzip();
         motion.all_low_passed(&[bend.concat(), rate.concat()])
+    }
+
+    /// The bend of each element of a grid, under the level of a friction, low-passed.
+    pub(super) fn slipped(
+        &self,
+        motion: &Kinematics,
+        friction: LoadFriction,
+        grid: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let of_element = |at: &f64| {
+            let pieces = self.steps.iter();
+            let bends: Vec<_> = pieces.map(|steps| friction.element(steps, *at)).collect();
+            bends.concat()
+        };
+        motion.all_low_passed(&grid.iter().map(of_element).collect::<Vec<_>>())
     }
 
     /// What does not depend on the friction's parameters.
@@ -172,11 +149,29 @@ pub(crate) struct Carried {
     pub strike: f64,
     /// Turns of the load that are smaller are none to its bristle; zero follows every count.
     pub smallest_turn: f64,
+    /// What else its friction goes with.
+    pub more: More,
+}
+
+/// What the load's friction goes with beside direction, velocity and displacement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct More {
+    /// Viscous friction is another one either way.
+    pub by_direction: bool,
+    /// The level changes along the travel.
+    pub over_position: bool,
 }
 
 impl Carried {
     /// Number of its columns.
-    pub(super) const WIDTH: usize = 5;
+    pub(super) const fn width(self) -> usize {
+        let More {
+            by_direction,
+            over_position,
+        } = self.more;
+        Self::BENDING + 1 + by_direction as usize + 2 * over_position as usize
+    }
+
     /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
     pub(super) const MASS: usize = 0;
     /// Place of that of its velocity.
@@ -189,16 +184,23 @@ impl Carried {
     pub(super) const BENDING: usize = 4;
 
     /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
-    /// wind-up, bend, rate of the bend.
+    /// wind-up, bend, rate of the bend; then what else its friction goes with: the size of the
+    /// velocity, the bend times the way from the middle of the travel and times the square of that.
     pub(super) fn columns(
         self,
         motion: &Kinematics,
         position: &[f64],
         apart: &[f64],
     ) -> Vec<Vec<f64>> {
-        let load = LoadMotion::of(motion, position, apart, self.flanks, self.smallest_turn);
+        let load = self.load(motion, position, apart);
         let rubbed = load.rubbed(motion, self.friction);
-        load.plain().into_iter().chain(rubbed).collect()
+        let more = self.more.columns(motion, &load, &rubbed[0]);
+        load.plain().into_iter().chain(rubbed).chain(more).collect()
+    }
+
+    /// The load's motion on a record.
+    pub(super) fn load(self, motion: &Kinematics, position: &[f64], apart: &[f64]) -> LoadMotion {
+        LoadMotion::of(motion, position, apart, self.flanks, self.smallest_turn)
     }
 
     /// The same with deflection, rise and velocity of its bristle times factors.
@@ -230,7 +232,7 @@ impl Carried {
         apart: &[f64],
         mask: &[bool],
     ) -> Vec<bool> {
-        let travel = SETTLED * self.friction.deflection * (1.0 + self.friction.rise);
+        let travel = self.friction.settles_after();
         let of_piece = |piece: &Range<usize>| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             let rows = piece.clone().map(move |row| {
@@ -241,6 +243,40 @@ impl Carried {
             rows.collect::<Vec<bool>>()
         };
         motion.pieces.iter().flat_map(of_piece).collect()
+    }
+}
+
+impl More {
+    /// This with one thing more, each in turn.
+    pub(super) fn others(self) -> Vec<Self> {
+        let by_direction = Self {
+            by_direction: true,
+            ..self
+        };
+        let over_position = Self {
+            over_position: true,
+            ..self
+        };
+        let mut others = vec![by_direction, over_position];
+        others.retain(|other| *other != self);
+        others
+    }
+
+    fn columns(self, motion: &Kinematics, load: &LoadMotion, bend: &[f64]) -> Vec<Vec<f64>> {
+        let mut columns = Vec::new();
+        if self.by_direction {
+            columns.push(load.velocity.iter().map(|v| v.abs()).collect());
+        }
+        if self.over_position {
+            let (low, high) = motion.span();
+            let place = |x: &f64| 2.0 * (x - low) / (high - low) - 1.0;
+            let along = |power: i32| {
+                let rows = bend.iter().zip(&motion.position_lp);
+                rows.map(|(bend, x)| bend * place(x).powi(power)).collect()
+            };
+            columns.extend([along(1), along(2)]);
+        }
+        columns
     }
 }
 
@@ -298,6 +334,7 @@ mod tests {
             flanks: None,
             strike: UNIT * 1.0e-3,
             smallest_turn: 0.0,
+            more: More::default(),
         };
         let apart = apart(&axis);
         let mask = vec![true; 6000];
@@ -305,7 +342,7 @@ mod tests {
         let known = carried.known(&axis.motion, position, apart.raw, &mask);
         let first = known.iter().position(|known| *known).unwrap();
         let load = two_sines(6000);
-        let travel = SETTLED * 20.0e-6 * 1.4;
+        let travel = FRICTION.settles_after();
         assert!((load[first] - load[0]).abs() >= travel);
         assert!((load[first - 1] - load[0]).abs() < travel);
         assert!(known[first..].iter().all(|known| *known));
@@ -343,6 +380,7 @@ mod tests {
             }),
             strike: 2.0e-6,
             smallest_turn: 0.0,
+            more: More::default(),
         };
         let mask = vec![true; 6000];
         let left_out = |apart: &dyn Fn(usize) -> f64| {

@@ -96,12 +96,24 @@ impl Elements {
         let from = (FROM * about).max(smallest);
         let grid = geometric(from, (TO * about).max(2.0 * from), GRID);
         let blocks = blocks(observed, fall, &grid);
-        let folds = blocks.non_negative_without_folds();
+        let folds = blocks.non_negative_beside_without_folds(0);
         let without_folds = folds.iter().map(|shares| of_shares(&grid, shares));
         Some(Self {
-            in_turn: of_shares(&grid, &blocks.non_negative())?,
+            in_turn: of_shares(&grid, &blocks.non_negative_beside(0))?,
             without_folds: without_folds.collect::<Option<Vec<_>>>()?,
             fall,
+        })
+    }
+
+    /// Elements that slip at ways and have shares, found elsewhere, with what the parts of a grid
+    /// are without each fold. Their level falls as it was found there.
+    pub(crate) fn of(grid: &[f64], folds: &[Vec<f64>], own: &[(f64, f64)]) -> Option<Self> {
+        let (ways, shares): (Vec<f64>, Vec<f64>) = own.iter().copied().unzip();
+        let without_folds = folds.iter().map(|shares| of_shares(grid, shares));
+        Some(Self {
+            in_turn: of_shares(&ways, &shares)?,
+            without_folds: without_folds.collect::<Option<Vec<_>>>()?,
+            fall: Fall::default(),
         })
     }
 
@@ -172,6 +184,17 @@ impl Elements {
         }
         sum
     }
+}
+
+/// A grid about elements that slip at ways and have shares: each, and by so many times before and
+/// after it.
+pub(crate) fn grid_about(elements: &[(f64, f64)], ratio: f64) -> Vec<f64> {
+    let near = |(at, _): &(f64, f64)| [at / ratio, *at, at * ratio];
+    let mut grid: Vec<f64> = elements.iter().flat_map(near).collect();
+    grid.sort_by(f64::total_cmp);
+    let nearer = ratio.sqrt();
+    grid.dedup_by(|next, before| *next < nearer * *before);
+    grid
 }
 
 fn deflection(elements: &[Element]) -> f64 {

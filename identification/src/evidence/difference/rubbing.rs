@@ -1,0 +1,193 @@
+//! Friction on the load over its own displacement: a bristle by Dahl's law, or elements of Maxwell
+//! slip, both under a level that falls with the velocity.
+//!
+//! ```text
+//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·exp(−(v2/vs)²)
+//! z = Σ shareᵢ zᵢ     dzᵢ/dx2 = 1/δᵢ within ±g     Σ shareᵢ/δᵢ = 1/δ
+//! ```
+//!
+//! Units: m or rad, s.
+
+use super::between_rows::Steps;
+use crate::simulate::friction::bend_after;
+
+/// Most elements.
+const ELEMENTS: usize = 16;
+
+/// Travel after which it is no matter how far a bristle was bent at the start, in deflections:
+/// less than a hundredth of it is left.
+const SETTLED: f64 = 5.0;
+
+/// Springs side by side, each of which slips at its own deflection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Slip {
+    /// Where each slips, in deflections of all, and its share of the level; the shares add up to
+    /// one, and those that are not there have none. In single precision, because ways are copied.
+    elements: [(f32, f32); ELEMENTS],
+}
+
+/// How the force builds up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Law {
+    /// One bristle.
+    Dahl,
+    /// Springs that slip.
+    Slip(Slip),
+}
+
+/// Friction on the load over its own displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LoadFriction {
+    /// Deflection δ over which its force builds up: Coulomb level over stiffness.
+    pub deflection: f64,
+    /// How much higher the level is at rest, as a share of the Coulomb level.
+    pub rise: f64,
+    /// Velocity at which that has fallen to 1/e.
+    pub velocity: f64,
+    /// How the force builds up.
+    pub law: Law,
+}
+
+impl LoadFriction {
+    /// The same with deflection, rise and velocity times factors.
+    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
+        Self {
+            deflection: self.deflection * deflection,
+            rise: self.rise * rise,
+            velocity: self.velocity * velocity,
+            law: self.law,
+        }
+    }
+
+    /// Travel after which it is no matter how far all was bent at the start.
+    pub(super) fn settles_after(self) -> f64 {
+        let last = self.elements().last().map(|(at, _)| 2.0 * at);
+        last.unwrap_or(SETTLED * self.deflection) * (1.0 + self.rise)
+    }
+
+    /// The same, with elements that slip at such ways and have parts of the force as large as
+    /// these; the largest ones where there are too many, `None` where there are none.
+    pub(super) fn slipping(self, at: &[f64], parts: &[f64]) -> Option<Self> {
+        let all = at.iter().copied().zip(parts.iter().copied());
+        let mut all: Vec<(f64, f64)> = all.filter(|(_, part)| *part > 0.0).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all.truncate(ELEMENTS);
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let sum: f64 = all.iter().map(|(_, part)| part).sum();
+        let deflection = sum / all.iter().map(|(at, part)| part / at).sum::<f64>();
+        let single = |(at, part): &(f64, f64)| ((at / deflection) as f32, (part / sum) as f32);
+        let element = |i: usize| all.get(i).map(single);
+        let law = Law::Slip(Slip {
+            elements: std::array::from_fn(|i| element(i).unwrap_or_default()),
+        });
+        let slipping = Self {
+            deflection,
+            law,
+            ..self
+        };
+        (sum > 0.0).then_some(slipping)
+    }
+
+    /// The elements: where each slips, and its share.
+    pub(super) fn elements(self) -> Vec<(f64, f64)> {
+        let Law::Slip(Slip { elements }) = self.law else {
+            return Vec::new();
+        };
+        let there = elements.into_iter().filter(|(_, share)| *share > 0.0);
+        there
+            .map(|(at, share)| (f64::from(at) * self.deflection, f64::from(share)))
+            .collect()
+    }
+
+    /// The level at a velocity, in Coulomb levels.
+    fn level(self, velocity: f64) -> f64 {
+        1.0 + self.rise * (-(velocity / self.velocity).powi(2)).exp()
+    }
+
+    /// The bend along a path, in Coulomb levels.
+    pub(super) fn bend(self, path: &Steps) -> Vec<f64> {
+        if self.law == Law::Dahl {
+            return self.bristle(path);
+        }
+        let mut sum = vec![0.0; path.len()];
+        for (at, share) in self.elements() {
+            let own = self.element(path, at);
+            sum.iter_mut()
+                .zip(own)
+                .for_each(|(sum, own)| *sum += share * own);
+        }
+        sum
+    }
+
+    fn bristle(self, path: &Steps) -> Vec<f64> {
+        let mut bend = 0.0_f64;
+        path.followed(|step, velocity| {
+            if step != 0.0 {
+                let level = self.level(velocity);
+                bend = level * bend_after(bend / level, step, self.deflection * level);
+            }
+            bend
+        })
+    }
+
+    /// Bend of one element that slips after a way, in Coulomb levels.
+    pub(super) fn element(self, path: &Steps, at: f64) -> Vec<f64> {
+        let mut bend = 0.0_f64;
+        path.followed(|step, velocity| {
+            if step != 0.0 {
+                let level = self.level(velocity);
+                bend = (bend + step / at).clamp(-level, level);
+            }
+            bend
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BRISTLE: LoadFriction = LoadFriction {
+        deflection: 10.0,
+        rise: 0.0,
+        velocity: 1.0,
+        law: Law::Dahl,
+    };
+
+    #[test]
+    fn elements_have_the_stiffness_of_all_and_shares_of_one() {
+        let slipping = BRISTLE
+            .slipping(&[2.0, 4.0, 8.0], &[3.0, 0.0, 1.0])
+            .unwrap();
+        // 0.75/2 + 0.25/8.
+        assert!((1.0 / slipping.deflection - 0.40625).abs() < 1.0e-12);
+        let twice = slipping.scaled([2.0, 1.0, 1.0]).elements();
+        for (element, wanted) in twice.iter().zip([(4.0, 0.75), (16.0, 0.25)]) {
+            assert!((element.0 - wanted.0).abs() < 1.0e-5, "{element:?}");
+            assert!((element.1 - wanted.1).abs() < 1.0e-6, "{element:?}");
+        }
+        assert!((slipping.settles_after() - 16.0).abs() < 1.0e-5);
+        assert_eq!(BRISTLE.slipping(&[2.0], &[0.0]), None);
+        // The smallest of too many go.
+        let parts: Vec<f64> = (1..=ELEMENTS + 1).map(|part| part as f64).collect();
+        let many = BRISTLE.slipping(&parts, &parts).unwrap().elements();
+        assert_eq!((many.len(), many[0].0.round()), (ELEMENTS, 2.0));
+    }
+
+    #[test]
+    fn elements_slip_one_after_the_other_and_back_over_twice_the_way() {
+        let slipping = BRISTLE.slipping(&[2.0, 8.0], &[1.0, 1.0]).unwrap();
+        let there: Vec<f64> = (0..=10).map(f64::from).collect();
+        let back = there.iter().rev().skip(1).copied();
+        let path: Vec<f64> = there.iter().copied().chain(back).collect();
+        let bend = slipping.bend(&Steps::of(&path, &vec![0.0; path.len()], 1.0));
+        let near = |row: usize, wanted: f64| {
+            assert!((bend[row] - wanted).abs() < 1.0e-6, "{row}: {}", bend[row]);
+        };
+        near(1, 0.25 + 0.0625);
+        near(2, 0.5 + 0.125);
+        near(10, 1.0);
+        near(14, -0.5 + 0.25);
+        near(20, -0.5 - 0.125);
+    }
+}

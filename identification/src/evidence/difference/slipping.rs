@@ -1,0 +1,176 @@
+//! Maxwell slip of the load in the place of its bristle, and what else its friction goes with.
+//!
+//! Where elements slip is a grid, so their shares are a convex fit beside everything else that is
+//! linear. Level and scale of the grid follow by steps of Gauss and Newton, in turn with it, and
+//! the grid becomes finer about the elements that have a share.
+
+use super::columns::{Apart, Way};
+use super::linearised::Linearised;
+use super::load::Carried;
+use super::refined::{between_refined_flanks, stepped};
+use crate::evidence::reversal::slip::{Elements, grid_about};
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
+use crate::fit::blocks::{Blocks, Gain};
+use crate::model::effects::geometric;
+
+/// The grid about the deflection of the bristle, as shares of it.
+const FROM: f64 = 0.05;
+const TO: f64 = 10.0;
+/// Number of its ways, and how far apart they are.
+const GRID: u32 = 24;
+const RATIO: f64 = 1.26;
+/// Rounds in which elements and level settle; in each the grid is half as wide as before.
+const ROUNDS: usize = 4;
+
+/// The same ways with a wind-up whose friction has another law than a bristle alone, where that
+/// leaves less on held-out blocks.
+pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
+    let slipping = |ways: Vec<Way>| {
+        let changed = with_elements(apart, &ways, place);
+        let changed = changed.filter(|changed| is_better(apart, &ways, changed));
+        changed.unwrap_or(ways)
+    };
+    let first = slipping(ways);
+    let more = with_more(apart, first.clone(), place);
+    if more == first {
+        return first;
+    }
+    let ways = between_refined_flanks(apart, slipping(more));
+    stepped(apart, ways, place)
+}
+
+/// Whether ways leave less than others on held-out blocks, where the states of both are known.
+fn is_better(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> bool {
+    let apart = apart.where_known(before).where_known(after);
+    let gain = Gain::of(&apart.cross_validate(before), &apart.cross_validate(after));
+    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+}
+
+/// The same ways with what else the load's friction goes with, one thing after the other.
+fn with_more(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
+    while let Some(better) = with_one_more(apart, &ways, place) {
+        ways = better;
+    }
+    ways
+}
+
+fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let carried = carried(ways, place)?;
+    let others = carried.more.others().into_iter();
+    let mut changed = others.map(|more| {
+        let changed = instead(ways, place, Carried { more, ..carried });
+        stepped(apart, between_refined_flanks(apart, changed), place)
+    });
+    changed.find(|changed| is_better(apart, ways, changed))
+}
+
+fn carried(ways: &[Way], place: usize) -> Option<Carried> {
+    match ways.get(place)? {
+        Way::Carried(carried) => Some(*carried),
+        _ => None,
+    }
+}
+
+fn instead(ways: &[Way], place: usize, carried: Carried) -> Vec<Way> {
+    let mut changed = ways.to_vec();
+    changed[place] = Way::Carried(carried);
+    changed
+}
+
+/// The same ways with the elements that leave least about the deflection of a wind-up.
+fn with_elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let mut changed = ways.to_vec();
+    let mut ratio = RATIO;
+    for round in 0..ROUNDS {
+        let own = carried(&changed, place)?;
+        let about = own.friction.deflection;
+        let grid = if round == 0 {
+            geometric(FROM * about, TO * about, GRID)
+        } else {
+            ratio = ratio.sqrt();
+            grid_about(&own.friction.elements(), ratio)
+        };
+        let (blocks, free) = blocks(apart, &changed, place, &grid)?;
+        let parts = blocks.non_negative_beside(free);
+        let friction = own.friction.slipping(&grid, &parts)?;
+        changed = instead(&changed, place, Carried { friction, ..own });
+        let moved = Linearised::of(&apart.where_known(&changed), &changed, place)?.step();
+        changed = moved.map_or(changed.clone(), |moved| instead(&changed, place, moved));
+    }
+    Some(stepped(apart, changed, place))
+}
+
+/// The elements of a wind-up with what they are without each fold of the record.
+pub(super) fn elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Elements> {
+    let own = carried(ways, place)?.friction.elements();
+    if own.is_empty() {
+        return None;
+    }
+    let grid = grid_about(&own, RATIO.powf(0.5_f64.powi(ROUNDS as i32)));
+    let (blocks, free) = blocks(apart, ways, place, &grid)?;
+    Elements::of(&grid, &blocks.non_negative_beside_without_folds(free), &own)
+}
+
+/// Gram matrices of all that is free beside the elements of a grid, then of these; and how many
+/// columns are free.
+fn blocks(apart: &Apart<'_>, ways: &[Way], place: usize, grid: &[f64]) -> Option<(Blocks, usize)> {
+    let carried = carried(ways, place)?;
+    let mut design = apart.columns(Way::Carried(carried));
+    design.remove(Carried::FRICTION);
+    let others = ways.iter().enumerate().filter(|(other, _)| *other != place);
+    design.extend(others.flat_map(|(_, way)| apart.columns(*way)));
+    let free = design.len();
+    let load = carried.load(apart.motion, apart.path.position, apart.raw);
+    design.extend(load.slipped(apart.motion, carried.friction, grid));
+    let apart = apart.where_known(ways);
+    Some((apart.blocks_of(&design, &apart.target), free))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::difference::carried::instead as carried_instead;
+    use crate::evidence::difference::carried::tests::{FRICTION, UNIT, WAYS, apart, axis, rubbed};
+
+    #[test]
+    fn elements_and_another_viscous_friction_either_way_are_found() {
+        let at = [4.0e-6, 20.0e-6, 60.0e-6];
+        let truth = FRICTION.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
+        let axis = rubbed(truth, 60.0, |_| 0.0);
+        let apart = apart(&axis);
+        let ways = carried_instead(&apart, &WAYS, UNIT, 0.0).unwrap();
+        let found = carried(&ways, 1).unwrap();
+        assert!(
+            found.more.by_direction && !found.more.over_position,
+            "{found:?}"
+        );
+        let told = elements(&apart, &ways, 1).unwrap();
+        let deflection = told.known_deflection();
+        let off = (deflection.value / truth.deflection - 1.0).abs();
+        assert!(off < 0.05, "{deflection:?} {}", truth.deflection);
+        // The force after any way from rest.
+        for way in [1.0e-6, 4.0e-6, 10.0e-6, 20.0e-6, 40.0e-6] {
+            let wanted: f64 = truth
+                .elements()
+                .iter()
+                .map(|(at, share)| share * (way / at).min(1.0))
+                .sum();
+            let force = told.known_force(way).value;
+            assert!((force - wanted).abs() < 0.03, "{way}: {force} {wanted}");
+        }
+        let own = apart.fit(&ways);
+        let (_, own) = own.at(1).unwrap();
+        let by_direction = own[Carried::BENDING + 1] / own[Carried::VISCOUS];
+        assert!((by_direction - 30.0 / 200.0).abs() < 0.02, "{by_direction}");
+    }
+
+    #[test]
+    fn a_bristle_stays_one_however_closely_it_is_asked() {
+        let axis = axis(|_| 0.0);
+        let apart = apart(&axis);
+        let ways = carried_instead(&apart, &WAYS, UNIT, 0.0).unwrap();
+        let found = carried(&ways, 1).unwrap();
+        assert!(found.friction.elements().is_empty(), "{found:?}");
+        assert_eq!(elements(&apart, &ways, 1), None);
+    }
+}
