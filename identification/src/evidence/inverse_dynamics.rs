@@ -9,6 +9,7 @@ use crate::evidence::difference::Known;
 use crate::evidence::fast_motion;
 use crate::evidence::reversal;
 use crate::evidence::reversal::bristle::Bristle;
+use crate::evidence::thresholds::METHOD;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::{self, Pair};
@@ -19,10 +20,6 @@ use crate::record::dataset::Dataset;
 
 /// Step of the derivative by a deflection, as a share of it.
 const DEFLECTION_STEP: f64 = 0.02;
-/// A coefficient is good to this share of itself at best: so far derivatives, hold and low-pass of
-/// a record make the force that acted. Of made machines, with noise that would tell them to a tenth
-/// of that, it is what they are off by (2026-11-25).
-const METHOD: f64 = 1.0e-3;
 /// As far as a deflection is moved to see what becomes of the coefficients, as a share of it.
 const MOST_OF_A_DEFLECTION: f64 = 0.5;
 

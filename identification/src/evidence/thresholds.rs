@@ -337,3 +337,10 @@ pub(crate) const SHARPENED_WORTH: f64 = 0.99;
 /// acceleration explains most of it (0.03 on a made clock that is off by a fifth of its period).
 /// One that jitter spoils makes it 24 times as large (`bldc_cogging`).
 pub(crate) const FULL_BAND: f64 = 0.5;
+
+// ---- Intervals: `inverse_dynamics`, `difference` ----
+
+/// A coefficient is good to this share of itself at best: so far derivatives, hold and low-pass of
+/// a record make the force that acted. Of made machines, with noise that would tell them to a tenth
+/// of that, it is what they are off by (2026-11-25).
+pub(crate) const METHOD: f64 = 1.0e-3;

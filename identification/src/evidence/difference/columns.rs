@@ -352,6 +352,15 @@ impl<'a> Apart<'a> {
             .collect()
     }
 
+    /// The same, judged where the states of such ways are known and no flanks strike.
+    pub(super) fn without_strikes(&self, ways: &[Way]) -> Self {
+        Self {
+            target: self.target.clone(),
+            mask: self.where_quiet(ways),
+            ..*self
+        }
+    }
+
     /// The rows at which the states of such ways are known and no flanks strike.
     fn where_quiet(&self, ways: &[Way]) -> Vec<bool> {
         let mut mask = self.where_known(ways).mask;

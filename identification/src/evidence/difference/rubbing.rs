@@ -14,6 +14,10 @@ use crate::simulate::friction::bend_after;
 /// Most elements.
 const ELEMENTS: usize = 16;
 
+/// An element with a smaller share of the level is none: a share of a two-thousandth that slips after a
+/// fortieth of the others' ways would make a hundredth of the stiffness.
+const SMALLEST_SHARE: f64 = 5.0e-3;
+
 /// Travel after which it is no matter how far a bristle was bent at the start, in deflections:
 /// less than a hundredth of it is left.
 const SETTLED: f64 = 5.0;
@@ -69,7 +73,8 @@ impl LoadFriction {
     /// these; the largest ones where there are too many, `None` where there are none.
     pub(super) fn slipping(self, at: &[f64], parts: &[f64]) -> Option<Self> {
         let all = at.iter().copied().zip(parts.iter().copied());
-        let mut all: Vec<(f64, f64)> = all.filter(|(_, part)| *part > 0.0).collect();
+        let least = SMALLEST_SHARE * parts.iter().sum::<f64>();
+        let mut all: Vec<(f64, f64)> = all.filter(|(_, part)| *part > least).collect();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         all.truncate(ELEMENTS);
         all.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -16,15 +16,20 @@ use crate::model::effects::geometric;
 /// The grid about the deflection of the bristle, as shares of it.
 const FROM: f64 = 0.05;
 const TO: f64 = 10.0;
-/// Number of its ways, and how far apart they are.
+/// Number of its ways: one is a quarter more than the one before.
 const GRID: u32 = 24;
-const RATIO: f64 = 1.26;
-/// Rounds in which elements and level settle; in each the grid is half as wide as before.
-const ROUNDS: usize = 4;
+/// How much longer the next way of the grid is, in the rounds that follow: an element walks along a
+/// grid before it becomes finer.
+const RATIOS: [f64; 11] = [
+    1.12, 1.12, 1.12, 1.06, 1.06, 1.06, 1.03, 1.03, 1.03, 1.015, 1.015,
+];
+/// The finest one.
+const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 
 /// The same ways with a wind-up whose friction has another law than a bristle alone, where that
 /// leaves less on held-out blocks.
 pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
+    let apart = &apart.without_strikes(&ways);
     let slipping = |ways: Vec<Way>| {
         let changed = with_elements(apart, &ways, place);
         let changed = changed.filter(|changed| is_better(apart, &ways, changed));
@@ -80,22 +85,18 @@ fn instead(ways: &[Way], place: usize, carried: Carried) -> Vec<Way> {
 /// The same ways with the elements that leave least about the deflection of a wind-up.
 fn with_elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
     let mut changed = ways.to_vec();
-    let mut ratio = RATIO;
-    for round in 0..ROUNDS {
+    let about = carried(ways, place)?.friction.deflection;
+    let mut grid = geometric(FROM * about, TO * about, GRID);
+    for ratio in RATIOS {
         let own = carried(&changed, place)?;
-        let about = own.friction.deflection;
-        let grid = if round == 0 {
-            geometric(FROM * about, TO * about, GRID)
-        } else {
-            ratio = ratio.sqrt();
-            grid_about(&own.friction.elements(), ratio)
-        };
         let (blocks, free) = blocks(apart, &changed, place, &grid)?;
         let parts = blocks.non_negative_beside(free);
         let friction = own.friction.slipping(&grid, &parts)?;
         changed = instead(&changed, place, Carried { friction, ..own });
         let moved = Linearised::of(&apart.where_known(&changed), &changed, place)?.step();
-        changed = moved.map_or(changed.clone(), |moved| instead(&changed, place, moved));
+        let moved = moved.unwrap_or(Carried { friction, ..own });
+        changed = instead(&changed, place, moved);
+        grid = grid_about(&moved.friction.elements(), ratio);
     }
     Some(stepped(apart, changed, place))
 }
@@ -106,7 +107,7 @@ pub(super) fn elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<
     if own.is_empty() {
         return None;
     }
-    let grid = grid_about(&own, RATIO.powf(0.5_f64.powi(ROUNDS as i32)));
+    let grid = grid_about(&own, FINEST);
     let (blocks, free) = blocks(apart, ways, place, &grid)?;
     Elements::of(&grid, &blocks.non_negative_beside_without_folds(free), &own)
 }
