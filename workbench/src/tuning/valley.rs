@@ -19,8 +19,9 @@ use crate::progress;
 const MOST_CIRCLES: u64 = 30;
 /// First steps of the search in ln(way) and ln(T).
 const STEPS: [f64; 2] = [0.12, 0.15];
-/// Time constants that make sense: from a tenth of a cycle to longer than any reversal.
-const SENSIBLE_S: Range<f64> = 1.0e-4..10.0;
+/// Time constants that make sense: from a tenth of a cycle to the longest that the drive holds, which
+/// is longer than any reversal. A burst over which a loop rings would lead beyond it.
+const SENSIBLE_S: Range<f64> = 1.0e-4..2.1;
 /// The largest step of speed that makes sense: as fast as the fastest of our axes moves.
 const SENSIBLE_M_PER_S: f64 = 0.5;
 /// What a pulse costs for which no circle is run: more than any burst.
@@ -43,10 +44,12 @@ pub(super) struct Search<'a, 'b, 'm> {
 impl Search<'_, '_, '_> {
     /// The best pulse that circles find from a start.
     pub(super) fn run(self, start: Pulse) -> Outcome<Pulse> {
-        let corner = vec![
-            (start.height_m_per_s * start.time_constant_s).ln(),
-            start.time_constant_s.ln(),
-        ];
+        // All corners have to be pulses that can be tried.
+        let time_constant_s = start
+            .time_constant_s
+            .clamp(2.0 * SENSIBLE_S.start, 0.5 * SENSIBLE_S.end);
+        let way = start.height_m_per_s * start.time_constant_s;
+        let corner = vec![way.ln(), time_constant_s.ln()];
         let moved = |place: usize| {
             let mut corner = corner.clone();
             corner[place] += STEPS[place];
@@ -112,4 +115,27 @@ impl CostFunction for &Search<'_, '_, '_> {
 /// No circle is run for a pulse outside of this.
 fn makes_sense(pulse: &Pulse) -> bool {
     SENSIBLE_S.contains(&pulse.time_constant_s) && pulse.height_m_per_s.abs() <= SENSIBLE_M_PER_S
+}
+
+#[cfg(test)]
+mod tests {
+    use servo::objects::{Parameter, TABLE};
+
+    use super::*;
+
+    #[test]
+    fn every_time_constant_that_is_tried_can_be_downloaded() {
+        let mut entries = TABLE.iter();
+        let entry = entries.find(|entry| entry.parameter == Parameter::PulseTime);
+        let entry = entry.unwrap();
+        let most_s = f64::from(entry.max) / entry.unit.per_si as f64;
+        let tried = |time_constant_s: f64| {
+            makes_sense(&Pulse {
+                height_m_per_s: 1.0e-3,
+                time_constant_s,
+                start_delay_s: 0.0,
+            })
+        };
+        assert!(tried(0.05) && tried(2.0) && !tried(most_s), "{most_s}");
+    }
 }
