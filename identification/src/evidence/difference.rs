@@ -44,6 +44,7 @@ pub(crate) use self::elsewhere::elsewhere;
 use self::flanks::{Balance, Judged};
 pub(crate) use self::known::Known;
 use self::left::Left;
+pub(crate) use self::load::More;
 use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{

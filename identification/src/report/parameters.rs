@@ -11,7 +11,7 @@ use axis_model::EffectName::{self, TorqueRipple};
 use axis_model::vocabulary::{Backlash, Compliance, PitchError, Presliding};
 use axis_model::{Effect, Estimate};
 
-use crate::evidence::difference::{ByTheLoad, Difference, Known};
+use crate::evidence::difference::{ByTheLoad, Difference, Known, More};
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::slow_ripple::OrderAtReversals;
@@ -94,54 +94,73 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
         findings.dataset.effort.unit(),
         findings.dataset.kind.position_unit(),
     );
-    let known = |known: Known, unit: String| about(known.value, known.half_width, unit);
+    let stiffness = format!("{effort}/{length}");
     let mut own = vec![
         (
             "load_inertia",
-            known(told.mass, format!("{effort} s2/{length}")),
+            estimate(told.mass, &format!("{effort} s2/{length}")),
         ),
-        (
-            "compliance_stiffness",
-            known(told.stiffness, format!("{effort}/{length}")),
-        ),
+        ("compliance_stiffness", estimate(told.stiffness, &stiffness)),
         (
             "compliance_damping",
-            known(told.damping, format!("{effort} s/{length}")),
+            estimate(told.damping, &format!("{effort} s/{length}")),
         ),
     ];
-    own.extend(
-        told.gap
-            .map(|gap| ("backlash_gap", known(gap, length.into()))),
-    );
-    let extended = &findings.models.extended;
-    let is_of_its_law = match extended.bristle {
+    own.extend(told.gap.map(|gap| ("backlash_gap", estimate(gap, length))));
+    own.extend(bristle_of_the_load(findings, told));
+    own.extend(sliding_of_the_load(findings, told));
+    own
+}
+
+/// Deflection and damping of the bristle, where the model has one of that law.
+fn bristle_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, Estimate)> {
+    let length = findings.dataset.kind.position_unit();
+    let is_of_its_law = match findings.models.extended.bristle {
         Some(Bristle::Dahl(_)) => true,
         Some(Bristle::Slip(_)) => told.elements.is_some(),
         None => false,
     };
-    if is_of_its_law {
-        own.push((DEFLECTION, known(told.deflection, length.into())));
-        let bristle = told.bristle_damping;
-        if bristle.value > bristle.half_width {
-            let unit = format!("{effort} s/{length}");
-            own.push(("presliding_damping", known(bristle, unit)));
-        }
+    if !is_of_its_law {
+        return Vec::new();
     }
-    if extended.fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
-        own.push(("stribeck_excess", known(told.excess, effort.into())));
-        own.push((
-            "stribeck_velocity",
-            known(told.velocity, format!("{length}/s")),
-        ));
+    let damping = told.bristle_damping;
+    let unit = format!("{} s/{length}", findings.dataset.effort.unit());
+    let damping = (damping.value > damping.half_width)
+        .then(|| ("presliding_damping", estimate(damping, &unit)));
+    let deflection = (DEFLECTION, estimate(told.deflection, length));
+    [Some(deflection), damping].into_iter().flatten().collect()
+}
+
+/// Friction of a load that slides. Along the travel the Coulomb level of the model is another one
+/// than that of its middle.
+fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, Estimate)> {
+    let (effort, length) = (
+        findings.dataset.effort.unit(),
+        findings.dataset.kind.position_unit(),
+    );
+    let damping = format!("{effort} s/{length}");
+    let fitted = &findings.models.extended.fitted;
+    let mut own = Vec::new();
+    if fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
+        let velocity = estimate(told.velocity, &format!("{length}/s"));
+        own.push(("stribeck_excess", estimate(told.excess, effort)));
+        own.push(("stribeck_velocity", velocity));
     }
-    if !told.motor_rubs && has_usual_friction(extended.fitted.model()) {
-        own.push(("coulomb", known(told.coulomb, effort.into())));
-        own.push((
-            "viscous",
-            known(told.viscous, format!("{effort} s/{length}")),
-        ));
+    if told.motor_rubs || !is_told(fitted.model(), told.more) {
+        return own;
     }
+    if !told.more.over_position {
+        own.push(("coulomb", estimate(told.coulomb, effort)));
+    }
+    own.push(("viscous", estimate(told.viscous, &damping)));
+    let has_both = fitted.of(EffectName::ViscousAsymmetry).is_some();
+    let asymmetry = told.asymmetry.filter(|_| has_both);
+    own.extend(asymmetry.map(|asymmetry| ("viscous_asymmetry", estimate(asymmetry, &damping))));
     own
+}
+
+fn estimate(known: Known, unit: &str) -> Estimate {
+    about(known.value, known.half_width, unit.into())
 }
 
 /// The bristle of the extended model; that of the load's motion where elements slip there.
@@ -168,9 +187,12 @@ const BESIDE_USUAL: [EffectName; 8] = [
     EffectName::LoggedLate,
 ];
 
-/// Whether a model has Coulomb and viscous friction, and no other but a Stribeck fall.
-fn has_usual_friction(model: &Model) -> bool {
+/// Whether a model has Coulomb and viscous friction, and no other but a Stribeck fall and what else
+/// the load's motion tells.
+fn is_told(model: &Model, more: More) -> bool {
     let is_usual = |part: &Part| match part.called() {
+        Called::Effect(EffectName::ViscousAsymmetry) => more.by_direction,
+        Called::Effect(EffectName::PositionDependentFriction) => more.over_position,
         Called::Effect(name) => BESIDE_USUAL.contains(&name),
         Called::Structure(_) => part.effect.is_mass(),
     };
@@ -339,18 +361,17 @@ fn gap_of(gap: Estimate) -> Effect<Estimate> {
 fn of_the_difference(findings: &Findings<'_>, difference: &Difference) -> Vec<Effect<Estimate>> {
     let length = findings.dataset.kind.position_unit();
     let stiffness_unit = format!("{}/{length}", findings.dataset.effort.unit());
-    let known = |known: Known, unit: &str| about(known.value, known.half_width, unit.into());
-    let gap = difference.gap.map(|gap| gap_of(known(gap, length)));
+    let gap = difference.gap.map(|gap| gap_of(estimate(gap, length)));
     let compliance = difference.stiffness.map(|stiffness| {
         Effect::from(Compliance {
-            stiffness: known(stiffness, &stiffness_unit),
+            stiffness: estimate(stiffness, &stiffness_unit),
             damping: None,
         })
     });
     let pitch_errors = difference.pitch.iter().map(|(amplitude, per_length)| {
         Effect::from(PitchError {
-            amplitude: known(*amplitude, length),
-            period: known(per_length.inverse(), length),
+            amplitude: estimate(*amplitude, length),
+            period: estimate(per_length.inverse(), length),
         })
     });
     let all = gap.into_iter().chain(compliance).chain(pitch_errors);
@@ -411,12 +432,21 @@ mod tests {
     #[test]
     fn friction_of_another_law_keeps_coulomb_and_viscous_friction_with_the_effort() {
         use crate::fit::made::{found, model};
-        use EffectName::{Coulomb, FrictionDrift, Inertia, Offset, Stribeck, Viscous};
+        use EffectName::{
+            Coulomb, FrictionDrift, Inertia, Offset, Stribeck, Viscous, ViscousAsymmetry,
+        };
         let usual = model(&[Inertia, Viscous, Coulomb, Offset]);
-        assert!(has_usual_friction(&usual));
-        assert!(has_usual_friction(&usual.with(found(Stribeck, 0.02))));
-        assert!(!has_usual_friction(&usual.with(found(FrictionDrift, 2.0))));
-        assert!(!has_usual_friction(&model(&[Inertia, Coulomb, Offset])));
+        let none = More::default();
+        assert!(is_told(&usual, none));
+        assert!(is_told(&usual.with(found(Stribeck, 0.02)), none));
+        assert!(!is_told(&usual.with(found(FrictionDrift, 2.0)), none));
+        assert!(!is_told(&model(&[Inertia, Coulomb, Offset]), none));
+        let either_way = model(&[Inertia, Viscous, Coulomb, Offset, ViscousAsymmetry]);
+        let by_direction = More {
+            by_direction: true,
+            ..none
+        };
+        assert!(!is_told(&either_way, none) && is_told(&either_way, by_direction));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::columns::{Apart, Way};
 use super::flanks::{Balance, Stiffness};
 use super::known::Known;
 use super::linearised::Linearised;
-use super::load::{Carried, where_it_moves};
+use super::load::{Carried, More, where_it_moves};
 use super::refined::stepped;
 use super::rubbing::LoadFriction;
 use super::slipping;
@@ -33,10 +33,14 @@ pub(crate) struct ByTheLoad {
     pub mass: Known,
     /// Whether the motor's own side has friction beside that of the load.
     pub motor_rubs: bool,
-    /// Coulomb level of the load.
+    /// What else the load's friction goes with.
+    pub more: More,
+    /// Coulomb level of the load, in the middle of the travel.
     pub coulomb: Known,
     /// Viscous friction of the load.
     pub viscous: Known,
+    /// How much more of that it has forward than backward, halved, where that is told apart.
+    pub asymmetry: Option<Known>,
     /// Deflection of its bristle: Coulomb level over its stiffness.
     pub deflection: Known,
     /// Elements that slip, where they take the place of its bristle.
@@ -151,8 +155,11 @@ fn near(
         damping: damping.of(-1.0),
         mass: known[Carried::MASS].times(stiffness),
         motor_rubs,
+        more: carried.more,
         coulomb,
         viscous: known[Carried::VISCOUS].times(stiffness),
+        asymmetry: (carried.more.by_direction)
+            .then(|| known[Carried::BY_DIRECTION].times(stiffness)),
         deflection,
         elements: None,
         bristle_damping: bent.times(deflection.inverse()),
@@ -185,8 +192,10 @@ impl ByTheLoad {
             damping: known(self.damping),
             mass: known(self.mass),
             motor_rubs: self.motor_rubs,
+            more: self.more,
             coulomb: known(self.coulomb),
             viscous: known(self.viscous),
+            asymmetry: self.asymmetry.map(known),
             deflection: known(self.deflection),
             elements: self.elements,
             bristle_damping: known(self.bristle_damping),
@@ -206,8 +215,12 @@ impl ByTheLoad {
 
     /// The same, as uncertain as what else could be told is different.
     fn beside(self, other: &Self) -> Self {
-        let gap = self.gap.zip(other.gap);
+        let both = |own: Option<Known>, other: Option<Known>| {
+            let pair = own.zip(other);
+            pair.map_or(own, |(own, other)| Some(own.beside(other)))
+        };
         Self {
+            asymmetry: both(self.asymmetry, other.asymmetry),
             damping: self.damping.beside(other.damping),
             mass: self.mass.beside(other.mass),
             coulomb: self.coulomb.beside(other.coulomb),
@@ -216,7 +229,7 @@ impl ByTheLoad {
             bristle_damping: self.bristle_damping.beside(other.bristle_damping),
             excess: self.excess.beside(other.excess),
             velocity: self.velocity.beside(other.velocity),
-            gap: gap.map_or(self.gap, |(own, other)| Some(own.beside(other))),
+            gap: both(self.gap, other.gap),
             ..self
         }
     }

@@ -183,6 +183,9 @@ impl Carried {
     /// Place of that of the rate of the bend.
     pub(super) const BENDING: usize = 4;
 
+    /// Place of that of the size of the velocity, where that is asked.
+    pub(super) const BY_DIRECTION: usize = 5;
+
     /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
     /// wind-up, bend, rate of the bend; then what else its friction goes with: the size of the
     /// velocity, the bend times the way from the middle of the travel and times the square of that.

@@ -161,7 +161,7 @@ mod tests {
         }
         let own = apart.fit(&ways);
         let (_, own) = own.at(1).unwrap();
-        let by_direction = own[Carried::BENDING + 1] / own[Carried::VISCOUS];
+        let by_direction = own[Carried::BY_DIRECTION] / own[Carried::VISCOUS];
         assert!((by_direction - 30.0 / 200.0).abs() < 0.02, "{by_direction}");
     }
 
