@@ -1,0 +1,81 @@
+//! Friction of a load that winds a screw up, of laws and sizes unlike the reference machine's, as
+//! `commission` records and identifies it: names, verdict, and every parameter in its interval.
+
+use hil_tests::Scope;
+use plant_sim::Machine;
+use workbench::commissioning::identified_axes;
+use workbench::session::Stand;
+
+/// A machine that is commissioned, what it lacks and its parameters, SI.
+struct Case {
+    machine: &'static str,
+    lacks: &'static [&'static str],
+    parameters: &'static [(&'static str, f64)],
+}
+
+const CASES: [Case; 2] = [
+    Case {
+        machine: include_str!("../machines/slipping-stage.toml"),
+        lacks: &["presliding"],
+        parameters: &[
+            ("inertia", 140.0),
+            ("load_inertia", 60.0),
+            ("coulomb", 90.0),
+            ("viscous", 300.0),
+            ("compliance_stiffness", 4.0e7),
+            ("compliance_damping", 5.0e3),
+            ("presliding_deflection", 90.0 / 2.3e7),
+        ],
+    },
+    Case {
+        machine: include_str!("../machines/uneven-table.toml"),
+        lacks: &[
+            "position_dependent_friction",
+            "presliding",
+            "viscous_asymmetry",
+        ],
+        parameters: &[
+            ("inertia", 850.0),
+            ("load_inertia", 350.0),
+            ("coulomb", 350.0),
+            ("viscous", 2500.0),
+            ("viscous_asymmetry", -500.0),
+            ("compliance_stiffness", 2.0e8),
+            ("compliance_damping", 3.0e4),
+            ("presliding_deflection", 1.0e-5),
+            ("presliding_damping", 3.0e4),
+        ],
+    },
+];
+
+/// A half width is at most this part of the truth: an interval of anything holds everything.
+const WIDEST: f64 = 0.5;
+
+#[test]
+fn what_the_motion_of_a_load_tells_holds_the_truth_on_machines_of_unlike_friction() {
+    let count = if Scope::now().is_complete() { 2 } else { 1 };
+    for case in &CASES[..count] {
+        let mut machine = Machine::parse("machine.toml", case.machine).unwrap();
+        machine.axes.truncate(1);
+        assert_told(&machine, case);
+    }
+}
+
+fn assert_told(machine: &Machine, case: &Case) {
+    let out = tempfile::tempdir().unwrap();
+    let stand = Stand::in_process(machine);
+    identified_axes::record(&stand, out.path()).unwrap();
+    let results = identified_axes::identify(&stand, out.path()).unwrap();
+    let report = &results[0].report;
+    let mut names: Vec<&str> = report.found.iter().map(String::as_str).collect();
+    names.sort_unstable();
+    assert_eq!(names, case.lacks, "{}", machine.name);
+    assert_eq!(report.verdict, "explained", "{}", machine.name);
+    for (name, truth) in case.parameters {
+        let known = report.parameters.get(name);
+        let known = known.unwrap_or_else(|| panic!("{}: {name} is not known", machine.name));
+        let what = format!("{}: {name} {known:?} for {truth}", machine.name);
+        assert!((known.low..=known.high).contains(truth), "{what}");
+        assert!(known.half_width() < WIDEST * truth.abs(), "{what}");
+    }
+}
