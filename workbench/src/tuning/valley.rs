@@ -19,8 +19,8 @@ use crate::progress;
 const MOST_CIRCLES: u64 = 30;
 /// First steps of the search in ln(way) and ln(T).
 const STEPS: [f64; 2] = [0.12, 0.15];
-/// Time constants that make sense: from a tenth of a cycle to the longest that the drive holds, which
-/// is longer than any reversal. A burst over which a loop rings would lead beyond it.
+/// Time constants that make sense: from a tenth of a cycle to the longest that the drive holds,
+/// which is longer than any reversal. A burst over which a loop rings would lead beyond it.
 const SENSIBLE_S: Range<f64> = 1.0e-4..2.1;
 /// The largest step of speed that makes sense: as fast as the fastest of our axes moves.
 const SENSIBLE_M_PER_S: f64 = 0.5;

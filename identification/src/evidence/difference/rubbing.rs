@@ -14,8 +14,8 @@ use crate::simulate::friction::bend_after;
 /// Most elements.
 const ELEMENTS: usize = 16;
 
-/// An element with a smaller share of the level is none: a share of a two-thousandth that slips after a
-/// fortieth of the others' ways would make a hundredth of the stiffness.
+/// An element with a smaller share of the level is none: a share of a two-thousandth that slips
+/// after a twentieth of the others' ways would make a hundredth of the stiffness.
 const SMALLEST_SHARE: f64 = 5.0e-3;
 
 /// Travel after which it is no matter how far a bristle was bent at the start, in deflections:
