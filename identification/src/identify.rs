@@ -259,9 +259,10 @@ fn beside_the_load(
             difference::difference(dataset, motion, path(&dataset.train, dataset.hold, &force))?;
     }
     let own = path(&dataset.train, dataset.hold, &force);
-    let settled = difference::settled(difference, dataset, motion, own);
     let force = other.transmitted(&other.fit(&effort.model));
     let others = path(&dataset.validate, dataset.hold, &force);
+    let both = [(motion, own), (other.motion, others)];
+    let settled = difference::settled_on_both(difference, dataset, both);
     Some(
         match difference::elsewhere(&settled, dataset, other.motion, others) {
             Some(elsewhere) => settled.beside(&elsewhere),

@@ -154,13 +154,44 @@ fn judged(dataset: &Dataset, apart: Apart<'_>) -> Difference {
     Difference::of(fits, selection.scored)
 }
 
+/// What motor − load keeps of a judged difference. Another law of the load's friction than a
+/// bristle stands where it leaves less of another record, too, by what it was on this one.
+pub(crate) fn settled_on_both(
+    difference: Difference,
+    dataset: &Dataset,
+    [(motion, path), (elsewhere, there)]: [(&Kinematics, Path<'_>); 2],
+) -> Difference {
+    let settled_with =
+        |laws: Laws, difference: Difference| settled(difference, dataset, (motion, path), laws);
+    let any = settled_with(Laws::All, difference.clone());
+    if any.laws() == Laws::Bristle {
+        return any;
+    }
+    let bristle = settled_with(Laws::Bristle, difference);
+    let left = |difference: &Difference| difference.on(elsewhere, there).map(|(_, after)| after);
+    if left(&any) < left(&bristle) {
+        any
+    } else {
+        bristle
+    }
+}
+
+/// What the friction of a load may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Laws {
+    /// A bristle.
+    Bristle,
+    /// Elements that slip, too, and what goes with direction and position.
+    All,
+}
+
 /// What motor − load keeps of a judged difference. The wind-up is that by the load's own motion
 /// where that leaves less.
-pub(crate) fn settled(
+fn settled(
     mut difference: Difference,
     dataset: &Dataset,
-    motion: &Kinematics,
-    path: Path<'_>,
+    (motion, path): (&Kinematics, Path<'_>),
+    laws: Laws,
 ) -> Difference {
     let Some(apart) = Apart::on(motion, path) else {
         return difference;
@@ -169,19 +200,23 @@ pub(crate) fn settled(
     let apart = apart.seen(&raw);
     let unit = dataset.moving_velocity;
     let count = dataset.resolution.max(dataset.load_resolution);
-    let refitted = |fitted: &FittedWays, enough: f64| {
+    let refitted = |fitted: &FittedWays, laws: Laws| {
+        let enough = match laws {
+            Laws::Bristle => f64::INFINITY,
+            Laws::All => ENOUGH_COUNTS * count,
+        };
         let carried = carried::instead(&apart, &fitted.ways(), unit, enough);
         let ways = carried.unwrap_or_else(|| fitted.ways());
         let ways = intervals::with_wave_numbers(&apart, ways);
         apart.where_known(&ways).fit(&ways)
     };
     let is_same = difference.declared.ways() == difference.extended.ways();
-    difference.extended = refitted(&difference.extended, ENOUGH_COUNTS * count);
+    difference.extended = refitted(&difference.extended, laws);
     difference.declared = if is_same {
         difference.extended.clone()
     } else {
         // What is declared lacks more than the shape of its friction.
-        refitted(&difference.declared, f64::INFINITY)
+        refitted(&difference.declared, Laws::Bristle)
     };
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
@@ -782,6 +817,20 @@ impl Difference {
         (told.stiffness.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
     }
 
+    /// What the friction of the load is, where its own motion tells it.
+    fn laws(&self) -> Laws {
+        let ways = self.extended.ways();
+        let is_bristle = |way: &Way| match way {
+            Way::Carried(carried) => carried.rubs_as_a_bristle(),
+            _ => true,
+        };
+        if ways.iter().all(is_bristle) {
+            Laws::Bristle
+        } else {
+            Laws::All
+        }
+    }
+
     /// Whether what is left may be impacts between rigid flanks.
     fn is_impacts(&self) -> bool {
         match self.extended.of(EffectName::Backlash) {
@@ -802,6 +851,7 @@ impl Difference {
 
 #[cfg(test)]
 mod tests {
+    use super::carried::tests::{FRICTION, rubbed};
     use super::edges::Flanks;
     use super::*;
     use crate::fit::made::{Axis, on, usual};
@@ -855,7 +905,22 @@ mod tests {
             hold: axis.dataset.hold,
         };
         let difference = difference(&axis.dataset, &axis.motion, path).unwrap();
-        settled(difference, &axis.dataset, &axis.motion, path)
+        settled(difference, &axis.dataset, (&axis.motion, path), Laws::All)
+    }
+
+    #[test]
+    fn another_law_stands_where_it_leaves_less_of_another_record_too() {
+        let at = [4.0e-6, 20.0e-6, 60.0e-6];
+        let elements = FRICTION.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
+        let [mut slips, bends] = [elements, FRICTION].map(|law| rubbed(law, 0.0, |_| 0.0));
+        (slips.dataset.resolution, slips.dataset.load_resolution) = (1.0e-9, 1.0e-9);
+        let own = (&slips.motion, carried::tests::apart(&slips).path);
+        let found = difference(&slips.dataset, own.0, own.1).unwrap();
+        let laws = |other: &Axis| {
+            let both = [own, (&other.motion, carried::tests::apart(other).path)];
+            settled_on_both(found.clone(), &slips.dataset, both).laws()
+        };
+        assert_eq!((laws(&slips), laws(&bends)), (Laws::All, Laws::Bristle));
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub(crate) fn elsewhere(
     ways.extend(all.filter(|way| way.called() == pitch));
     let fitted = apart.where_known(&ways).fit(&ways);
     let again = Difference::of([fitted.clone(), fitted], Vec::new());
-    Some(settled(again, dataset, motion, path))
+    Some(settled(again, dataset, (motion, path), first.laws()))
 }
 
 impl Difference {

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
-use super::rubbing::LoadFriction;
+use super::rubbing::{Law, LoadFriction};
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::mask::{unless_few, widened, without};
@@ -199,6 +199,11 @@ impl Carried {
         let rubbed = load.rubbed(motion, self.friction);
         let more = self.more.columns(motion, &load, &rubbed[0]);
         load.plain().into_iter().chain(rubbed).chain(more).collect()
+    }
+
+    /// Whether its friction is a bristle and nothing else.
+    pub(super) fn rubs_as_a_bristle(self) -> bool {
+        self.friction.law == Law::Dahl && self.more == More::default()
     }
 
     /// The load's motion on a record.
