@@ -77,6 +77,8 @@ vocabulary! {
     } optional {
         /// exponent of the fall exp(-|v/velocity|^exponent); 2 where it is not known
         exponent: RATIO, 0.5 => 2.0,
+        /// time in which 63 % of a change of the fall has come; none where it is not known
+        lag: TIME, 0.0 => 0.1,
     }
 
     /// hysteretic displacement before the contact slips

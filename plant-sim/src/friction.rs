@@ -14,76 +14,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::ranges::{Quantity, Ranged, ranged};
+use crate::ranges::{Quantity, Ranged};
 
-ranged! {
-    /// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−|v /
-    /// vs|^p)`, in newtons.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Sliding {
-        /// Coulomb friction Fc.
-        pub coulomb_n: f64 [0.0 => 1.0e6],
-        /// Breakaway friction Fs, not below Fc; equal to it where there is no Stribeck fall.
-        pub static_n: f64 [0.0 => 1.0e6],
-        /// Stribeck velocity vs.
-        pub stribeck_velocity_m_per_s: f64 [1.0e-6 => 1.0],
-        /// Exponent p of the fall: 2 with Gauss, 1 with Tustin, ½ with Bo and Pavelescu
-        /// (Armstrong-Hélouvry, Dupont, Canudas de Wit 1994).
-        #[serde(default = "gaussian")]
-        pub stribeck_exponent: f64 [0.5 => 2.0],
-        /// Viscous friction Fv.
-        pub viscous_n_s_per_m: f64 [0.0 => 1.0e7],
-        /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and
-        /// negative motion. Friction has to stay friction: a tenth is left.
-        #[serde(default)]
-        pub coulomb_asymmetry: f64 [-0.9 => 0.9],
-        /// Relative difference of viscous friction by direction.
-        #[serde(default)]
-        pub viscous_asymmetry: f64 [-0.9 => 0.9],
-        /// Quadratic drag q v |v|.
-        #[serde(default)]
-        pub quadratic_drag_n_s2_per_m2: f64 [0.0 => 1.0e7],
-    }
-}
+mod sliding;
 
-impl Sliding {
-    /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
-    #[must_use]
-    pub fn level_n(&self, v: f64) -> f64 {
-        let fall = if self.static_n == self.coulomb_n {
-            0.0
-        } else {
-            (self.static_n - self.coulomb_n) * (-self.power(v)).exp()
-        };
-        (self.coulomb_n + fall) * (1.0 + self.coulomb_asymmetry * sign(v))
-    }
-
-    /// |v / vs|^p, the square as a product.
-    fn power(&self, v: f64) -> f64 {
-        let ratio = v / self.stribeck_velocity_m_per_s;
-        if self.stribeck_exponent == gaussian() {
-            ratio * ratio
-        } else {
-            ratio.abs().powf(self.stribeck_exponent)
-        }
-    }
-
-    /// Viscous coefficient at a velocity, quadratic drag included as `q |v|`.
-    #[must_use]
-    pub fn viscous_n_s_per_m(&self, v: f64) -> f64 {
-        self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v))
-            + self.quadratic_drag_n_s2_per_m2 * v.abs()
-    }
-}
-
-/// Exponent of a fall of which none is stated.
-pub(crate) const fn gaussian() -> f64 {
-    2.0
-}
-
-fn sign(v: f64) -> f64 {
-    if v == 0.0 { 0.0 } else { v.signum() }
-}
+pub use sliding::Sliding;
+pub(crate) use sliding::gaussian;
+use sliding::{Curve, Fall, sign};
 
 /// Which friction law acts, with its own parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -155,7 +92,22 @@ impl Law {
 pub struct Friction {
     sliding: Sliding,
     law: Law,
+    state: State,
+}
+
+/// Internal state of a friction law.
+#[derive(Clone, Debug)]
+pub struct State {
     deflection_m: Vec<f64>,
+    fall: Fall,
+}
+
+impl State {
+    /// Deflection of each bristle or element, m.
+    #[must_use]
+    pub fn deflection_m(&self) -> &[f64] {
+        &self.deflection_m
+    }
 }
 
 /// What the integrator asks: the table without friction, over one sub-step.
@@ -177,8 +129,8 @@ pub struct Table {
 
 impl Table {
     /// Friction level of a velocity, N.
-    fn friction_n(&self, sliding: &Sliding, v: f64) -> f64 {
-        sliding.level_n(v) * self.factor + self.level_n
+    fn friction_n(&self, curve: Curve<'_>, v: f64) -> f64 {
+        curve.level_n(v) * self.factor + self.level_n
     }
 }
 
@@ -194,7 +146,10 @@ impl Friction {
         Self {
             sliding,
             law,
-            deflection_m: vec![0.0; states],
+            state: State {
+                deflection_m: vec![0.0; states],
+                fall: Fall::default(),
+            },
         }
     }
 
@@ -203,10 +158,15 @@ impl Friction {
         let Self {
             sliding,
             law,
-            deflection_m,
+            state: State { deflection_m, fall },
         } = self;
+        *fall = fall.after(sliding, table.velocity, table.dt_s);
+        let curve = Curve {
+            sliding,
+            fall: *fall,
+        };
         match law {
-            Law::Coulomb => coulomb(sliding, table),
+            Law::Coulomb => coulomb(curve, table),
             Law::LuGre {
                 bristle_stiffness_n_per_m,
                 bristle_damping_n_s_per_m,
@@ -215,36 +175,37 @@ impl Friction {
                     stiffness: *bristle_stiffness_n_per_m,
                     damping: *bristle_damping_n_s_per_m,
                 };
-                lugre(sliding, bristle, &mut deflection_m[0], table)
+                lugre(curve, bristle, &mut deflection_m[0], table)
             }
             Law::MaxwellSlip {
                 stiffness_n_per_m,
                 share,
-            } => maxwell(sliding, stiffness_n_per_m, share, deflection_m, table),
+            } => maxwell(curve, stiffness_n_per_m, share, deflection_m, table),
         }
     }
 
     /// The internal state, to go back to with [`Self::restore`].
     #[must_use]
-    pub fn state(&self) -> Vec<f64> {
-        self.deflection_m.clone()
+    pub fn state(&self) -> State {
+        self.state.clone()
     }
 
     /// Goes back to a state.
-    pub fn restore(&mut self, state: Vec<f64>) {
-        self.deflection_m = state;
+    pub fn restore(&mut self, state: State) {
+        self.state = state;
     }
 
     /// Bristle deflection (or mean element deflection), m.
     #[must_use]
     pub fn deflection_m(&self) -> f64 {
-        self.deflection_m.iter().sum::<f64>() / self.deflection_m.len().max(1) as f64
+        let all = &self.state.deflection_m;
+        all.iter().sum::<f64>() / all.len().max(1) as f64
     }
 }
 
 /// Moreau: the friction that stops the table within the sub-step, if it is within the breakaway
 /// force; else the sliding level against motion, never past standstill.
-fn coulomb(sliding: &Sliding, table: Table) -> f64 {
+fn coulomb(curve: Curve<'_>, table: Table) -> f64 {
     let Table {
         velocity,
         free_velocity,
@@ -262,9 +223,9 @@ fn coulomb(sliding: &Sliding, table: Table) -> f64 {
     } else {
         velocity
     };
-    let level = table.friction_n(sliding, about);
+    let level = table.friction_n(curve, about);
     // Viscous part trapezoidal, so that the scheme stays second order while it slides.
-    let half = 0.5 * sliding.viscous_n_s_per_m(direction) * dt_s / mass_kg;
+    let half = 0.5 * curve.viscous_n_s_per_m(direction) * dt_s / mass_kg;
     let free_velocity = free_velocity - half * velocity;
     let impulse = level * dt_s / mass_kg;
     if free_velocity.abs() <= impulse {
@@ -282,7 +243,7 @@ struct Bristle {
 /// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the table with
 /// the part of the bristle force that is linear in its velocity taken implicitly, the other half of
 /// the bristle.
-fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 {
+fn lugre(curve: Curve<'_>, bristle: Bristle, z: &mut f64, table: Table) -> f64 {
     let Table {
         velocity,
         free_velocity,
@@ -290,14 +251,14 @@ fn lugre(sliding: &Sliding, bristle: Bristle, z: &mut f64, table: Table) -> f64 
         dt_s,
         ..
     } = table;
-    let rate = |v: f64| bristle.stiffness * v.abs() / table.friction_n(sliding, v);
+    let rate = |v: f64| bristle.stiffness * v.abs() / table.friction_n(curve, v);
     *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
     // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
     // trapezoidal.
-    let level = table.friction_n(sliding, velocity);
+    let level = table.friction_n(curve, velocity);
     let constant = bristle.stiffness * *z;
     let linear = bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level)
-        + sliding.viscous_n_s_per_m(velocity);
+        + curve.viscous_n_s_per_m(velocity);
     let half = 0.5 * linear * dt_s / mass_kg;
     let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
     *z = relaxed(*z, next, rate(next), 0.5 * dt_s);
@@ -316,7 +277,7 @@ fn relaxed(z: f64, v: f64, rate: f64, dt: f64) -> f64 {
 }
 
 fn maxwell(
-    sliding: &Sliding,
+    curve: Curve<'_>,
     stiffness: &[f64],
     share: &[f64],
     deflection: &mut [f64],
@@ -333,8 +294,8 @@ fn maxwell(
     // the moment.
     let slide = |deflection: &mut [f64], velocity: f64| {
         let (forth, back) = (
-            table.friction_n(sliding, velocity.abs()),
-            table.friction_n(sliding, -velocity.abs()),
+            table.friction_n(curve, velocity.abs()),
+            table.friction_n(curve, -velocity.abs()),
         );
         let mut force = 0.0;
         for ((k, share), z) in stiffness.iter().zip(share).zip(deflection) {
@@ -344,7 +305,7 @@ fn maxwell(
         force
     };
     let force = slide(deflection, velocity);
-    let half = 0.5 * sliding.viscous_n_s_per_m(velocity) * dt_s / mass_kg;
+    let half = 0.5 * curve.viscous_n_s_per_m(velocity) * dt_s / mass_kg;
     let next = (free_velocity - force * dt_s / mass_kg - half * velocity) / (1.0 + half);
     slide(deflection, next);
     next

@@ -21,6 +21,7 @@ fn dry(coulomb_n: f64) -> Sliding {
         static_n: coulomb_n,
         stribeck_velocity_m_per_s: 1.0e-3,
         stribeck_exponent: 2.0,
+        stribeck_lag_s: 0.0,
         viscous_n_s_per_m: 0.0,
         coulomb_asymmetry: 0.0,
         viscous_asymmetry: 0.0,
@@ -196,6 +197,7 @@ fn maxwell_slip_remembers_its_reversal_points() {
         }
         friction
             .state()
+            .deflection_m()
             .iter()
             .zip(stiffness)
             .map(|(z, k)| z * k)

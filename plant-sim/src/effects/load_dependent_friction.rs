@@ -36,6 +36,7 @@ mod tests {
                 static_n: COULOMB_N,
                 stribeck_velocity_m_per_s: 1.0e-3,
                 stribeck_exponent: 2.0,
+                stribeck_lag_s: 0.0,
                 viscous_n_s_per_m: 0.0,
                 coulomb_asymmetry: 0.0,
                 viscous_asymmetry: 0.0,

@@ -29,6 +29,7 @@ const FRICTIONLESS: Sliding = Sliding {
     static_n: 0.0,
     stribeck_velocity_m_per_s: 1.0e-3,
     stribeck_exponent: 2.0,
+    stribeck_lag_s: 0.0,
     viscous_n_s_per_m: 0.0,
     coulomb_asymmetry: 0.0,
     viscous_asymmetry: 0.0,
@@ -154,6 +155,7 @@ fn curve(effects: &[Effect]) -> Sliding {
                 curve.static_n = curve.coulomb_n + own.excess;
                 curve.stribeck_velocity_m_per_s = own.velocity;
                 curve.stribeck_exponent = own.exponent.unwrap_or_else(gaussian);
+                curve.stribeck_lag_s = own.lag.unwrap_or(0.0);
             }
             Effect::Viscous(own) => curve.viscous_n_s_per_m = own.viscous,
             Effect::CoulombAsymmetry(own) => curve.coulomb_asymmetry = own.coulomb_asymmetry,

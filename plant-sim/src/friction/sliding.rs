@@ -1,0 +1,194 @@
+//! The sliding curve, and the lag with which it follows the velocity.
+
+use crate::ranges::ranged;
+
+ranged! {
+    /// Parameters of the sliding curve `g(v)`, which all laws share: `Fc + (Fs − Fc) exp(−|v /
+    /// vs|^p)`, in newtons.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Sliding {
+        /// Coulomb friction Fc.
+        pub coulomb_n: f64 [0.0 => 1.0e6],
+        /// Breakaway friction Fs, not below Fc; equal to it where there is no Stribeck fall.
+        pub static_n: f64 [0.0 => 1.0e6],
+        /// Stribeck velocity vs.
+        pub stribeck_velocity_m_per_s: f64 [1.0e-6 => 1.0],
+        /// Exponent p of the fall: 2 with Gauss, 1 with Tustin, ½ with Bo and Pavelescu
+        /// (Armstrong-Hélouvry, Dupont, Canudas de Wit 1994).
+        #[serde(default = "gaussian")]
+        pub stribeck_exponent: f64 [0.5 => 2.0],
+        /// Time in which 63 % of a change of the fall has come: frictional lag (Lampaert,
+        /// Al-Bender, Swevers 2003; Hess and Soom 1990). Zero where the fall follows at once.
+        #[serde(default)]
+        pub stribeck_lag_s: f64 [0.0 => 0.1],
+        /// Viscous friction Fv.
+        pub viscous_n_s_per_m: f64 [0.0 => 1.0e7],
+        /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and
+        /// negative motion. Friction has to stay friction: a tenth is left.
+        #[serde(default)]
+        pub coulomb_asymmetry: f64 [-0.9 => 0.9],
+        /// Relative difference of viscous friction by direction.
+        #[serde(default)]
+        pub viscous_asymmetry: f64 [-0.9 => 0.9],
+        /// Quadratic drag q v |v|.
+        #[serde(default)]
+        pub quadratic_drag_n_s2_per_m2: f64 [0.0 => 1.0e7],
+    }
+}
+
+impl Sliding {
+    /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
+    #[must_use]
+    pub fn level_n(&self, v: f64) -> f64 {
+        self.level_with_n(self.left(v), v)
+    }
+
+    /// The same where a share of the excess is left.
+    fn level_with_n(&self, left: f64, v: f64) -> f64 {
+        let fall = (self.static_n - self.coulomb_n) * left;
+        (self.coulomb_n + fall) * (1.0 + self.coulomb_asymmetry * sign(v))
+    }
+
+    /// Share of the excess that is left in the end, at a velocity.
+    fn left(&self, v: f64) -> f64 {
+        if self.static_n == self.coulomb_n {
+            0.0
+        } else {
+            (-self.power(v)).exp()
+        }
+    }
+
+    /// |v / vs|^p, the square as a product.
+    fn power(&self, v: f64) -> f64 {
+        let ratio = v / self.stribeck_velocity_m_per_s;
+        if self.stribeck_exponent == gaussian() {
+            ratio * ratio
+        } else {
+            ratio.abs().powf(self.stribeck_exponent)
+        }
+    }
+
+    /// Viscous coefficient at a velocity, quadratic drag included as `q |v|`.
+    #[must_use]
+    pub fn viscous_n_s_per_m(&self, v: f64) -> f64 {
+        self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v))
+            + self.quadratic_drag_n_s2_per_m2 * v.abs()
+    }
+}
+
+/// Exponent of a fall of which none is stated.
+pub(crate) const fn gaussian() -> f64 {
+    2.0
+}
+
+pub(super) fn sign(v: f64) -> f64 {
+    if v == 0.0 { 0.0 } else { v.signum() }
+}
+
+/// What is left of the excess, where it lags: `τ ṡ = exp(−|v / vs|^p) − s`, exact for constant
+/// velocity. At rest all of it is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fall(f64);
+
+impl Default for Fall {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl Fall {
+    /// After a sub-step at a velocity.
+    #[must_use]
+    pub(super) fn after(self, sliding: &Sliding, v: f64, dt_s: f64) -> Self {
+        if sliding.stribeck_lag_s == 0.0 {
+            return self;
+        }
+        let share = -(-dt_s / sliding.stribeck_lag_s).exp_m1();
+        Self(self.0 + share * (sliding.left(v) - self.0))
+    }
+}
+
+/// The sliding curve at a moment.
+#[derive(Clone, Copy)]
+pub(super) struct Curve<'a> {
+    /// Its parameters.
+    pub sliding: &'a Sliding,
+    /// What is left of its excess, where that lags.
+    pub fall: Fall,
+}
+
+impl Curve<'_> {
+    /// Friction without the viscous part, for a direction of `v`.
+    pub(super) fn level_n(&self, v: f64) -> f64 {
+        if self.sliding.stribeck_lag_s == 0.0 {
+            self.sliding.level_n(v)
+        } else {
+            self.sliding.level_with_n(self.fall.0, v)
+        }
+    }
+
+    /// As [`Sliding::viscous_n_s_per_m`].
+    pub(super) fn viscous_n_s_per_m(&self, v: f64) -> f64 {
+        self.sliding.viscous_n_s_per_m(v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAGGING: Sliding = Sliding {
+        coulomb_n: 100.0,
+        static_n: 150.0,
+        stribeck_velocity_m_per_s: 1.0e-2,
+        stribeck_exponent: 2.0,
+        stribeck_lag_s: 5.0e-3,
+        viscous_n_s_per_m: 0.0,
+        coulomb_asymmetry: 0.0,
+        viscous_asymmetry: 0.0,
+        quadratic_drag_n_s2_per_m2: 0.0,
+    };
+
+    /// Level after so many sub-steps in all of 5 ms at a velocity, from a state.
+    fn after(fall: &mut Fall, v: f64, steps: u32) -> f64 {
+        for _ in 0..steps {
+            *fall = fall.after(&LAGGING, v, 5.0e-3 / f64::from(steps));
+        }
+        let curve = Curve {
+            sliding: &LAGGING,
+            fall: *fall,
+        };
+        curve.level_n(v)
+    }
+
+    #[test]
+    fn a_fall_that_lags_has_come_by_63_percent_after_its_lag_both_ways() {
+        let e = std::f64::consts::E;
+        for steps in [1, 20] {
+            let mut fall = Fall::default();
+            let gone = after(&mut fall, 1.0, steps);
+            assert!((gone - (100.0 + 50.0 / e)).abs() < 1.0e-9, "{gone}");
+            let back = after(&mut fall, 0.0, steps);
+            assert!(
+                (back - (150.0 - 50.0 / e * (1.0 - 1.0 / e))).abs() < 1.0e-9,
+                "{back}"
+            );
+        }
+    }
+
+    #[test]
+    fn without_a_lag_the_level_is_that_of_the_velocity() {
+        let sliding = Sliding {
+            stribeck_lag_s: 0.0,
+            ..LAGGING
+        };
+        let fall = Fall::default().after(&sliding, 1.0, 1.0);
+        let curve = Curve {
+            sliding: &sliding,
+            fall,
+        };
+        for v in [0.0, 1.0e-2, -3.0e-2] {
+            assert_eq!(curve.level_n(v), sliding.level_n(v));
+        }
+    }
+}
