@@ -114,11 +114,13 @@ mod tests {
             excess: estimate(-3.0),
             velocity: estimate(2.0e-3),
             exponent: Some(estimate(2.1)),
+            lag: None,
         });
         let stated = Effect::from(Stribeck {
             excess: 0.0,
             velocity: 2.0e-3,
             exponent: Some(2.0),
+            lag: None,
         });
         assert_eq!(stribeck.stated(), stated);
         let pitch = Effect::from(PitchError {

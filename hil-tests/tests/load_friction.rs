@@ -13,7 +13,7 @@ struct Case {
     parameters: &'static [(&'static str, f64)],
 }
 
-const CASES: [Case; 2] = [
+const CASES: [Case; 3] = [
     Case {
         machine: include_str!("../machines/slipping-stage.toml"),
         lacks: &["presliding"],
@@ -46,6 +46,23 @@ const CASES: [Case; 2] = [
             ("presliding_damping", 3.0e4),
         ],
     },
+    Case {
+        machine: include_str!("../machines/lagging-table.toml"),
+        lacks: &["presliding", "stribeck"],
+        parameters: &[
+            ("inertia", 450.0),
+            ("load_inertia", 150.0),
+            ("coulomb", 220.0),
+            ("viscous", 900.0),
+            ("compliance_stiffness", 9.0e7),
+            ("compliance_damping", 8.0e3),
+            ("presliding_deflection", 1.0e-5),
+            ("presliding_damping", 1.0e4),
+            ("stribeck_excess", 100.0),
+            ("stribeck_velocity", 4.0e-3),
+            ("stribeck_lag", 6.0e-3),
+        ],
+    },
 ];
 
 /// A half width is at most this part of the truth: an interval of anything holds everything.
@@ -53,7 +70,7 @@ const WIDEST: f64 = 0.5;
 
 #[test]
 fn what_the_motion_of_a_load_tells_holds_the_truth_on_machines_of_unlike_friction() {
-    let count = if Scope::now().is_complete() { 2 } else { 1 };
+    let count = if Scope::now().is_complete() { 3 } else { 1 };
     for case in &CASES[..count] {
         let mut machine = Machine::parse("machine.toml", case.machine).unwrap();
         machine.axes.truncate(1);

@@ -7,6 +7,7 @@
 use crate::evidence::selection::{is_enough, is_large_outside};
 use crate::fit::bench::Bench;
 use crate::fit::blocks::Gain;
+use crate::fit::fitted::Searched;
 use crate::fit::search::smallest;
 use crate::fit::told;
 use crate::fit::tuning::{self, Pair};
@@ -105,30 +106,53 @@ fn of_part(pair: Pair<'_>, model: Model, place: usize, usual: &'static dyn Effec
     } else {
         tuning::refined_at(pair, model.with_form(place, usual), place)
     };
-    let shaped = curved(pair, plain, place);
+    let at_once = shaped(pair, plain.clone(), place);
+    let lagging = curved(pair, plain, place, Searched::Lag);
+    if lagging.parts[place].effect.lag_s() == 0.0 {
+        return at_once;
+    }
+    // The lag is searched once more beside the form that it leaves.
+    let lagging = curved(pair, shaped(pair, lagging, place), place, Searched::Lag);
+    if beats(pair.bench, &lagging, &at_once) {
+        lagging
+    } else {
+        at_once
+    }
+}
+
+/// The model with a part in the curve that the record asks for, and with a size for each direction
+/// where it asks for that.
+fn shaped(pair: Pair<'_>, plain: Model, place: usize) -> Model {
+    let shaped = curved(pair, plain, place, Searched::Form);
     let Some(by_direction) = shaped.parts[place].effect.by_direction() else {
         return shaped;
     };
     let two_sizes = shaped.with_form(place, by_direction);
     if beats(pair.bench, &two_sizes, &shaped) {
-        curved(pair, tuning::refined_at(pair, two_sizes, place), place)
+        let refined = tuning::refined_at(pair, two_sizes, place);
+        curved(pair, refined, place, Searched::Form)
     } else {
         shaped
     }
 }
 
-/// The model with another curve of a part, where that beats the one it has.
-fn curved(pair: Pair<'_>, model: Model, place: usize) -> Model {
+/// The model with another curve (or another lag) of a part, where that beats the one it has.
+fn curved(pair: Pair<'_>, model: Model, place: usize, what: Searched) -> Model {
     let bench = pair.bench;
-    if model.parts[place].effect.forms().is_empty() {
+    let effect = model.parts[place].effect;
+    let choices = match what {
+        Searched::Lag => effect.lags(),
+        _ => effect.forms(),
+    };
+    if choices.is_empty() {
         return model;
     }
     let before = bench.cross_validate(&model);
-    let about = bench.cross_validate_about(&bench.fit(&model), place);
+    let about = bench.cross_validate_about(&bench.fit(&model), place, what);
     if !is_enough(&Gain::of(&before, &about)) {
         return model;
     }
-    let other = tuning::reshaped(pair, &model, place);
+    let other = tuning::reshaped(pair, &model, place, what);
     if is_enough(&Gain::of(&before, &bench.cross_validate(&other))) {
         other
     } else {
@@ -179,6 +203,35 @@ mod tests {
                 "{exponent}: {off} ± {half}"
             );
             assert_eq!(found.own.len(), 1, "{exponent}");
+        }
+    }
+
+    /// An axis with a fall of 15 N over 10 mm/s that lags by a time.
+    fn lagging(exponent: f64, lag_s: f64) -> Axis {
+        let mut axis = axis(usual);
+        let motion = &axis.motion;
+        let mut left = 1.0;
+        let falls: Vec<f64> = (0..motion.len())
+            .map(|row| {
+                let steady = (-(motion.velocity[row] / 0.01).abs().powf(exponent)).exp();
+                left += -(-motion.period_s / lag_s).exp_m1() * (steady - left);
+                left
+            })
+            .collect();
+        axis.put(|motion, row| usual(motion, row) + 15.0 * falls[row] * motion.direction[row]);
+        axis
+    }
+
+    #[test]
+    fn a_fall_that_lags_is_found_with_an_interval_that_holds_its_lag() {
+        for (exponent, lag_s) in [(2.0, 4.0e-3), (1.0, 4.0e-3), (2.0, 20.0e-3)] {
+            let found = form(&lagging(exponent, lag_s));
+            let half = found.lag_half_width.expect("it lags");
+            let off = (found.part.effect.lag_s() - lag_s).abs();
+            assert!(
+                off <= half.max(0.1 * lag_s) && half < 0.5 * lag_s,
+                "{exponent} {lag_s}: {off} ± {half}"
+            );
         }
     }
 

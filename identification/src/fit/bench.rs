@@ -14,7 +14,7 @@ use crate::fit::rows::Rows;
 use crate::fit::span::Span;
 use crate::model::effects::by_motion::{Others, place_among_usual};
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Effect, Instant, Stage, place_among_forms};
+use crate::model::effects::{Effect, Instant, Stage, place_among_forms, place_among_lags};
 use crate::model::inverse::{Beside, Model, Part, saturation};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
@@ -39,8 +39,8 @@ pub(crate) struct Gathered {
 }
 
 type Columns = Arc<Vec<Vec<f64>>>;
-/// Effect, nonlinear parameter, form, number of columns.
-type Structure = (Called, u64, u64, usize);
+/// Effect; nonlinear parameter, form and lag; number of columns.
+type Structure = (Called, [u64; 3], usize);
 /// A structure, and those beside which it is with their coefficients.
 type Key = (Structure, Vec<(Structure, Vec<u64>)>);
 type Kept = HashMap<Key, Columns>;
@@ -130,12 +130,15 @@ impl<'a> Bench<'a> {
         let (middle, half) = self.dataset.travel();
         let duration_s = self.dataset.train.duration_s();
         let motion = self.motion;
+        let fall = part.effect.fall();
+        let left = fall.map(|fall| fall.along(motion, part.parameter));
         let level = |row: usize| {
             let (position, time_s) = (motion.position_lp[row], motion.time_s[row]);
             let at = Instant {
                 position,
                 scaled: (position - middle) / half,
                 velocity: motion.velocity_lp[row],
+                left: left.as_ref().map(|left| left[row]),
                 time_s,
                 time_share: time_s / duration_s,
                 ..Instant::default()
@@ -209,7 +212,7 @@ impl<'a> Bench<'a> {
     fn lost_at_peaks(&self, model: &Model) -> Vec<f64> {
         let drive = model.saturation();
         let lost = Called::Structure("lost at peaks");
-        let key = ((lost, drive.per_effort.to_bits(), 0, 1), Vec::new());
+        let key = ((lost, [drive.per_effort.to_bits(), 0, 0], 1), Vec::new());
         if let Some(known) = self.kept().get(&key) {
             return known[0].clone();
         }
@@ -313,10 +316,15 @@ impl<'a> Bench<'a> {
     }
 
     /// Errors on held-out blocks of a fit that may move, linearised, the nonlinear parameter and
-    /// the form of a part.
+    /// what else of a part is searched.
     #[must_use]
-    pub(crate) fn cross_validate_about(&self, fitted: &Fitted, place: usize) -> Fit {
-        let searched = [Searched::Parameter, Searched::Form].map(|what| (place, what));
+    pub(crate) fn cross_validate_about(
+        &self,
+        fitted: &Fitted,
+        place: usize,
+        other: Searched,
+    ) -> Fit {
+        let searched = [Searched::Parameter, other].map(|what| (place, what));
         self.blocks(&self.design_about(fitted, &searched))
             .cross_validate()
     }
@@ -326,6 +334,7 @@ impl<'a> Bench<'a> {
         let slope = |(place, what): &(usize, Searched)| match what {
             Searched::Parameter => self.derivative(fitted, *place),
             Searched::Form => self.derivative_by_form(fitted, *place),
+            Searched::Lag => self.derivative_by_lag(fitted, *place),
         };
         let mut design = self.design(fitted.model());
         design.columns.extend(searched.iter().map(slope));
@@ -356,7 +365,8 @@ impl<'a> Bench<'a> {
             let part = &model.parts[place];
             let parameter = part.effect.is_tuned().then_some(Searched::Parameter);
             let form = part.is_reshaped().then_some(Searched::Form);
-            let searched = parameter.into_iter().chain(form);
+            let lag = (part.effect.lag_s() > 0.0).then_some(Searched::Lag);
+            let searched = parameter.into_iter().chain(form).chain(lag);
             searched.map(move |what| (place, what))
         };
         let searched: Vec<_> = model.outwards().into_iter().flat_map(of_part).collect();
@@ -421,9 +431,17 @@ impl<'a> Bench<'a> {
     /// Derivative of the prediction by the form of a part, over its neighbours; low-passed.
     fn derivative_by_form(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
         let effect = fitted.model().parts[place].effect;
-        let (below, above) = neighbours(effect);
+        let (below, above) = neighbours(effect, effect.forms(), place_among_forms(effect));
         let at = |form: &'static dyn Effect| fitted.with_form(place, form);
         self.slope([&at(below), &at(above)], above.form() - below.form())
+    }
+
+    /// The same by its lag.
+    fn derivative_by_lag(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
+        let effect = fitted.model().parts[place].effect;
+        let (below, above) = neighbours(effect, effect.lags(), place_among_lags(effect));
+        let at = |lag: &'static dyn Effect| fitted.with_form(place, lag);
+        self.slope([&at(below), &at(above)], above.lag_s() - below.lag_s())
     }
 
     /// Slope of the prediction between two fits that are so far apart.
@@ -533,8 +551,11 @@ impl<'a> Bench<'a> {
 
 fn key(part: &Part) -> Key {
     let structure = |part: &Part| {
-        let [parameter, form] = [part.parameter, part.effect.form()].map(f64::to_bits);
-        (part.called(), parameter, form, part.width())
+        let Part {
+            effect, parameter, ..
+        } = part;
+        let shape = [*parameter, effect.form(), effect.lag_s()].map(f64::to_bits);
+        (part.called(), shape, part.width())
     };
     let bits = |own: &[f64]| own.iter().map(|value| value.to_bits()).collect();
     let beside = part.beside.iter();
@@ -604,11 +625,14 @@ impl Design {
     }
 }
 
-/// The forms of an effect on both sides of its own; at an end its own.
-fn neighbours(effect: &'static dyn Effect) -> (&'static dyn Effect, &'static dyn Effect) {
-    let forms = effect.forms();
-    let place = place_among_forms(effect).unwrap_or(0);
-    let at = |place: usize| forms.get(place).copied().unwrap_or(effect);
+/// Those of a list on both sides of an effect's own place; at an end itself.
+fn neighbours(
+    effect: &'static dyn Effect,
+    list: &[&'static dyn Effect],
+    place: Option<usize>,
+) -> (&'static dyn Effect, &'static dyn Effect) {
+    let place = place.unwrap_or(0);
+    let at = |place: usize| list.get(place).copied().unwrap_or(effect);
     (at(place.saturating_sub(1)), at(place + 1))
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Estimate {
     pub parameter_half_width: Option<f64>,
     /// Half width of what tells its forms apart, where that was found.
     pub form_half_width: Option<f64>,
+    /// Half width of its lag, where it has one.
+    pub lag_half_width: Option<f64>,
 }
 
 /// What of a part is found by a search.
@@ -44,6 +46,8 @@ pub(crate) enum Searched {
     Parameter,
     /// Its form.
     Form,
+    /// Its lag.
+    Lag,
 }
 
 /// The first values of a list, taken off it.
@@ -126,6 +130,7 @@ impl Fitted {
                 own: own.collect(),
                 parameter_half_width: searched(place, Searched::Parameter),
                 form_half_width: searched(place, Searched::Form),
+                lag_half_width: searched(place, Searched::Lag),
             }
         };
         self.terms().enumerate().map(&mut estimate).collect()
@@ -213,6 +218,7 @@ mod tests {
             own: own.to_vec(),
             parameter_half_width,
             form_half_width: None,
+            lag_half_width: None,
         };
         for (own, half_width, certain) in [
             (&[(3.0, 3.0)][..], None, false),

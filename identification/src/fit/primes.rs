@@ -60,6 +60,7 @@ mod tests {
             own: own.to_vec(),
             parameter_half_width: None,
             form_half_width: None,
+            lag_half_width: None,
         }
     }
 

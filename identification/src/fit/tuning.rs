@@ -5,10 +5,10 @@
 //! lower cut-off.
 
 use crate::fit::bench::Bench;
-use crate::fit::fitted::Fitted;
+use crate::fit::fitted::{Fitted, Searched};
 use crate::fit::search::{descend, smallest};
 use crate::fit::told;
-use crate::model::effects::{Effect, Setting, Stage, place_among_forms};
+use crate::model::effects::{Effect, Setting, Stage, place_among_forms, place_among_lags};
 use crate::model::inverse::{Model, Part};
 
 /// Cut-off for the search of a delay: quantisation comes back through the controller as effort that
@@ -311,13 +311,17 @@ pub(crate) fn refined_at(pair: Pair<'_>, mut model: Model, place: usize) -> Mode
     told::of_the_others(pair.bench, model)
 }
 
-/// The model with the form of a part that leaves the least, each form with its nonlinear parameter
-/// where it leaves the least.
+/// The model with the form of a part (or its lag) that leaves the least, each with its nonlinear
+/// parameter where it leaves the least.
 #[must_use]
-pub(crate) fn reshaped(pair: Pair<'_>, model: &Model, place: usize) -> Model {
+pub(crate) fn reshaped(pair: Pair<'_>, model: &Model, place: usize, what: Searched) -> Model {
     let part = &model.parts[place];
-    let (bench, forms) = (pair.of(part.effect), part.effect.forms());
-    let Some(start) = place_among_forms(part.effect) else {
+    let bench = pair.of(part.effect);
+    let (forms, start) = match what {
+        Searched::Lag => (part.effect.lags(), place_among_lags(part.effect)),
+        _ => (part.effect.forms(), place_among_forms(part.effect)),
+    };
+    let Some(start) = start else {
         return model.clone();
     };
     let at = |form: f64| refined_at(pair, model.with_form(place, forms[form as usize]), place);

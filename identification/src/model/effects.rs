@@ -11,6 +11,7 @@ use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 use crate::record::units::AxisKind;
 use by_motion::Others;
+use stribeck::Stribeck;
 
 pub(crate) mod by_motion;
 pub(crate) mod coulomb;
@@ -85,6 +86,8 @@ pub(crate) struct Naming<'a> {
     pub parameter_half_width: Option<f64>,
     /// Half width of the 95 % interval of its form ([`Effect::form`]), where that was found.
     pub form_half_width: Option<f64>,
+    /// Half width of the 95 % interval of its lag ([`Effect::lag_s`]), where that was found.
+    pub lag_half_width: Option<f64>,
     /// Coefficients with the half widths of their intervals.
     pub coefficients: &'a [(f64, f64)],
     /// The axis.
@@ -143,6 +146,8 @@ pub(crate) struct Instant {
     pub scaled: f64,
     /// Velocity.
     pub velocity: f64,
+    /// What is left of a fall that lags.
+    pub left: Option<f64>,
     /// Time since the start of the record, s.
     pub time_s: f64,
     /// Time over the duration of the training record.
@@ -312,6 +317,16 @@ pub(crate) trait Effect: Sync {
         0.0
     }
 
+    /// The same form with each lag, the first of which is none. Empty where it has no state.
+    fn lags(&self) -> &'static [&'static dyn Effect] {
+        &[]
+    }
+
+    /// Time in which 63 % of a change of its level has come, s.
+    fn lag_s(&self) -> f64 {
+        0.0
+    }
+
     /// The same effect with fewer periods within the travel than tell themselves ([`few_periods`]).
     fn with_few_periods(&self) -> &'static [&'static dyn Effect] {
         &[]
@@ -401,8 +416,8 @@ pub(crate) trait Effect: Sync {
         false
     }
 
-    /// Exponent p of a level that falls by exp(−|v/vs|^p); `None` where it does not fall.
-    fn fall_exponent(&self) -> Option<f64> {
+    /// The law of a level that falls with velocity; `None` where it does not fall.
+    fn fall(&self) -> Option<Stribeck> {
         None
     }
 
@@ -448,7 +463,7 @@ pub(crate) static LIBRARY: [&dyn Effect; 20] = [
     &coulomb::Coulomb,
     &offset::Offset,
     &viscous_asymmetry::ViscousAsymmetry,
-    stribeck::GAUSSIAN,
+    &stribeck::GAUSSIAN,
     &torque_ripple::TorqueRipple,
     &position_dependent_friction::PositionDependentFriction,
     friction_drift::BOTH_WAYS,
@@ -477,6 +492,13 @@ pub(crate) fn find(called: impl Into<Called>) -> Option<&'static dyn Effect> {
 pub(crate) fn place_among_forms(effect: &dyn Effect) -> Option<usize> {
     let mut forms = effect.forms().iter();
     forms.position(|form| form.form() == effect.form())
+}
+
+/// Place of an effect's lag among its lags, where it may have one.
+#[must_use]
+pub(crate) fn place_among_lags(effect: &dyn Effect) -> Option<usize> {
+    let mut lags = effect.lags().iter();
+    lags.position(|lag| lag.lag_s() == effect.lag_s())
 }
 
 /// `count` values from `low` to `high` with a constant ratio.
@@ -667,6 +689,7 @@ mod tests {
             parameter,
             parameter_half_width: Some(0.1 * parameter),
             form_half_width: None,
+            lag_half_width: None,
             coefficients: &[(3.0, 0.3), (4.0, 0.4)],
             dataset: &Dataset {
                 lead_m_per_rev: Some(0.01),

@@ -83,12 +83,13 @@ impl Part {
         self.effect.width(self.parameter)
     }
 
-    /// Whether it is the same effect with the same nonlinear parameter, of the same form.
+    /// Whether it is the same effect with the same nonlinear parameter, of the same form and lag.
     #[must_use]
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.called() == other.called()
             && self.parameter == other.parameter
             && self.effect.form() == other.effect.form()
+            && self.effect.lag_s() == other.effect.lag_s()
             && self.width() == other.width()
     }
 

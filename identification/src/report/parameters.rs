@@ -145,6 +145,8 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         let velocity = estimate(told.velocity, &format!("{length}/s"));
         own.push(("stribeck_excess", estimate(told.excess, effort)));
         own.push(("stribeck_velocity", velocity));
+        let lag = told.lag.map(|lag| ("stribeck_lag", estimate(lag, "s")));
+        own.extend(lag);
     }
     if told.motor_rubs || !is_told(fitted.model(), told.more) {
         return own;
@@ -264,6 +266,7 @@ fn of_the_inverse_model(findings: &Findings<'_>) -> Vec<Named> {
             parameter: estimate.part.parameter,
             parameter_half_width: estimate.parameter_half_width,
             form_half_width: estimate.form_half_width,
+            lag_half_width: estimate.lag_half_width,
             coefficients: &estimate.own,
             dataset: findings.dataset,
         })

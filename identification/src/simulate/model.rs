@@ -12,6 +12,7 @@
 use axis_model::EffectName;
 
 use crate::fit::fitted::Fitted;
+use crate::model::effects::stribeck::Stribeck;
 use crate::model::effects::torque_saturation::Saturation;
 use crate::model::effects::{Action, Effect, Instant, Stage, Steady};
 use crate::model::inverse::Part;
@@ -28,6 +29,17 @@ pub(crate) struct Force {
     pub part: Part,
     /// Coefficients of its columns.
     pub own: Vec<f64>,
+}
+
+impl Force {
+    /// A fall that lags, and its velocity.
+    fn lagging(&self) -> Option<(Stribeck, f64)> {
+        let Part {
+            effect, parameter, ..
+        } = self.part;
+        let fall = effect.fall().filter(|_| effect.lag_s() > 0.0)?;
+        Some((fall, parameter))
+    }
 }
 
 /// A model for free-run simulation.
@@ -60,6 +72,8 @@ pub(crate) struct Moment {
     pub velocity: f64,
     /// Commanded effort.
     pub commanded: f64,
+    /// What is left of a fall that lags.
+    pub left: Option<f64>,
 }
 
 /// Part of the delay of a record that the simulation has by itself, s. A simulated effort is held
@@ -119,6 +133,7 @@ impl Simulated {
             steady: all_steady.fold(Steady::default(), Steady::and),
             by_motion: of(false),
             by_load: of(true),
+            lagging: self.forces.iter().find_map(Force::lagging),
         }
     }
 }
@@ -155,6 +170,8 @@ pub(crate) struct Forces<'a> {
     steady: Steady,
     by_motion: Vec<AtWork<'a>>,
     by_load: Vec<AtWork<'a>>,
+    /// A fall that lags, and its velocity.
+    lagging: Option<(Stribeck, f64)>,
 }
 
 impl Forces<'_> {
@@ -165,12 +182,28 @@ impl Forces<'_> {
         &self.model.mechanics
     }
 
+    /// What is left of a fall that lags, where there is one: as after a long time at a velocity.
+    #[must_use]
+    pub(crate) fn left_at(&self, velocity: f64) -> Option<f64> {
+        let (fall, vs) = self.lagging?;
+        Some(fall.left(velocity, vs))
+    }
+
+    /// The same after a time at another velocity.
+    #[inline]
+    #[must_use]
+    pub(crate) fn left_after(&self, left: Option<f64>, velocity: f64, time_s: f64) -> Option<f64> {
+        let (fall, vs) = self.lagging?;
+        Some(fall.left_after(left?, (velocity, vs), time_s))
+    }
+
     #[inline]
     fn instant(&self, now: Moment) -> Instant {
         Instant {
             position: now.position,
             scaled: (now.position - self.middle) * self.per_half,
             velocity: now.velocity,
+            left: now.left,
             time_s: now.time_s,
             time_share: now.time_s * self.per_duration,
             ..Instant::default()

@@ -67,10 +67,12 @@ fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     let mut efforts = HeldEfforts::new(first(&record.effort), record.period_s, model.delay_s);
     let steps = SubSteps::of(record.period_s, &efforts);
     let forces = model.at_work();
+    let mut left = forces.left_at(axis.load.v);
     let row = |row: usize| {
         let at = axis.motor.x;
         efforts.push(driving.effort(row, &axis));
-        axis = over_row(axis, &forces, &efforts, (record.time_s[row], &steps));
+        let time = (record.time_s[row], &steps);
+        (axis, left) = over_row((axis, left), &forces, &efforts, time);
         at
     };
     Run {
@@ -78,23 +80,25 @@ fn simulate_piece(model: &Simulated, drive: &Drive, record: &Record) -> Run {
     }
 }
 
-/// The axis a row later.
+/// The axis a row later, and what is left then of a fall that lags.
 fn over_row(
-    mut axis: Axis,
+    (mut axis, mut left): (Axis, Option<f64>),
     forces: &Forces<'_>,
     efforts: &HeldEfforts,
     (time_s, steps): (f64, &SubSteps),
-) -> Axis {
+) -> (Axis, Option<f64>) {
     let h = steps.length_s;
     for (since_s, felt) in &steps.list {
         let now = Moment {
             time_s: time_s + since_s,
             commanded: efforts.mean(*felt),
+            left,
             ..halfway(&axis, h)
         };
         axis = axis.after(forces.mechanics(), forces.acting(now), h);
+        left = forces.left_after(left, now.velocity, h);
     }
-    axis
+    (axis, left)
 }
 
 /// Where ripple and friction are seen over a sub-step: in its middle, with the load's velocity.
@@ -191,8 +195,8 @@ mod tests {
         let model = Simulated::new(&dataset, 1.0e-3, &made::fitted(parts), shape).unwrap();
         let efforts = HeldEfforts::new(8.0, 1.0e-3, 0.0);
         let steps = SubSteps::of(1.0e-3, &efforts);
-        let axis = over_row(
-            Axis::at(0.0, 1.0),
+        let (axis, _) = over_row(
+            (Axis::at(0.0, 1.0), None),
             &model.at_work(),
             &efforts,
             (0.0, &steps),

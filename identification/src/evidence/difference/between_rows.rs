@@ -17,7 +17,8 @@ const PARTS: usize = 4;
 /// Steps of a path in the parts of each row; none in the first row, which nothing comes before.
 pub(super) struct Steps {
     steps: Vec<[f64; PARTS]>,
-    part_s: f64,
+    /// Length of a part, s.
+    pub(super) part_s: f64,
 }
 
 impl Steps {

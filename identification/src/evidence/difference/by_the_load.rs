@@ -51,6 +51,8 @@ pub(crate) struct ByTheLoad {
     pub excess: Known,
     /// Velocity at which that has fallen to 1/e.
     pub velocity: Known,
+    /// Lag with which it follows the velocity, where it does not at once, s.
+    pub lag: Option<Known>,
     /// Width of the gap, where there is one.
     pub gap: Option<Known>,
 }
@@ -139,6 +141,7 @@ fn near(
         deflection,
         rise,
         velocity,
+        lag_s,
         ..
     } = linearised.friction();
     // A step of Gauss and Newton from where the search ended.
@@ -165,6 +168,7 @@ fn near(
         bristle_damping: bent.times(deflection.inverse()),
         excess: of_friction(rise, 1).times(coulomb),
         velocity: of_friction(velocity, 2),
+        lag: (lag_s > 0.0).then(|| of_friction(lag_s, 3)),
         gap: gap(&linearised.others, &known[linearised.others_from()..]),
     })
 }
@@ -201,6 +205,7 @@ impl ByTheLoad {
             bristle_damping: known(self.bristle_damping),
             excess: known(self.excess),
             velocity: known(self.velocity),
+            lag: self.lag.map(known),
             gap: self.gap.map(known),
         }
     }
@@ -229,6 +234,7 @@ impl ByTheLoad {
             bristle_damping: self.bristle_damping.beside(other.bristle_damping),
             excess: self.excess.beside(other.excess),
             velocity: self.velocity.beside(other.velocity),
+            lag: both(self.lag, other.lag),
             gap: both(self.gap, other.gap),
             ..self
         }

@@ -75,6 +75,7 @@ fn start(unit: f64, left: &(dyn Fn(LoadFriction) -> f64 + Sync)) -> LoadFriction
             deflection,
             rise: RISE,
             velocity: velocity * unit,
+            lag_s: 0.0,
             law: Law::Dahl,
         })
     };
@@ -166,6 +167,7 @@ pub(super) mod tests {
         deflection: 20.0e-6,
         rise: 0.4,
         velocity: 4.0e-3,
+        lag_s: 0.0,
         law: Law::Dahl,
     };
     pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;

@@ -203,7 +203,8 @@ impl Carried {
 
     /// Whether its friction is a bristle and nothing else.
     pub(super) fn rubs_as_a_bristle(self) -> bool {
-        self.friction.law == Law::Dahl && self.more == More::default()
+        let LoadFriction { law, lag_s, .. } = self.friction;
+        law == Law::Dahl && lag_s == 0.0 && self.more == More::default()
     }
 
     /// The load's motion on a record.
@@ -211,8 +212,8 @@ impl Carried {
         LoadMotion::of(motion, position, apart, self.flanks, self.smallest_turn)
     }
 
-    /// The same with deflection, rise and velocity of its bristle times factors.
-    pub(super) fn scaled(self, factors: [f64; 3]) -> Self {
+    /// The same with deflection, rise, velocity and lag of its bristle times factors.
+    pub(super) fn scaled(self, factors: [f64; 4]) -> Self {
         Self {
             friction: self.friction.scaled(factors),
             ..self

@@ -2,7 +2,7 @@
 //! slip, both under a level that falls with the velocity.
 //!
 //! ```text
-//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·exp(−(v2/vs)²)
+//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·s     τ·ds/dt = exp(−(v2/vs)²) − s
 //! z = Σ shareᵢ zᵢ     dzᵢ/dx2 = 1/δᵢ within ±g     Σ shareᵢ/δᵢ = 1/δ
 //! ```
 //!
@@ -48,17 +48,64 @@ pub(crate) struct LoadFriction {
     pub rise: f64,
     /// Velocity at which that has fallen to 1/e.
     pub velocity: f64,
+    /// Lag τ with which the level follows the velocity, s; zero where it follows at once.
+    pub lag_s: f64,
     /// How the force builds up.
     pub law: Law,
 }
 
+/// What is left of the rise along a path.
+#[derive(Clone, Copy)]
+struct Left {
+    friction: LoadFriction,
+    /// Shares of the way to where it goes that are gone after half a part of a row and after one.
+    shares: [f64; 2],
+    state: f64,
+}
+
+impl Left {
+    fn along(friction: LoadFriction, path: &Steps) -> Self {
+        let share = |time_s: f64| -(-time_s / friction.lag_s).exp_m1();
+        Self {
+            friction,
+            shares: [share(0.5 * path.part_s), share(path.part_s)],
+            state: 1.0,
+        }
+    }
+
+    /// Levels amid a part of a row at a velocity and at its end, in Coulomb levels; goes on there.
+    fn levels(&mut self, velocity: f64) -> [f64; 2] {
+        let (before, end) = (self.state, self.friction.left(velocity));
+        let left = if self.friction.lag_s > 0.0 {
+            self.shares.map(|share| before + share * (end - before))
+        } else {
+            [end, end]
+        };
+        self.state = left[1];
+        left.map(|left| 1.0 + self.friction.rise * left)
+    }
+}
+
 impl LoadFriction {
-    /// The same with deflection, rise and velocity times factors.
-    pub(super) fn scaled(self, [deflection, rise, velocity]: [f64; 3]) -> Self {
+    /// Most quantities that are searched: deflection, rise, velocity, lag.
+    pub(super) const MOST_SEARCHED: usize = 4;
+
+    /// How many of them are: all, where there is a lag.
+    pub(super) fn searched(self) -> usize {
+        if self.lag_s > 0.0 {
+            Self::MOST_SEARCHED
+        } else {
+            Self::MOST_SEARCHED - 1
+        }
+    }
+
+    /// The same with deflection, rise, velocity and lag times factors.
+    pub(super) fn scaled(self, [deflection, rise, velocity, lag]: [f64; 4]) -> Self {
         Self {
             deflection: self.deflection * deflection,
             rise: self.rise * rise,
             velocity: self.velocity * velocity,
+            lag_s: self.lag_s * lag,
             law: self.law,
         }
     }
@@ -104,9 +151,9 @@ impl LoadFriction {
             .collect()
     }
 
-    /// The level at a velocity, in Coulomb levels.
-    fn level(self, velocity: f64) -> f64 {
-        1.0 + self.rise * (-(velocity / self.velocity).powi(2)).exp()
+    /// What is left of the rise at a velocity in the end.
+    fn left(self, velocity: f64) -> f64 {
+        (-(velocity / self.velocity).powi(2)).exp()
     }
 
     /// The bend along a path, in Coulomb levels.
@@ -125,10 +172,10 @@ impl LoadFriction {
     }
 
     fn bristle(self, path: &Steps) -> Vec<f64> {
-        let mut bend = 0.0_f64;
+        let (mut bend, mut left) = (0.0_f64, Left::along(self, path));
         path.followed(|step, velocity| {
+            let [level, _] = left.levels(velocity);
             if step != 0.0 {
-                let level = self.level(velocity);
                 bend = level * bend_after(bend / level, step, self.deflection * level);
             }
             bend
@@ -137,10 +184,10 @@ impl LoadFriction {
 
     /// Bend of one element that slips after a way, in Coulomb levels.
     pub(super) fn element(self, path: &Steps, at: f64) -> Vec<f64> {
-        let mut bend = 0.0_f64;
+        let (mut bend, mut left) = (0.0_f64, Left::along(self, path));
         path.followed(|step, velocity| {
+            let [_, level] = left.levels(velocity);
             if step != 0.0 {
-                let level = self.level(velocity);
                 bend = (bend + step / at).clamp(-level, level);
             }
             bend
@@ -156,6 +203,7 @@ mod tests {
         deflection: 10.0,
         rise: 0.0,
         velocity: 1.0,
+        lag_s: 0.0,
         law: Law::Dahl,
     };
 
@@ -166,7 +214,7 @@ mod tests {
             .unwrap();
         // 0.75/2 + 0.25/8.
         assert!((1.0 / slipping.deflection - 0.40625).abs() < 1.0e-12);
-        let twice = slipping.scaled([2.0, 1.0, 1.0]).elements();
+        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0]).elements();
         for (element, wanted) in twice.iter().zip([(4.0, 0.75), (16.0, 0.25)]) {
             assert!((element.0 - wanted.0).abs() < 1.0e-5, "{element:?}");
             assert!((element.1 - wanted.1).abs() < 1.0e-6, "{element:?}");
@@ -177,6 +225,23 @@ mod tests {
         let parts: Vec<f64> = (1..=ELEMENTS + 1).map(|part| part as f64).collect();
         let many = BRISTLE.slipping(&parts, &parts).unwrap().elements();
         assert_eq!((many.len(), many[0].0.round()), (ELEMENTS, 2.0));
+    }
+
+    #[test]
+    fn a_level_that_lags_has_fallen_by_63_percent_after_its_lag() {
+        let lagging = LoadFriction {
+            rise: 0.5,
+            lag_s: 20.0,
+            ..BRISTLE
+        };
+        // Much faster than the level falls: the bristle is bent to it all the time.
+        let path: Vec<f64> = (0..=40).map(|row| 1.0e3 * f64::from(row)).collect();
+        let bend = lagging.bend(&Steps::of(&path, &vec![1.0e3; path.len()], 1.0));
+        for row in [20, 40] {
+            // Amid the last of four parts.
+            let wanted = 1.0 + 0.5 * (-(row as f64 - 0.125) / 20.0).exp();
+            assert!((bend[row] - wanted).abs() < 1.0e-9, "{}", bend[row]);
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::columns::{Apart, Way};
 use super::linearised::Linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
+use super::rubbing::LoadFriction;
 use crate::evidence::reversal::slip::{Elements, grid_about};
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
@@ -26,10 +27,52 @@ const RATIOS: [f64; 11] = [
 /// The finest one.
 const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 
+/// Lags that are tried, s.
+const LAGS: (f64, f64, u32) = (5.0e-4, 6.4e-2, 8);
+
 /// The same ways with a wind-up whose friction has another law than a bristle alone, where that
-/// leaves less on held-out blocks.
+/// leaves less on held-out blocks. A lag that is not needed beside the rest goes again.
 pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
     let apart = &apart.without_strikes(&ways);
+    let lagging = with_lag(apart, &ways, place);
+    let lagging = lagging.filter(|changed| is_better(apart, &ways, changed));
+    let ways = with_elements_and_more(apart, lagging.unwrap_or(ways), place);
+    let at_once = with_lag_of(apart, &ways, place, 0.0);
+    match at_once {
+        Some(at_once) if !is_better(apart, &at_once, &ways) => at_once,
+        _ => ways,
+    }
+}
+
+/// The same ways with the lag of the falling level that leaves least, where it has none.
+fn with_lag(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let is_at_once = |carried: &Carried| carried.friction.lag_s == 0.0;
+    carried(ways, place).filter(is_at_once)?;
+    let (from, to, count) = LAGS;
+    let tried = geometric(from, to, count).into_iter();
+    let tried = tried.filter_map(|lag_s| {
+        let changed = with_lag_of(apart, ways, place, lag_s)?;
+        Some((apart.blocks(&changed).fit().sse, changed))
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, changed)| changed)
+}
+
+/// The same ways with another lag, where the level falls.
+fn with_lag_of(apart: &Apart<'_>, ways: &[Way], place: usize, lag_s: f64) -> Option<Vec<Way>> {
+    let own = carried(ways, place)?;
+    let is_other = own.friction.lag_s != lag_s && own.friction.rise > 0.0;
+    let friction = LoadFriction {
+        lag_s,
+        ..own.friction
+    };
+    is_other.then(|| {
+        let changed = instead(ways, place, Carried { friction, ..own });
+        stepped(apart, changed, place)
+    })
+}
+
+fn with_elements_and_more(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
     let slipping = |ways: Vec<Way>| {
         let changed = with_elements(apart, &ways, place);
         let changed = changed.filter(|changed| is_better(apart, &ways, changed));
@@ -62,10 +105,12 @@ fn with_more(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
 fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
     let carried = carried(ways, place)?;
     let others = carried.more.others().into_iter();
-    let mut changed = others.map(|more| {
+    let changed = others.map(|more| {
         let changed = instead(ways, place, Carried { more, ..carried });
         stepped(apart, between_refined_flanks(apart, changed), place)
     });
+    let lagging = std::iter::once_with(|| with_lag(apart, ways, place));
+    let mut changed = changed.chain(lagging.flatten());
     changed.find(|changed| is_better(apart, ways, changed))
 }
 
@@ -166,12 +211,24 @@ mod tests {
     }
 
     #[test]
+    fn a_level_that_lags_is_found_with_its_lag() {
+        for lag_s in [2.0e-3, 10.0e-3] {
+            let truth = LoadFriction { lag_s, ..FRICTION };
+            let axis = rubbed(truth, 0.0, |_| 0.0);
+            let ways = carried_instead(&apart(&axis), &WAYS, UNIT, 0.0).unwrap();
+            let found = carried(&ways, 1).unwrap().friction;
+            assert!((found.lag_s / lag_s - 1.0).abs() < 0.05, "{found:?}");
+            assert!((found.rise / 0.4 - 1.0).abs() < 0.05, "{found:?}");
+        }
+    }
+
+    #[test]
     fn a_bristle_stays_one_however_closely_it_is_asked() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
         let ways = carried_instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let found = carried(&ways, 1).unwrap();
-        assert!(found.friction.elements().is_empty(), "{found:?}");
+        assert!(found.rubs_as_a_bristle(), "{found:?}");
         assert_eq!(elements(&apart, &ways, 1), None);
     }
 }

@@ -13,6 +13,7 @@ use crate::evidence::difference::Known;
 use crate::fit::blocks::{Blocks, half_width_without_folds};
 use crate::fit::fitted::Fitted;
 use crate::model::effects::geometric;
+use crate::model::effects::stribeck::Stribeck;
 use crate::motion::kinematics::Kinematics;
 
 /// Number of deflections of the grid.
@@ -31,12 +32,12 @@ pub(crate) struct Element {
 }
 
 /// How the level of friction falls as velocity grows: `g = 1 + rise·exp(−|v/vs|^p)`, in Coulomb
-/// levels. It is the force at which an element slips; below, only the way tells its force.
+/// levels, with the lag that it may have. It is the force at which an element slips; below, only the way tells its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fall {
     rise: f64,
     velocity: f64,
-    exponent: f64,
+    law: Option<Stribeck>,
 }
 
 impl Fall {
@@ -46,29 +47,25 @@ impl Fall {
         let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
         let coulomb = first(EffectName::Coulomb).filter(|level| *level > 0.0);
         let mut terms = fitted.terms();
-        let fall = terms.find_map(|term| Some((term.part, term.part.effect.fall_exponent()?)));
+        let fall = terms.find_map(|term| Some((term.part, term.part.effect.fall()?)));
         let excess = first(EffectName::Stribeck);
-        let (Some(coulomb), Some(excess), Some((part, exponent))) = (coulomb, excess, fall) else {
+        let (Some(coulomb), Some(excess), Some((part, law))) = (coulomb, excess, fall) else {
             return Self::default();
         };
         Self {
             rise: (excess / coulomb).max(0.0),
             velocity: part.parameter,
-            exponent,
+            law: Some(law),
         }
-    }
-
-    fn level(&self, velocity: f64) -> f64 {
-        if self.rise == 0.0 {
-            return 1.0;
-        }
-        1.0 + self.rise * (-(velocity / self.velocity).abs().powf(self.exponent)).exp()
     }
 
     /// At the rows of a motion.
     fn levels(&self, motion: &Kinematics) -> Vec<f64> {
-        let velocity = motion.velocity_lp.iter();
-        velocity.map(|v| self.level(*v)).collect()
+        let Some(law) = self.law.filter(|_| self.rise > 0.0) else {
+            return vec![1.0; motion.len()];
+        };
+        let left = law.along(motion, self.velocity).into_iter();
+        left.map(|left| 1.0 + self.rise * left).collect()
     }
 }
 
@@ -301,9 +298,13 @@ pub(crate) mod tests {
         let model = coulomb.with(made::found(EffectName::Stribeck, 2.0e-3));
         let fitted = Fitted::new(model, &[200.0, 60.0]);
         let fall = Fall::of(&fitted);
-        assert!((fall.level(0.0) - 1.3).abs() < 1.0e-12);
-        assert!((fall.level(-2.0e-3) - (1.0 + 0.3 / std::f64::consts::E)).abs() < 1.0e-12);
-        assert!((fall.level(0.1) - 1.0).abs() < 1.0e-12);
+        let mut axis = made::axis(made::usual);
+        axis.motion.velocity_lp[..3].copy_from_slice(&[0.0, -2.0e-3, 0.1]);
+        let levels = fall.levels(&axis.motion);
+        let wanted = [1.3, 1.0 + 0.3 / std::f64::consts::E, 1.0];
+        for (level, wanted) in levels.iter().zip(wanted) {
+            assert!((level - wanted).abs() < 1.0e-12, "{level} {wanted}");
+        }
     }
 
     #[test]

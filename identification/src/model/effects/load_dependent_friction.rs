@@ -347,6 +347,7 @@ mod tests {
             parameter: MOTOR_SHARE,
             parameter_half_width: None,
             form_half_width: None,
+            lag_half_width: None,
             coefficients: &[(RATIO, 0.01)],
             dataset: &axis(usual).dataset,
         };

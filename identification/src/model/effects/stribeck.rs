@@ -4,6 +4,12 @@
 //! Dupont and Canudas de Wit, Automatica 30, 1994). Each exponent is a form of the same effect.
 //! Gauss is the usual one; another has to beat it. Where friction differs by direction, so does its
 //! fall: `(c sign(v) + d)·exp(−|v / vs|^p)`, with the larger excess the way of the sign of d.
+//!
+//! The fall may lag (frictional lag: Hess and Soom, ASME J. Tribology 112, 1990; Lampaert,
+//! Al-Bender and Swevers, 2003): what is left of the excess goes to exp(−|v / vs|^p) by first
+//! order. Each lag is a form, too, of which the usual one is none.
+
+use std::sync::LazyLock;
 
 use axis_model::EffectName;
 
@@ -12,9 +18,10 @@ use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
 /// c·sign(v)·exp(−|v/vs|^p), for each direction its own c where it falls by direction.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stribeck {
     exponent: f64,
+    lag_s: f64,
     by_direction: bool,
 }
 
@@ -24,41 +31,55 @@ const SMALLEST: f64 = 0.5;
 const STEP: f64 = 0.025;
 /// Number of exponents: the last is 2.
 const COUNT: usize = 61;
-/// One for each exponent, the same both ways and by direction.
-static BOTH_WAYS: [Stribeck; COUNT] = exponents(false);
-static BY_DIRECTION: [Stribeck; COUNT] = exponents(true);
-static FORMS_BOTH_WAYS: [&dyn Effect; COUNT] = forms(&BOTH_WAYS);
-static FORMS_BY_DIRECTION: [&dyn Effect; COUNT] = forms(&BY_DIRECTION);
+/// Smallest lag, s.
+const SHORTEST_LAG_S: f64 = 2.0e-4;
+/// From one lag to the next.
+const LAG_RATIO: f64 = 1.15;
+/// Number of lags, the first of which is none; the last is 0.09 s.
+const LAGS: usize = 45;
 /// The usual one.
-pub(crate) static GAUSSIAN: &Stribeck = &BOTH_WAYS[COUNT - 1];
+pub(crate) static GAUSSIAN: Stribeck = Stribeck {
+    exponent: SMALLEST + STEP * (COUNT - 1) as f64,
+    lag_s: 0.0,
+    by_direction: false,
+};
+/// All of them: those of both directions alike, then those by direction; lag by lag, each with its
+/// exponents.
+static FALLS: LazyLock<Vec<Stribeck>> = LazyLock::new(falls);
+/// The same, as effects.
+static BY_LAG: LazyLock<Vec<&dyn Effect>> = LazyLock::new(|| {
+    let falls = FALLS.iter();
+    falls.map(|fall| fall as &dyn Effect).collect()
+});
+/// The same, exponent by exponent, each with its lags.
+static BY_EXPONENT: LazyLock<Vec<&dyn Effect>> = LazyLock::new(|| {
+    let places = (0..2).flat_map(|kind| (0..COUNT).map(move |place| (kind, place)));
+    let all = places.flat_map(|(kind, place)| (0..LAGS).map(move |lag| (kind, place, lag)));
+    all.map(|(kind, place, lag)| BY_LAG[(kind * LAGS + lag) * COUNT + place])
+        .collect()
+});
 
-const fn exponents(by_direction: bool) -> [Stribeck; COUNT] {
-    let smallest = Stribeck {
-        exponent: SMALLEST,
-        by_direction,
+fn falls() -> Vec<Stribeck> {
+    let lags = (0..LAGS as i32).map(|lag| match lag {
+        0 => 0.0,
+        lag => SHORTEST_LAG_S * LAG_RATIO.powi(lag - 1),
+    });
+    let lags: Vec<f64> = lags.collect();
+    let of_kind = |by_direction: bool| {
+        lags.iter().flat_map(move |lag_s| {
+            (0..COUNT).map(move |place| Stribeck {
+                exponent: SMALLEST + STEP * place as f64,
+                lag_s: *lag_s,
+                by_direction,
+            })
+        })
     };
-    let mut all = [smallest; COUNT];
-    let mut place = 0;
-    while place < COUNT {
-        all[place].exponent += STEP * place as f64;
-        place += 1;
-    }
-    all
-}
-
-const fn forms(list: &'static [Stribeck; COUNT]) -> [&'static dyn Effect; COUNT] {
-    let mut all: [&'static dyn Effect; COUNT] = [&list[0]; COUNT];
-    let mut place = 0;
-    while place < COUNT {
-        all[place] = &list[place];
-        place += 1;
-    }
-    all
+    of_kind(false).chain(of_kind(true)).collect()
 }
 
 impl Stribeck {
-    /// What is left of the excess at a velocity.
-    fn left(&self, v: f64, vs: f64) -> f64 {
+    /// What is left of the excess at a velocity, without the lag.
+    pub(crate) fn left(&self, v: f64, vs: f64) -> f64 {
         let ratio = (v / vs).abs();
         let power = if self.exponent == 2.0 {
             ratio * ratio
@@ -66,6 +87,47 @@ impl Stribeck {
             ratio.powf(self.exponent)
         };
         (-power).exp()
+    }
+
+    /// Place of its exponent, and of its lag.
+    fn places(&self) -> (usize, usize) {
+        let place = (self.exponent - SMALLEST) / STEP;
+        let lag = (self.lag_s / SHORTEST_LAG_S).ln() / LAG_RATIO.ln();
+        let lag = if self.lag_s == 0.0 { 0.0 } else { 1.0 + lag };
+        (place.round() as usize, lag.round() as usize)
+    }
+
+    /// What is left of the excess where it lags, after a time at a velocity.
+    #[must_use]
+    pub(crate) fn left_after(&self, left: f64, (v, vs): (f64, f64), time_s: f64) -> f64 {
+        let share = -(-time_s / self.lag_s).exp_m1();
+        left + share * (self.left(v, vs) - left)
+    }
+
+    /// What is left of the excess along a motion.
+    pub(crate) fn along(&self, motion: &Kinematics, vs: f64) -> Vec<f64> {
+        let velocity = motion.velocity_lp.iter();
+        let mut fall: Vec<f64> = velocity.map(|v| self.left(*v, vs)).collect();
+        if self.lag_s > 0.0 {
+            let share = -(-motion.period_s / self.lag_s).exp_m1();
+            for piece in &motion.pieces {
+                lag_behind(&mut fall[piece.clone()], share);
+            }
+        }
+        fall
+    }
+}
+
+/// Lets values lag: from row to row by a share of the way to what they would be.
+fn lag_behind(values: &mut [f64], share: f64) {
+    let Some(mut state) = values.first().copied() else {
+        return;
+    };
+    let mut before = state;
+    for value in values {
+        // Between two rows it goes to the mean of what it would be at them.
+        state += share * (0.5 * (before + *value) - state);
+        before = std::mem::replace(value, state);
     }
 }
 
@@ -82,11 +144,7 @@ impl Effect for Stribeck {
     }
 
     fn columns(&self, motion: &Kinematics, _: &Dataset, vs: f64) -> Vec<Vec<f64>> {
-        let fall: Vec<f64> = motion
-            .velocity_lp
-            .iter()
-            .map(|v| self.left(*v, vs))
-            .collect();
+        let fall = self.along(motion, vs);
         let pairs = fall.iter().zip(&motion.direction);
         let against = pairs.map(|(fall, direction)| fall * direction).collect();
         if self.by_direction {
@@ -108,12 +166,12 @@ impl Effect for Stribeck {
         !self.by_direction
     }
 
-    fn fall_exponent(&self) -> Option<f64> {
-        Some(self.exponent)
+    fn fall(&self) -> Option<Stribeck> {
+        Some(*self)
     }
 
     fn action(&self, at: &Instant, vs: f64, own: &[f64]) -> Action {
-        let left = self.left(at.velocity, vs);
+        let left = at.left.unwrap_or_else(|| self.left(at.velocity, vs));
         Action {
             force: own.get(1).copied().unwrap_or(0.0) * left,
             ..Action::level(own[0] * left)
@@ -121,16 +179,24 @@ impl Effect for Stribeck {
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
-        if self.by_direction {
-            &FORMS_BY_DIRECTION
-        } else {
-            &FORMS_BOTH_WAYS
-        }
+        let (_, lag) = self.places();
+        let from = (usize::from(self.by_direction) * LAGS + lag) * COUNT;
+        &BY_LAG[from..from + COUNT]
+    }
+
+    fn lags(&self) -> &'static [&'static dyn Effect] {
+        let (place, _) = self.places();
+        let from = (usize::from(self.by_direction) * COUNT + place) * LAGS;
+        &BY_EXPONENT[from..from + LAGS]
+    }
+
+    fn lag_s(&self) -> f64 {
+        self.lag_s
     }
 
     fn by_direction(&self) -> Option<&'static dyn Effect> {
-        let mut forms = FORMS_BY_DIRECTION.into_iter();
-        forms.find(|form| form.form() == self.exponent)
+        let (place, lag) = self.places();
+        Some(BY_LAG[(LAGS + lag) * COUNT + place])
     }
 
     fn form(&self) -> f64 {
@@ -177,10 +243,16 @@ impl Effect for Stribeck {
             half_width: Some(half_width),
             unit: String::new(),
         });
+        let lag = naming.lag_half_width.map(|half_width| Named {
+            name: "stribeck_lag".into(),
+            value: self.lag_s,
+            half_width: Some(half_width),
+            unit: "s".into(),
+        });
         let by_direction = self
             .by_direction
             .then(|| naming.coefficient("stribeck_excess_by_direction", 1, unit));
-        let all = [Some(excess), by_direction, Some(velocity), exponent];
+        let all = [Some(excess), by_direction, Some(velocity), exponent, lag];
         all.into_iter().flatten().collect()
     }
 }
