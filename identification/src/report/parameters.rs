@@ -15,6 +15,7 @@ use crate::evidence::difference::{ByTheLoad, Difference, Known, More};
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::slow_ripple::OrderAtReversals;
+use crate::evidence::thresholds::WRONG_IN_FORM;
 use crate::fit::primes::without_primes;
 use crate::model::effects::{Named, Naming};
 use crate::model::inverse::{Model, Part};
@@ -64,10 +65,23 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
         let unit = findings.dataset.effort.unit();
         parameters.share_out_coulomb(about(motor.value, motor.half_width, unit.into()));
     }
-    parameters
+    parameters.widened(WRONG_IN_FORM)
 }
 
 impl Parameters {
+    /// The same with half widths times a factor.
+    fn widened(mut self, by: f64) -> Self {
+        for estimate in self.estimates.values_mut() {
+            let half_width = by * estimate.half_width();
+            *estimate = about(
+                estimate.value,
+                half_width,
+                std::mem::take(&mut estimate.unit),
+            );
+        }
+        self
+    }
+
     /// The Coulomb friction on either side of a spring, where the motor's own side is seen to have
     /// some: that, and what is left of the whole for the load.
     fn share_out_coulomb(&mut self, motor: Estimate) {
