@@ -57,6 +57,7 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
     let mut parameters = table(of_outputs);
     let difference = stages.difference.as_ref();
     if let Some(told) = difference.and_then(|difference| difference.by_the_load.as_ref()) {
+        parameters.without_shape_of_fall(told);
         for (name, estimate) in of_the_load(findings, told) {
             parameters.replace(name, estimate);
         }
@@ -80,6 +81,17 @@ impl Parameters {
             );
         }
         self
+    }
+
+    /// Takes exponent and lag of a fall away where the load's motion tells its excess and velocity:
+    /// those go with an exponent and a lag of their own.
+    fn without_shape_of_fall(&mut self, told: &ByTheLoad) {
+        if told.excess.value > 0.0 {
+            for name in ["stribeck_exponent", "stribeck_lag"] {
+                self.estimates.remove(name);
+                self.from.remove(name);
+            }
+        }
     }
 
     /// The Coulomb friction on either side of a spring, where the motor's own side is seen to have
@@ -160,7 +172,9 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         own.push(("stribeck_excess", estimate(told.excess, effort)));
         own.push(("stribeck_velocity", velocity));
         let lag = told.lag.map(|lag| ("stribeck_lag", estimate(lag, "s")));
-        own.extend(lag);
+        let exponent = told.exponent;
+        let exponent = exponent.map(|exponent| ("stribeck_exponent", estimate(exponent, "")));
+        own.extend(lag.into_iter().chain(exponent));
     }
     if told.motor_rubs || !is_told(fitted.model(), told.more) {
         return own;

@@ -53,6 +53,8 @@ pub(crate) struct ByTheLoad {
     pub velocity: Known,
     /// Lag with which it follows the velocity, where it does not at once, s.
     pub lag: Option<Known>,
+    /// Exponent of that fall, where it is not Gauss's.
+    pub exponent: Option<Known>,
     /// Width of the gap, where there is one.
     pub gap: Option<Known>,
 }
@@ -137,21 +139,17 @@ fn near(
     };
     let linearised = Linearised::of(apart, ways, place)?;
     let known = linearised.known();
-    let LoadFriction {
-        deflection,
-        rise,
-        velocity,
-        lag_s,
-        ..
-    } = linearised.friction();
+    let friction = linearised.friction();
+    let searched = friction.searched();
     // A step of Gauss and Newton from where the search ended.
     let of_friction = |value: f64, parameter: usize| {
-        let change = known[carried.width() + parameter];
-        Known::new(1.0 + change.value, change.half_width).of(value)
+        let place = searched.iter().position(|place| *place == parameter)?;
+        let change = known[carried.width() + place];
+        Some(Known::new(1.0 + change.value, change.half_width).of(value))
     };
     let coulomb = known[Carried::FRICTION].times(stiffness);
     let damping = known[Carried::DAMPING].times(stiffness);
-    let deflection = of_friction(deflection, 0);
+    let deflection = of_friction(friction.deflection, 0)?;
     let bent = known[Carried::BENDING].times(stiffness);
     Some(ByTheLoad {
         stiffness,
@@ -166,9 +164,10 @@ fn near(
         deflection,
         elements: None,
         bristle_damping: bent.times(deflection.inverse()),
-        excess: of_friction(rise, 1).times(coulomb),
-        velocity: of_friction(velocity, 2),
-        lag: (lag_s > 0.0).then(|| of_friction(lag_s, 3)),
+        excess: of_friction(friction.rise, 1)?.times(coulomb),
+        velocity: of_friction(friction.velocity, 2)?,
+        lag: of_friction(friction.lag_s, LoadFriction::LAG),
+        exponent: of_friction(friction.exponent, LoadFriction::EXPONENT),
         gap: gap(&linearised.others, &known[linearised.others_from()..]),
     })
 }
@@ -206,6 +205,7 @@ impl ByTheLoad {
             excess: known(self.excess),
             velocity: known(self.velocity),
             lag: self.lag.map(known),
+            exponent: self.exponent.map(known),
             gap: self.gap.map(known),
         }
     }
@@ -235,6 +235,7 @@ impl ByTheLoad {
             excess: self.excess.beside(other.excess),
             velocity: self.velocity.beside(other.velocity),
             lag: both(self.lag, other.lag),
+            exponent: both(self.exponent, other.exponent),
             gap: both(self.gap, other.gap),
             ..self
         }

@@ -14,7 +14,7 @@ use super::columns::{Apart, Way};
 use super::flanks::Balance;
 use super::load::{Carried, LoadMotion, More};
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::{Law, LoadFriction};
+use super::rubbing::{GAUSS, Law, LoadFriction};
 use super::slipping::by_another_law;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
@@ -76,6 +76,7 @@ fn start(unit: f64, left: &(dyn Fn(LoadFriction) -> f64 + Sync)) -> LoadFriction
             rise: RISE,
             velocity: velocity * unit,
             lag_s: 0.0,
+            exponent: GAUSS,
             law: Law::Dahl,
         })
     };
@@ -168,6 +169,7 @@ pub(super) mod tests {
         rise: 0.4,
         velocity: 4.0e-3,
         lag_s: 0.0,
+        exponent: GAUSS,
         law: Law::Dahl,
     };
     pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;

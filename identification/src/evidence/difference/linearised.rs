@@ -1,5 +1,5 @@
 //! A wind-up by the load's motion beside other ways, linearised about its bristle: columns of the
-//! wind-up, derivatives by deflection, rise, velocity and lag, columns of the others.
+//! wind-up, derivatives by what is searched of it, columns of the others.
 
 use super::columns::{Apart, Way};
 use super::known::Known;
@@ -22,9 +22,9 @@ pub(super) struct Linearised {
 
 impl Linearised {
     /// Place of the coefficients of the other ways: after those of the wind-up, and the changes of
-    /// deflection, rise, velocity and lag.
+    /// what is searched of its friction.
     pub(super) fn others_from(&self) -> usize {
-        self.carried.width() + self.carried.friction.searched()
+        self.carried.width() + self.carried.friction.searched().len()
     }
 
     /// About the wind-up at a place of such ways.
@@ -51,7 +51,7 @@ impl Linearised {
     }
 
     /// Coefficients with their half widths: those of the wind-up ([`Carried`]), the changes of
-    /// deflection, rise, velocity and lag as shares of them, those of the others.
+    /// what is searched of its friction as shares of it, those of the others.
     pub(super) fn known(&self) -> Vec<Known> {
         let values = self.blocks.fit().coefficients.into_iter();
         let known = values.zip(self.blocks.half_widths());
@@ -65,15 +65,15 @@ impl Linearised {
         let coefficients = self.blocks.fit().coefficients;
         let changes = coefficients.get(self.carried.width()..self.others_from())?;
         let mut factors = [1.0; LoadFriction::MOST_SEARCHED];
-        for (factor, change) in factors.iter_mut().zip(changes) {
-            *factor = (1.0 + change).clamp(FACTORS.0, FACTORS.1);
+        for (place, change) in self.carried.friction.searched().into_iter().zip(changes) {
+            factors[place] = (1.0 + change).clamp(FACTORS.0, FACTORS.1);
         }
         let is_known = factors.iter().all(|factor| factor.is_finite());
         is_known.then(|| self.carried.scaled(factors))
     }
 }
 
-/// How motor − load changes with deflection, rise, velocity and lag, each by its own size.
+/// How motor − load changes with what is searched of the friction, each by its own size.
 fn derivatives(apart: &Apart<'_>, carried: Carried, own: &[f64]) -> Vec<Vec<f64>> {
     let at = |parameter: usize, by: f64| {
         let mut factors = [1.0; LoadFriction::MOST_SEARCHED];
@@ -84,7 +84,7 @@ fn derivatives(apart: &Apart<'_>, carried: Carried, own: &[f64]) -> Vec<Vec<f64>
         let pairs = at(parameter, STEP).into_iter().zip(at(parameter, -STEP));
         pairs.map(|(up, down)| (up - down) / (2.0 * STEP)).collect()
     };
-    (0..carried.friction.searched()).map(of).collect()
+    carried.friction.searched().into_iter().map(of).collect()
 }
 
 #[cfg(test)]
@@ -102,7 +102,10 @@ mod tests {
         let Way::Carried(found) = ways[1] else {
             panic!("{ways:?}");
         };
-        let away = [ways[0], Way::Carried(found.scaled([1.05, 0.9, 1.1, 1.0]))];
+        let away = [
+            ways[0],
+            Way::Carried(found.scaled([1.05, 0.9, 1.1, 1.0, 1.0])),
+        ];
         let moved = Linearised::of(&apart, &away, 1).unwrap().step().unwrap();
         let near = [ways[0], Way::Carried(moved)];
         let left = |ways: &[Way]| apart.blocks(ways).fit().sse;

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
-use super::rubbing::{Law, LoadFriction};
+use super::rubbing::{GAUSS, Law, LoadFriction};
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::mask::{unless_few, widened, without};
@@ -203,8 +203,14 @@ impl Carried {
 
     /// Whether its friction is a bristle and nothing else.
     pub(super) fn rubs_as_a_bristle(self) -> bool {
-        let LoadFriction { law, lag_s, .. } = self.friction;
-        law == Law::Dahl && lag_s == 0.0 && self.more == More::default()
+        let LoadFriction {
+            law,
+            lag_s,
+            exponent,
+            ..
+        } = self.friction;
+        let falls_as_usual = lag_s == 0.0 && exponent == GAUSS;
+        law == Law::Dahl && falls_as_usual && self.more == More::default()
     }
 
     /// The load's motion on a record.
@@ -212,8 +218,8 @@ impl Carried {
         LoadMotion::of(motion, position, apart, self.flanks, self.smallest_turn)
     }
 
-    /// The same with deflection, rise, velocity and lag of its bristle times factors.
-    pub(super) fn scaled(self, factors: [f64; 4]) -> Self {
+    /// The same with what is searched of its friction times factors.
+    pub(super) fn scaled(self, factors: [f64; LoadFriction::MOST_SEARCHED]) -> Self {
         Self {
             friction: self.friction.scaled(factors),
             ..self

@@ -2,7 +2,7 @@
 //! slip, both under a level that falls with the velocity.
 //!
 //! ```text
-//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·s     τ·ds/dt = exp(−(v2/vs)²) − s
+//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·s     τ·ds/dt = exp(−|v2/vs|^p) − s
 //! z = Σ shareᵢ zᵢ     dzᵢ/dx2 = 1/δᵢ within ±g     Σ shareᵢ/δᵢ = 1/δ
 //! ```
 //!
@@ -50,9 +50,16 @@ pub(crate) struct LoadFriction {
     pub velocity: f64,
     /// Lag τ with which the level follows the velocity, s; zero where it follows at once.
     pub lag_s: f64,
+    /// Exponent p of the fall: 2 with Gauss.
+    pub exponent: f64,
     /// How the force builds up.
     pub law: Law,
 }
+
+/// The exponent of a fall of which none was found.
+pub(super) const GAUSS: f64 = 2.0;
+/// Range of the others.
+const EXPONENTS: (f64, f64) = (0.4, 2.5);
 
 /// What is left of the rise along a path.
 #[derive(Clone, Copy)]
@@ -87,25 +94,29 @@ impl Left {
 }
 
 impl LoadFriction {
-    /// Most quantities that are searched: deflection, rise, velocity, lag.
-    pub(super) const MOST_SEARCHED: usize = 4;
+    /// Most quantities that are searched: deflection, rise, velocity, lag, exponent.
+    pub(super) const MOST_SEARCHED: usize = 5;
+    /// Place of the lag among them.
+    pub(super) const LAG: usize = 3;
+    /// Place of the exponent.
+    pub(super) const EXPONENT: usize = 4;
 
-    /// How many of them are: all, where there is a lag.
-    pub(super) fn searched(self) -> usize {
-        if self.lag_s > 0.0 {
-            Self::MOST_SEARCHED
-        } else {
-            Self::MOST_SEARCHED - 1
-        }
+    /// Places of those that are: the lag and the exponent where they are not the usual ones.
+    pub(super) fn searched(self) -> Vec<usize> {
+        let lag = (self.lag_s > 0.0).then_some(Self::LAG);
+        let exponent = (self.exponent != GAUSS).then_some(Self::EXPONENT);
+        (0..Self::LAG).chain(lag).chain(exponent).collect()
     }
 
-    /// The same with deflection, rise, velocity and lag times factors.
-    pub(super) fn scaled(self, [deflection, rise, velocity, lag]: [f64; 4]) -> Self {
+    /// The same with each of them times a factor.
+    pub(super) fn scaled(self, factors: [f64; Self::MOST_SEARCHED]) -> Self {
+        let [deflection, rise, velocity, lag, exponent] = factors;
         Self {
             deflection: self.deflection * deflection,
             rise: self.rise * rise,
             velocity: self.velocity * velocity,
             lag_s: self.lag_s * lag,
+            exponent: (self.exponent * exponent).clamp(EXPONENTS.0, EXPONENTS.1),
             law: self.law,
         }
     }
@@ -153,7 +164,13 @@ impl LoadFriction {
 
     /// What is left of the rise at a velocity in the end.
     fn left(self, velocity: f64) -> f64 {
-        (-(velocity / self.velocity).powi(2)).exp()
+        let ratio = velocity / self.velocity;
+        let power = if self.exponent == GAUSS {
+            ratio * ratio
+        } else {
+            ratio.abs().powf(self.exponent)
+        };
+        (-power).exp()
     }
 
     /// The bend along a path, in Coulomb levels.
@@ -204,6 +221,7 @@ mod tests {
         rise: 0.0,
         velocity: 1.0,
         lag_s: 0.0,
+        exponent: GAUSS,
         law: Law::Dahl,
     };
 
@@ -214,7 +232,7 @@ mod tests {
             .unwrap();
         // 0.75/2 + 0.25/8.
         assert!((1.0 / slipping.deflection - 0.40625).abs() < 1.0e-12);
-        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0]).elements();
+        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0, 1.0]).elements();
         for (element, wanted) in twice.iter().zip([(4.0, 0.75), (16.0, 0.25)]) {
             assert!((element.0 - wanted.0).abs() < 1.0e-5, "{element:?}");
             assert!((element.1 - wanted.1).abs() < 1.0e-6, "{element:?}");

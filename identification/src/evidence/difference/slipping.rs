@@ -8,7 +8,7 @@ use super::columns::{Apart, Way};
 use super::linearised::Linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::LoadFriction;
+use super::rubbing::{GAUSS, LoadFriction};
 use crate::evidence::reversal::slip::{Elements, grid_about};
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
@@ -27,46 +27,80 @@ const RATIOS: [f64; 11] = [
 /// The finest one.
 const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 
-/// Lags that are tried, s.
+/// Lags of the falling level that are tried, s.
 const LAGS: (f64, f64, u32) = (5.0e-4, 6.4e-2, 8);
+/// Exponents of its fall that are tried.
+const EXPONENTS: [f64; 5] = [0.5, 0.75, 1.0, 1.25, 1.5];
 
 /// The same ways with a wind-up whose friction has another law than a bristle alone, where that
-/// leaves less on held-out blocks. A lag that is not needed beside the rest goes again.
+/// leaves less on held-out blocks. A lag or an exponent that is not needed beside the rest goes
+/// again.
 pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
     let apart = &apart.without_strikes(&ways);
-    let lagging = with_lag(apart, &ways, place);
-    let lagging = lagging.filter(|changed| is_better(apart, &ways, changed));
-    let ways = with_elements_and_more(apart, lagging.unwrap_or(ways), place);
-    let at_once = with_lag_of(apart, &ways, place, 0.0);
-    match at_once {
-        Some(at_once) if !is_better(apart, &at_once, &ways) => at_once,
-        _ => ways,
-    }
+    let ways = falling_otherwise(apart, ways, place);
+    let ways = with_elements_and_more(apart, ways, place);
+    let usual = [Fall::Lag(0.0), Fall::Exponent(GAUSS)].into_iter();
+    usual.fold(ways, |ways, usual| {
+        let plain = with_fall(apart, &ways, place, usual);
+        plain
+            .filter(|plain| !is_better(apart, plain, &ways))
+            .unwrap_or(ways)
+    })
 }
 
-/// The same ways with the lag of the falling level that leaves least, where it has none.
-fn with_lag(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
-    let is_at_once = |carried: &Carried| carried.friction.lag_s == 0.0;
-    carried(ways, place).filter(is_at_once)?;
+/// How the level falls.
+#[derive(Clone, Copy)]
+enum Fall {
+    /// With such a lag, s.
+    Lag(f64),
+    /// By such an exponent.
+    Exponent(f64),
+}
+
+/// The same ways with another lag and another exponent of the falling level, the one that leaves
+/// less first.
+fn falling_otherwise(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
+    while let Some(better) =
+        with_another_fall(apart, &ways, place).filter(|better| is_better(apart, &ways, better))
+    {
+        ways = better;
+    }
+    ways
+}
+
+/// The same ways with the lag or the exponent of the falling level that leaves least, of what it
+/// has not yet.
+fn with_another_fall(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let LoadFriction {
+        lag_s, exponent, ..
+    } = carried(ways, place)?.friction;
     let (from, to, count) = LAGS;
-    let tried = geometric(from, to, count).into_iter();
-    let tried = tried.filter_map(|lag_s| {
-        let changed = with_lag_of(apart, ways, place, lag_s)?;
+    let lags = geometric(from, to, count).into_iter().map(Fall::Lag);
+    let exponents = EXPONENTS.into_iter().map(Fall::Exponent);
+    let lags = lags.filter(|_| lag_s == 0.0);
+    let tried = lags.chain(exponents.filter(|_| exponent == GAUSS));
+    let tried = tried.filter_map(|fall| {
+        let changed = with_fall(apart, ways, place, fall)?;
         Some((apart.blocks(&changed).fit().sse, changed))
     });
     let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, changed)| changed)
 }
 
-/// The same ways with another lag, where the level falls.
-fn with_lag_of(apart: &Apart<'_>, ways: &[Way], place: usize, lag_s: f64) -> Option<Vec<Way>> {
+/// The same ways with a level that falls otherwise; `None` where it does not fall, or so already.
+fn with_fall(apart: &Apart<'_>, ways: &[Way], place: usize, fall: Fall) -> Option<Vec<Way>> {
     let own = carried(ways, place)?;
-    let is_other = own.friction.lag_s != lag_s && own.friction.rise > 0.0;
-    let friction = LoadFriction {
-        lag_s,
-        ..own.friction
+    let friction = match fall {
+        Fall::Lag(lag_s) => LoadFriction {
+            lag_s,
+            ..own.friction
+        },
+        Fall::Exponent(exponent) => LoadFriction {
+            exponent,
+            ..own.friction
+        },
     };
-    is_other.then(|| {
+    (friction != own.friction && friction.rise > 0.0).then(|| {
         let changed = instead(ways, place, Carried { friction, ..own });
         stepped(apart, changed, place)
     })
@@ -109,8 +143,8 @@ fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Wa
         let changed = instead(ways, place, Carried { more, ..carried });
         stepped(apart, between_refined_flanks(apart, changed), place)
     });
-    let lagging = std::iter::once_with(|| with_lag(apart, ways, place));
-    let mut changed = changed.chain(lagging.flatten());
+    let falling = std::iter::once_with(|| with_another_fall(apart, ways, place));
+    let mut changed = changed.chain(falling.flatten());
     changed.find(|changed| is_better(apart, ways, changed))
 }
 
@@ -219,6 +253,23 @@ mod tests {
             let found = carried(&ways, 1).unwrap().friction;
             assert!((found.lag_s / lag_s - 1.0).abs() < 0.05, "{found:?}");
             assert!((found.rise / 0.4 - 1.0).abs() < 0.05, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_exponent_of_a_fall_is_found_alone_and_beside_a_lag() {
+        for (exponent, lag_s) in [(1.0, 0.0), (0.7, 0.0), (1.0, 5.0e-3)] {
+            let truth = LoadFriction {
+                exponent,
+                lag_s,
+                ..FRICTION
+            };
+            let axis = rubbed(truth, 0.0, |_| 0.0);
+            let ways = carried_instead(&apart(&axis), &WAYS, UNIT, 0.0).unwrap();
+            let found = carried(&ways, 1).unwrap().friction;
+            assert!((found.exponent / exponent - 1.0).abs() < 0.1, "{found:?}");
+            assert!((found.lag_s - lag_s).abs() <= 0.1 * lag_s, "{found:?}");
+            assert!((found.rise / 0.4 - 1.0).abs() < 0.1, "{found:?}");
         }
     }
 
