@@ -18,7 +18,8 @@
 //! | [`mod@make::unmet`], [`outside::unmet`] | those written after them, to be run once |
 //! | [`mod@make::unforeseen`], [`outside::unforeseen`] | those written after them too |
 //! | [`mod@make::unexpected`], [`outside::unexpected`] | those written after all of these |
-//! | [`mod@make::unsought`], [`outside::unsought`] | those written last |
+//! | [`mod@make::unsought`], [`outside::unsought`] | those written after them |
+//! | [`mod@make::families`] | those by families of friction, waves and masses, written last |
 //! | [`clean`] | records that must stay explained |
 //! | [`outside`] | disturbances outside the list |
 //! | [`spoilt`] | bad records |
@@ -46,7 +47,7 @@ pub mod truth;
 /// How one record is made, without making it.
 pub struct Recipe {
     /// Which table it is a row of: `makes`, `held-back`, `unseen`, `untried`, `unmet`,
-    /// `unforeseen`, `unexpected`, `unsought`, `clean`, `outside` or `spoilt`.
+    /// `unforeseen`, `unexpected`, `unsought`, `families`, `clean`, `outside` or `spoilt`.
     pub table: &'static str,
     /// Name of the record.
     pub name: String,
@@ -85,7 +86,7 @@ pub struct Apart {
 
 /// What was written apart, in the order in which it was.
 #[must_use]
-pub fn written_apart() -> [Apart; 7] {
+pub fn written_apart() -> [Apart; 8] {
     [
         Apart {
             table: "held-back",
@@ -121,6 +122,11 @@ pub fn written_apart() -> [Apart; 7] {
             table: "unsought",
             makes: make::unsought(),
             outside: outside::unsought::UNSOUGHT,
+        },
+        Apart {
+            table: "families",
+            makes: make::families(),
+            outside: &[],
         },
     ]
 }

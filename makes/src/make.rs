@@ -8,6 +8,7 @@
 pub mod arms;
 pub mod belts;
 pub mod direct;
+pub mod families;
 pub mod gears;
 pub mod held_back;
 pub mod logs;
@@ -207,6 +208,13 @@ pub fn unexpected() -> Vec<Make> {
 #[must_use]
 pub fn unsought() -> Vec<Make> {
     unsought::FAMILIES.concat()
+}
+
+/// Makes by the families of friction, waves and masses, written after those of [`unsought()`]. They
+/// are a table of their own.
+#[must_use]
+pub fn families() -> Vec<Make> {
+    families::FAMILIES.concat()
 }
 
 /// All makes but those that are held back.

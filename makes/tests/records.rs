@@ -5,7 +5,8 @@ mod common;
 use common::{some_of, some_outside};
 use makes::draw::Draw;
 use makes::make::{
-    Form, Make, Presence, all, held_back, unexpected, unforeseen, unmet, unseen, unsought, untried,
+    Form, Make, Presence, all, families, held_back, unexpected, unforeseen, unmet, unseen,
+    unsought, untried,
 };
 use makes::motion::Motion;
 use makes::outside::OUTSIDE;
@@ -277,6 +278,23 @@ fn most_of_the_unsought_makes_hide_one_effect_and_together_they_hide_every_name(
     let makes = unsought();
     assert_most_hide_one_and_together_every_name(&makes);
     assert!(makes.len() == 14 && UNSOUGHT.len() == 4);
+}
+
+#[test]
+fn the_families_are_ten_makes_of_friction_waves_and_masses() {
+    let makes = families();
+    let hidden = |effect: &Effect| makes.iter().filter(|m| m.hides.contains(effect)).count();
+    for effect in [
+        Effect::Stribeck,
+        Effect::Presliding,
+        Effect::PositionDependentFriction,
+        Effect::TorqueRipple,
+        Effect::PitchError,
+        Effect::Compliance,
+    ] {
+        assert!(hidden(&effect) >= 2, "{effect:?}");
+    }
+    assert_eq!(makes.len(), 10);
 }
 
 #[test]

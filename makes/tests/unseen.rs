@@ -6,12 +6,14 @@
 //! motion of the run. What these leave on the machine with one effect alone is put beside what they
 //! leave on the machine without any. An effect between motor and load shows in their distance.
 //!
-//! Of a make of a later table (untried, unmet, unforeseen, unexpected, unsought) more is asked: an
-//! effect shows in the validation record as in the training record, what is left with it is half as
-//! much again as what is left without it, and no two effects of a make leave the same.
+//! Of a make of a later table (untried, unmet, unforeseen, unexpected, unsought, families) more is
+//! asked: an effect shows in the validation record as in the training record, what is left with it
+//! is half as much again as what is left without it, and no two effects of a make leave the same.
 
 use makes::draw::Draw;
-use makes::make::{Make, Presence, unexpected, unforeseen, unmet, unseen, unsought, untried};
+use makes::make::{
+    Make, Presence, families, unexpected, unforeseen, unmet, unseen, unsought, untried,
+};
 use makes::motion::Motion;
 use makes::rig::Rig;
 use makes::sensing::{Source, Trace};
@@ -275,4 +277,9 @@ fn each_effect_of_an_unexpected_make_shows_in_both_records_and_is_like_no_other(
 #[test]
 fn each_effect_of_an_unsought_make_shows_in_both_records_and_is_like_no_other() {
     assert_each_shows_in_both_records_and_is_like_no_other("unsought", &unsought());
+}
+
+#[test]
+fn each_effect_of_a_make_of_the_families_shows_in_both_records_and_is_like_no_other() {
+    assert_each_shows_in_both_records_and_is_like_no_other("families", &families());
 }

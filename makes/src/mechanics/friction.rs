@@ -8,6 +8,8 @@
 //!   1995; σ₁ that fades with velocity: Olsson, thesis, Lund 1996.
 //! - Maxwell slip: elastoplastic elements side by side. Lampaert, Swevers and Al-Bender, IEEE TAC
 //!   47, 2002.
+//! - generalised Maxwell slip: the same with a Stribeck curve that friction lags behind; see
+//!   [`gms`].
 //! - Bouc–Wen: dz = dx·(1 − ½(1 + sign(dx z))·|z|ⁿ). Wen, ASCE J. Eng. Mech. 102, 1976.
 //! - thixotropic: Fc·(1 + surplus·λ), dλ/dt = (1 − λ)/τ − |v|·λ/way: sludge and cold grease set at
 //!   rest and are stirred thin. Moore, Trans. British Ceramic Society 58, 1959.
@@ -17,6 +19,10 @@
 //! A rigid law gives a *level*, not a force: at rest it is whatever holds, and the step of the
 //! train finds it. The others give a force and keep a state. Bristles of Dahl and LuGre are stepped
 //! in closed form over the way dx, so that they cannot overshoot.
+
+pub mod gms;
+
+use crate::mechanics::friction::gms::{GeneralisedMaxwellSlip, STATES_OF_ONE};
 
 /// Fall of friction with velocity: Fc·(1 + excess·exp(−(|v|/velocity)^exponent)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +93,8 @@ pub enum Law {
         /// The elements.
         elements: Vec<Element>,
     },
+    /// Elements side by side that follow a curve with a lag.
+    GeneralisedMaxwellSlip(GeneralisedMaxwellSlip),
     /// Bouc–Wen with β = γ.
     BoucWen {
         /// Sliding level.
@@ -155,6 +163,7 @@ impl Law {
             | Self::Thixotropic { coulomb, .. } => *coulomb,
             Self::Brake { .. } => 0.0,
             Self::MaxwellSlip { elements } => elements.iter().map(|e| e.limit).sum(),
+            Self::GeneralisedMaxwellSlip(law) => law.coulomb,
         }
     }
 
@@ -176,6 +185,7 @@ impl Law {
             Self::MaxwellSlip { elements } => {
                 self.level() / elements.iter().map(|e| e.stiffness).sum::<f64>()
             }
+            Self::GeneralisedMaxwellSlip(law) => law.coulomb / law.stiffness(),
         }
     }
 
@@ -191,6 +201,7 @@ impl Law {
             | Self::Thixotropic { coulomb, .. } => *coulomb *= factor,
             Self::Brake { holds, .. } => *holds *= factor,
             Self::MaxwellSlip { elements } => elements.iter_mut().for_each(|e| e.limit *= factor),
+            Self::GeneralisedMaxwellSlip(law) => law.coulomb *= factor,
         }
         self
     }
@@ -206,6 +217,7 @@ impl Law {
             | Self::Thixotropic { .. } => 1,
             Self::Brake { .. } => 2,
             Self::MaxwellSlip { elements } => elements.len(),
+            Self::GeneralisedMaxwellSlip(law) => STATES_OF_ONE * law.elements.len(),
         }
     }
 
@@ -244,6 +256,9 @@ impl Law {
                     total += *force;
                 }
                 Reaction::force(total)
+            }
+            Self::GeneralisedMaxwellSlip(law) => {
+                Reaction::force(law.slide(state, velocity, step_s))
             }
             Self::BoucWen {
                 coulomb,
@@ -517,7 +532,7 @@ mod tests {
         force
     }
 
-    fn hysteretic() -> [Law; 4] {
+    fn hysteretic() -> [Law; 5] {
         let lugre = Law::LuGre {
             coulomb: 10.0,
             stribeck: None,
@@ -534,7 +549,9 @@ mod tests {
             coulomb: 10.0,
             stiffness: 1.0e6,
         };
-        [dahl, lugre, bouc_wen, Law::maxwell_slip(10.0, 2.0e-5, 8)]
+        let maxwell_slip = Law::maxwell_slip(10.0, 2.0e-5, 8);
+        let general = Law::generalised_maxwell_slip(10.0, None, 5.0e-3, 2.0e-5, 8);
+        [dahl, lugre, bouc_wen, maxwell_slip, general]
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub(crate) fn some_outside() -> Vec<Outside> {
     };
     let apart = written_apart().into_iter();
     apart
+        .filter(|apart| !apart.outside.is_empty())
         .flat_map(|apart| some(&format!("disturbances {}", apart.table), apart.outside))
         .collect()
 }
