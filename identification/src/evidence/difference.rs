@@ -218,6 +218,7 @@ fn settled(
         // What is declared lacks more than the shape of its friction.
         refitted(&difference.declared, Laws::Bristle)
     };
+    difference.take_back(&apart);
     let ways = difference.extended.ways();
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
     let smallest = Smallest {
@@ -815,6 +816,16 @@ impl Difference {
     fn agrees_with(&self, told: &ByTheLoad) -> bool {
         let stiffness = self.stiffness.map_or(f64::NAN, |known| known.value);
         (told.stiffness.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
+    }
+
+    /// Takes back what was found where what is declared leaves no more without it. It was found
+    /// beside wind-up by the effort; the load's motion may know the wind-up better.
+    fn take_back(&mut self, apart: &Apart<'_>) {
+        if apart.rms_um(&self.declared) < apart.rms_um(&self.extended) {
+            let scored = std::mem::take(&mut self.scored);
+            let declared = self.declared.clone();
+            *self = Self::of([declared.clone(), declared], scored);
+        }
     }
 
     /// What the friction of the load is, where its own motion tells it.

@@ -260,8 +260,8 @@ mod tests {
     fn the_exponent_of_a_fall_is_found_alone_and_beside_a_lag() {
         for (exponent, lag_s) in [(1.0, 0.0), (0.7, 0.0), (1.0, 5.0e-3)] {
             let truth = LoadFriction {
-                exponent,
                 lag_s,
+                exponent,
                 ..FRICTION
             };
             let axis = rubbed(truth, 0.0, |_| 0.0);

@@ -32,7 +32,8 @@ pub(crate) struct Element {
 }
 
 /// How the level of friction falls as velocity grows: `g = 1 + rise·exp(−|v/vs|^p)`, in Coulomb
-/// levels, with the lag that it may have. It is the force at which an element slips; below, only the way tells its force.
+/// levels, with the lag that it may have. It is the force at which an element slips; below, only
+/// the way tells its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fall {
     rise: f64,
