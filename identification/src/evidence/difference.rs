@@ -205,10 +205,7 @@ fn settled(
             Laws::Bristle => f64::INFINITY,
             Laws::All => ENOUGH_COUNTS * count,
         };
-        let carried = carried::instead(&apart, &fitted.ways(), unit, enough);
-        let ways = carried.unwrap_or_else(|| fitted.ways());
-        let ways = intervals::with_wave_numbers(&apart, ways);
-        apart.where_known(&ways).fit(&ways)
+        by_the_loads_motion(&apart, fitted, unit, enough)
     };
     let is_same = difference.declared.ways() == difference.extended.ways();
     difference.extended = refitted(&difference.extended, laws);
@@ -247,6 +244,19 @@ fn settled(
     let wound = wound.map(|(way, own)| apart.predicted(way, own));
     difference.left = left::left(&apart, &residual, wound, count);
     difference
+}
+
+/// Fitted ways with the wind-up by the load's own motion, where that is better.
+fn by_the_loads_motion(
+    apart: &Apart<'_>,
+    fitted: &FittedWays,
+    unit: f64,
+    enough: f64,
+) -> FittedWays {
+    let carried = carried::instead(apart, &fitted.ways(), unit, enough);
+    let ways = carried.unwrap_or_else(|| fitted.ways());
+    let ways = intervals::with_wave_numbers(apart, ways);
+    apart.where_known(&ways).fit(&ways)
 }
 
 /// Motor − load as an output that judges.
