@@ -930,6 +930,21 @@ mod tests {
     }
 
     #[test]
+    fn what_leaves_no_less_than_what_is_declared_is_taken_back() {
+        let axis = carried::tests::axis(|_| 0.0);
+        let apart = carried::tests::apart(&axis);
+        let found = |ways: [&[Way]; 2]| {
+            let mut difference = Difference::of(ways.map(|ways| apart.fit(ways)), Vec::new());
+            difference.take_back(&apart);
+            difference.found
+        };
+        let spring = &carried::tests::WAYS[..];
+        let wave = [Way::Constant, Way::Pitch { per_length: 100.0 }];
+        assert_eq!(found([spring, &wave]), []);
+        assert_eq!(found([&wave, spring]), [EffectName::Compliance]);
+    }
+
+    #[test]
     fn another_law_stands_where_it_leaves_less_of_another_record_too() {
         let at = [4.0e-6, 20.0e-6, 60.0e-6];
         let elements = FRICTION.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
