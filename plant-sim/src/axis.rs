@@ -10,6 +10,7 @@ use protocol::states::BrakeState;
 use crate::brake::{Brake, BrakeParameters};
 use crate::effects::{Effects, Instant};
 use crate::friction::{Friction, Law, Sliding};
+use crate::lag::{lag_share, mean_share};
 use crate::mechanics::{Drive, Mechanics, Motion};
 use crate::stops::Stops;
 
@@ -293,23 +294,4 @@ impl Axis {
 )]
 fn floor(value: f64) -> i64 {
     value.floor() as i64
-}
-
-/// Share of the way to its target that a first-order lag covers in `dt`.
-fn lag_share(dt_s: f64, time_constant_s: f64) -> f64 {
-    if time_constant_s > 0.0 {
-        -(-dt_s / time_constant_s).exp_m1()
-    } else {
-        1.0
-    }
-}
-
-/// Mean of a decay from 1 over a sub-step in which it falls by `lag`: `lag / −ln(1 − lag)`, zero
-/// where it falls at once.
-fn mean_share(lag: f64) -> f64 {
-    if lag >= 1.0 {
-        0.0
-    } else {
-        lag / -(-lag).ln_1p()
-    }
 }

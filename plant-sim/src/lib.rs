@@ -13,6 +13,7 @@ pub mod axis;
 pub mod brake;
 pub mod effects;
 pub mod friction;
+mod lag;
 pub mod machine;
 pub mod mechanics;
 pub mod node;

@@ -181,7 +181,7 @@ pub(crate) fn settled_on_both(
 enum Laws {
     /// A bristle.
     Bristle,
-    /// Elements that slip, too, and what goes with direction and position.
+    /// Another fall of its level, elements that slip, what goes with direction and position.
     All,
 }
 

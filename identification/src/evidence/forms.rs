@@ -139,12 +139,7 @@ fn shaped(pair: Pair<'_>, plain: Model, place: usize) -> Model {
 /// The model with another curve (or another lag) of a part, where that beats the one it has.
 fn curved(pair: Pair<'_>, model: Model, place: usize, what: Searched) -> Model {
     let bench = pair.bench;
-    let effect = model.parts[place].effect;
-    let choices = match what {
-        Searched::Lag => effect.lags(),
-        _ => effect.forms(),
-    };
-    if choices.is_empty() {
+    if what.choices(model.parts[place].effect).is_empty() {
         return model;
     }
     let before = bench.cross_validate(&model);

@@ -14,7 +14,7 @@ use crate::fit::rows::Rows;
 use crate::fit::span::Span;
 use crate::model::effects::by_motion::{Others, place_among_usual};
 use crate::model::effects::torque_saturation::Saturation;
-use crate::model::effects::{Effect, Instant, Stage, place_among_forms, place_among_lags};
+use crate::model::effects::{Effect, Instant, Stage};
 use crate::model::inverse::{Beside, Model, Part, saturation};
 use crate::model::name::Called;
 use crate::motion::filter::fit_cutoff_hz;
@@ -333,8 +333,7 @@ impl<'a> Bench<'a> {
     fn design_about(&self, fitted: &Fitted, searched: &[(usize, Searched)]) -> Design {
         let slope = |(place, what): &(usize, Searched)| match what {
             Searched::Parameter => self.derivative(fitted, *place),
-            Searched::Form => self.derivative_by_form(fitted, *place),
-            Searched::Lag => self.derivative_by_lag(fitted, *place),
+            Searched::Form | Searched::Lag => self.derivative_by(fitted, *place, *what),
         };
         let mut design = self.design(fitted.model());
         design.columns.extend(searched.iter().map(slope));
@@ -428,20 +427,13 @@ impl<'a> Bench<'a> {
         self.slope([&at(-step), &at(step)], 2.0 * step)
     }
 
-    /// Derivative of the prediction by the form of a part, over its neighbours; low-passed.
-    fn derivative_by_form(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
+    /// Derivative of the prediction by the form or the lag of a part, over its neighbours;
+    /// low-passed.
+    fn derivative_by(&self, fitted: &Fitted, place: usize, what: Searched) -> Vec<f64> {
         let effect = fitted.model().parts[place].effect;
-        let (below, above) = neighbours(effect, effect.forms(), place_among_forms(effect));
-        let at = |form: &'static dyn Effect| fitted.with_form(place, form);
-        self.slope([&at(below), &at(above)], above.form() - below.form())
-    }
-
-    /// The same by its lag.
-    fn derivative_by_lag(&self, fitted: &Fitted, place: usize) -> Vec<f64> {
-        let effect = fitted.model().parts[place].effect;
-        let (below, above) = neighbours(effect, effect.lags(), place_among_lags(effect));
-        let at = |lag: &'static dyn Effect| fitted.with_form(place, lag);
-        self.slope([&at(below), &at(above)], above.lag_s() - below.lag_s())
+        let (below, above) = neighbours(effect, what);
+        let at = |choice: &'static dyn Effect| fitted.with_form(place, choice);
+        self.slope([&at(below), &at(above)], what.of(above) - what.of(below))
     }
 
     /// Slope of the prediction between two fits that are so far apart.
@@ -625,14 +617,14 @@ impl Design {
     }
 }
 
-/// Those of a list on both sides of an effect's own place; at an end itself.
+/// The choices on both sides of an effect's own; at an end itself.
 fn neighbours(
     effect: &'static dyn Effect,
-    list: &[&'static dyn Effect],
-    place: Option<usize>,
+    what: Searched,
 ) -> (&'static dyn Effect, &'static dyn Effect) {
-    let place = place.unwrap_or(0);
-    let at = |place: usize| list.get(place).copied().unwrap_or(effect);
+    let choices = what.choices(effect);
+    let place = what.place(effect).unwrap_or(0);
+    let at = |place: usize| choices.get(place).copied().unwrap_or(effect);
     (at(place.saturating_sub(1)), at(place + 1))
 }
 

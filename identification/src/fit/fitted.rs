@@ -50,6 +50,33 @@ pub(crate) enum Searched {
     Lag,
 }
 
+impl Searched {
+    /// What a part may be instead of an effect, in the order of [`Self::of`]; nothing where there
+    /// is no choice.
+    pub(crate) fn choices(self, effect: &dyn Effect) -> &'static [&'static dyn Effect] {
+        match self {
+            Self::Parameter => &[],
+            Self::Form => effect.forms(),
+            Self::Lag => effect.lags(),
+        }
+    }
+
+    /// What tells them apart.
+    pub(crate) fn of(self, effect: &dyn Effect) -> f64 {
+        match self {
+            Self::Parameter => 0.0,
+            Self::Form => effect.form(),
+            Self::Lag => effect.lag_s(),
+        }
+    }
+
+    /// Place of an effect among its choices, where it has one of them.
+    pub(crate) fn place(self, effect: &dyn Effect) -> Option<usize> {
+        let mut choices = self.choices(effect).iter();
+        choices.position(|choice| self.of(*choice) == self.of(effect))
+    }
+}
+
 /// The first values of a list, taken off it.
 fn take<'a, T>(rest: &mut &'a [T], count: usize) -> &'a [T] {
     let (own, others) = rest.split_at(count.min(rest.len()));

@@ -8,7 +8,7 @@ use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Searched};
 use crate::fit::search::{descend, smallest};
 use crate::fit::told;
-use crate::model::effects::{Effect, Setting, Stage, place_among_forms, place_among_lags};
+use crate::model::effects::{Effect, Setting, Stage};
 use crate::model::inverse::{Model, Part};
 
 /// Cut-off for the search of a delay: quantisation comes back through the controller as effort that
@@ -317,16 +317,16 @@ pub(crate) fn refined_at(pair: Pair<'_>, mut model: Model, place: usize) -> Mode
 pub(crate) fn reshaped(pair: Pair<'_>, model: &Model, place: usize, what: Searched) -> Model {
     let part = &model.parts[place];
     let bench = pair.of(part.effect);
-    let (forms, start) = match what {
-        Searched::Lag => (part.effect.lags(), place_among_lags(part.effect)),
-        _ => (part.effect.forms(), place_among_forms(part.effect)),
-    };
-    let Some(start) = start else {
+    let choices = what.choices(part.effect);
+    let Some(start) = what.place(part.effect) else {
         return model.clone();
     };
-    let at = |form: f64| refined_at(pair, model.with_form(place, forms[form as usize]), place);
-    let sse = |form: f64| bench.sse(&at(form));
-    let bounds = (0.0, forms.len() as f64 - 1.0);
+    let at = |choice: f64| {
+        let other = model.with_form(place, choices[choice as usize]);
+        refined_at(pair, other, place)
+    };
+    let sse = |choice: f64| bench.sse(&at(choice));
+    let bounds = (0.0, choices.len() as f64 - 1.0);
     at(descend(start as f64, LARGEST_STEP_OF_FORMS, bounds, &sse))
 }
 

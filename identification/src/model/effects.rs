@@ -487,20 +487,6 @@ pub(crate) fn find(called: impl Into<Called>) -> Option<&'static dyn Effect> {
     LIBRARY.into_iter().find(|effect| effect.called() == called)
 }
 
-/// Place of an effect's form among its forms, where it has a choice of them.
-#[must_use]
-pub(crate) fn place_among_forms(effect: &dyn Effect) -> Option<usize> {
-    let mut forms = effect.forms().iter();
-    forms.position(|form| form.form() == effect.form())
-}
-
-/// Place of an effect's lag among its lags, where it may have one.
-#[must_use]
-pub(crate) fn place_among_lags(effect: &dyn Effect) -> Option<usize> {
-    let mut lags = effect.lags().iter();
-    lags.position(|lag| lag.lag_s() == effect.lag_s())
-}
-
 /// `count` values from `low` to `high` with a constant ratio.
 #[must_use]
 pub(crate) fn geometric(low: f64, high: f64, count: u32) -> Vec<f64> {

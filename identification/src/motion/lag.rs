@@ -3,6 +3,12 @@
 
 use crate::record::units::EffortHold;
 
+/// Share of the way to where it goes that a first-order lag covers in a time.
+#[must_use]
+pub(crate) fn share(time_s: f64, lag_s: f64) -> f64 {
+    -(-time_s / lag_s).exp_m1()
+}
+
 /// The acting effort at the rows; for a zero-order hold, its mean over the interval of the row.
 #[must_use]
 pub(crate) fn acting_effort(

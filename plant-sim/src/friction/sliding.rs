@@ -1,5 +1,6 @@
 //! The sliding curve, and the lag with which it follows the velocity.
 
+use crate::lag::lag_share;
 use crate::ranges::ranged;
 
 ranged! {
@@ -103,7 +104,7 @@ impl Fall {
         if sliding.stribeck_lag_s == 0.0 {
             return self;
         }
-        let share = -(-dt_s / sliding.stribeck_lag_s).exp_m1();
+        let share = lag_share(dt_s, sliding.stribeck_lag_s);
         Self(self.0 + share * (sliding.left(v) - self.0))
     }
 }

@@ -14,7 +14,7 @@ use super::columns::{Apart, Way};
 use super::flanks::Balance;
 use super::load::{Carried, LoadMotion, More};
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::{GAUSS, Law, LoadFriction};
+use super::rubbing::{Law, LoadFriction};
 use super::slipping::by_another_law;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
@@ -22,6 +22,7 @@ use crate::fit::rows::Rows;
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
+use crate::model::effects::stribeck::GAUSS;
 
 /// Deflections that are tried, in moving-velocity units times a second: 0.3 to 300 µm on a linear
 /// axis.

@@ -14,7 +14,8 @@ use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
-use super::rubbing::{GAUSS, Law, LoadFriction};
+use super::rubbing::{Law, LoadFriction};
+use crate::model::effects::stribeck::GAUSS;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::mask::{unless_few, widened, without};

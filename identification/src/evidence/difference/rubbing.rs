@@ -9,6 +9,8 @@
 //! Units: m or rad, s.
 
 use super::between_rows::Steps;
+use crate::model::effects::stribeck::{self, GAUSS};
+use crate::motion::lag;
 use crate::simulate::friction::bend_after;
 
 /// Most elements.
@@ -56,9 +58,7 @@ pub(crate) struct LoadFriction {
     pub law: Law,
 }
 
-/// The exponent of a fall of which none was found.
-pub(super) const GAUSS: f64 = 2.0;
-/// Range of the others.
+/// Range of an exponent that is searched.
 const EXPONENTS: (f64, f64) = (0.4, 2.5);
 
 /// What is left of the rise along a path.
@@ -72,7 +72,7 @@ struct Left {
 
 impl Left {
     fn along(friction: LoadFriction, path: &Steps) -> Self {
-        let share = |time_s: f64| -(-time_s / friction.lag_s).exp_m1();
+        let share = |time_s: f64| lag::share(time_s, friction.lag_s);
         Self {
             friction,
             shares: [share(0.5 * path.part_s), share(path.part_s)],
@@ -164,13 +164,7 @@ impl LoadFriction {
 
     /// What is left of the rise at a velocity in the end.
     fn left(self, velocity: f64) -> f64 {
-        let ratio = velocity / self.velocity;
-        let power = if self.exponent == GAUSS {
-            ratio * ratio
-        } else {
-            ratio.abs().powf(self.exponent)
-        };
-        (-power).exp()
+        stribeck::left(velocity / self.velocity, self.exponent)
     }
 
     /// The bend along a path, in Coulomb levels.

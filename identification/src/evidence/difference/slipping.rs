@@ -8,11 +8,12 @@ use super::columns::{Apart, Way};
 use super::linearised::Linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::{GAUSS, LoadFriction};
+use super::rubbing::LoadFriction;
 use crate::evidence::reversal::slip::{Elements, grid_about};
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::model::effects::geometric;
+use crate::model::effects::stribeck::GAUSS;
 
 /// The grid about the deflection of the bristle, as shares of it.
 const FROM: f64 = 0.05;

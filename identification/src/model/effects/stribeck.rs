@@ -15,6 +15,7 @@ use axis_model::EffectName;
 
 use super::{Action, Effect, Fitted, Instant, Kinematics, Named, Naming, Setting, geometric};
 use crate::model::name::Called;
+use crate::motion::lag;
 use crate::record::dataset::Dataset;
 
 /// c·sign(v)·exp(−|v/vs|^p), for each direction its own c where it falls by direction.
@@ -25,6 +26,8 @@ pub(crate) struct Stribeck {
     by_direction: bool,
 }
 
+/// The usual exponent.
+pub(crate) const GAUSS: f64 = 2.0;
 /// Smallest exponent.
 const SMALLEST: f64 = 0.5;
 /// From one exponent to the next.
@@ -39,7 +42,7 @@ const LAG_RATIO: f64 = 1.15;
 const LAGS: usize = 45;
 /// The usual one.
 pub(crate) static GAUSSIAN: Stribeck = Stribeck {
-    exponent: SMALLEST + STEP * (COUNT - 1) as f64,
+    exponent: GAUSS,
     lag_s: 0.0,
     by_direction: false,
 };
@@ -80,13 +83,7 @@ fn falls() -> Vec<Stribeck> {
 impl Stribeck {
     /// What is left of the excess at a velocity, without the lag.
     pub(crate) fn left(&self, v: f64, vs: f64) -> f64 {
-        let ratio = (v / vs).abs();
-        let power = if self.exponent == 2.0 {
-            ratio * ratio
-        } else {
-            ratio.powf(self.exponent)
-        };
-        (-power).exp()
+        left(v / vs, self.exponent)
     }
 
     /// Place of its exponent, and of its lag.
@@ -100,7 +97,7 @@ impl Stribeck {
     /// What is left of the excess where it lags, after a time at a velocity.
     #[must_use]
     pub(crate) fn left_after(&self, left: f64, (v, vs): (f64, f64), time_s: f64) -> f64 {
-        let share = -(-time_s / self.lag_s).exp_m1();
+        let share = lag::share(time_s, self.lag_s);
         left + share * (self.left(v, vs) - left)
     }
 
@@ -109,13 +106,24 @@ impl Stribeck {
         let velocity = motion.velocity_lp.iter();
         let mut fall: Vec<f64> = velocity.map(|v| self.left(*v, vs)).collect();
         if self.lag_s > 0.0 {
-            let share = -(-motion.period_s / self.lag_s).exp_m1();
+            let share = lag::share(motion.period_s, self.lag_s);
             for piece in &motion.pieces {
                 lag_behind(&mut fall[piece.clone()], share);
             }
         }
         fall
     }
+}
+
+/// exp(−|ratio|^exponent): what is left of a fall, by the velocity over that of the fall.
+#[must_use]
+pub(crate) fn left(ratio: f64, exponent: f64) -> f64 {
+    let power = if exponent == GAUSS {
+        ratio * ratio
+    } else {
+        ratio.abs().powf(exponent)
+    };
+    (-power).exp()
 }
 
 /// Lets values lag: from row to row by a share of the way to what they would be.

@@ -57,6 +57,13 @@ fn surface(presence: Presence, coulomb: f64, fall: Stribeck, lag_s: f64, deflect
     Law::generalised_maxwell_slip(coulomb, Some(fall), lag_s, reach, ELEMENTS)
 }
 
+/// States a fall and its lag; one that is not there has none.
+fn know_fall(rig: &mut Rig, excess: f64, unit: &str, lag_s: f64) {
+    rig.know("stribeck_excess", excess, unit);
+    let is_there = excess != 0.0;
+    rig.know("stribeck_lag", if is_there { lag_s } else { 0.0 }, "s");
+}
+
 /// The cross slide of a grinder for planer knives, at 2 kHz: its oiled flat ways bend by tens of
 /// micrometres before they slip, and their oil is four milliseconds behind. By the motor alone.
 fn knife_grinder(draw: &mut Draw, presence: Presence) -> Rig {
@@ -75,9 +82,7 @@ fn knife_grinder(draw: &mut Draw, presence: Presence) -> Rig {
     let mut rig = rig(Kind::Linear, train, controller, 1.0e-8);
     rig.noisy(0.6);
     rig.know("presliding_deflection", shown, "m");
-    rig.know("stribeck_excess", fall.excess * coulomb, "N");
-    let lag_s = presence.size_of(Effect::Stribeck, lag_s);
-    rig.know("stribeck_lag", lag_s, "s");
+    know_fall(&mut rig, fall.excess * coulomb, "N", lag_s);
     rig.moved(
         draw,
         Room::about(0.03, (0.12, 0.8), 24.0),
@@ -116,9 +121,7 @@ fn marble_router(draw: &mut Draw, presence: Presence) -> Rig {
     rig.noisy(8.0);
     rig.know("compliance_stiffness", stiffness, "N/m");
     rig.know("presliding_deflection", shown, "m");
-    rig.know("stribeck_excess", fall.excess * coulomb, "N");
-    let lag_s = presence.size_of(Effect::Stribeck, lag_s);
-    rig.know("stribeck_lag", lag_s, "s");
+    know_fall(&mut rig, fall.excess * coulomb, "N", lag_s);
     rig.moved(
         draw,
         Room::about(0.25, (0.3, 1.2), 44.0),
@@ -149,9 +152,7 @@ fn sausage_filler(draw: &mut Draw, presence: Presence) -> Rig {
     rig.column = EffortColumn::Torque(per);
     rig.stated.lead_m_per_rev = Some(FILLER_LEAD_M);
     rig.noisy(4.0);
-    rig.know("stribeck_excess", fall.excess * coulomb * per, "N m");
-    let lag_s = presence.size_of(Effect::Stribeck, lag_s);
-    rig.know("stribeck_lag", lag_s, "s");
+    know_fall(&mut rig, fall.excess * coulomb * per, "N m", lag_s);
     rig.moved(
         draw,
         Room::about(0.2, (0.25, 1.2), 60.0),

@@ -37,6 +37,23 @@ pub const MAKES: &[Make] = &[
     },
 ];
 
+/// Pulls a train's motor by a wave about so large, and says how large.
+fn pulled(
+    train: &mut Train,
+    (amplitude, waves): (f64, f64),
+    draw: &mut Draw,
+    presence: Presence,
+) -> f64 {
+    let amplitude = presence.size_of(Effect::TorqueRipple, draw.near(amplitude));
+    let wave = Field::Cogging {
+        amplitude,
+        waves,
+        phase: draw.between(0.0, TAU),
+    };
+    train.fields.push((0, wave));
+    amplitude
+}
+
 /// Pitch of the scanner's magnets, m.
 const SCANNER_PITCH_M: f64 = 0.024;
 /// Distance of its slots, m: five for every four magnets.
@@ -49,16 +66,8 @@ fn film_scanner(draw: &mut Draw, presence: Presence) -> Rig {
     let bowl = presence.size_of(Effect::PositionDependentFriction, draw.near(380.0));
     let mut train = Train::one(mass, coulomb, draw.near(0.7));
     train.surfaces[0].scales.push(Scale::Bowl(bowl));
-    let mut pull = |amplitude: f64, period: f64| {
-        let amplitude = presence.size_of(Effect::TorqueRipple, draw.near(amplitude));
-        let wave = Field::Cogging {
-            amplitude,
-            waves: TAU / period,
-            phase: draw.between(0.0, TAU),
-        };
-        train.fields.push((0, wave));
-        amplitude
-    };
+    let mut pull =
+        |amplitude, period| pulled(&mut train, (amplitude, TAU / period), draw, presence);
     let of_magnets = pull(0.3, SCANNER_PITCH_M);
     let of_slots = pull(0.17, SCANNER_SLOT_M);
     let controller = Controller::state_feedback(mass, 14.0, 2.5e-4);
@@ -88,16 +97,7 @@ const DRUM_SLOTS: f64 = 24.0;
 fn pinning_drum(draw: &mut Draw, presence: Presence) -> Rig {
     let inertia = draw.near(6.0e-6);
     let mut train = Train::one(inertia, draw.near(8.0e-4), draw.near(2.0e-5));
-    let mut pull = |amplitude: f64, waves: f64| {
-        let amplitude = presence.size_of(Effect::TorqueRipple, draw.near(amplitude));
-        let wave = Field::Cogging {
-            amplitude,
-            waves,
-            phase: draw.between(0.0, TAU),
-        };
-        train.fields.push((0, wave));
-        amplitude
-    };
+    let mut pull = |amplitude, waves| pulled(&mut train, (amplitude, waves), draw, presence);
     let of_clamps = pull(4.0e-4, DRUM_LOBES);
     let of_slots = pull(2.5e-4, DRUM_SLOTS);
     let controller = Controller::sliding(inertia, 16.0, 0.02, 5.0e-4);
