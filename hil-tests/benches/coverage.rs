@@ -22,8 +22,15 @@ const DRAWS: usize = 200;
 /// The first seed; the records of the golden pages have other ones.
 const FIRST_SEED: u64 = 1001;
 
-/// Makes whose load is taken up and put down again: a dataset declares a payload once.
-const TWICE: [&str; 3] = ["gripper-belt", "theatre-fly", "tray-shuttle"];
+/// Makes that have something twice, which a dataset can declare once: a load that is taken up and put
+/// down again, ripples of two orders.
+const TWICE: [&str; 5] = [
+    "film-scanner",
+    "gripper-belt",
+    "pinning-drum",
+    "theatre-fly",
+    "tray-shuttle",
+];
 
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
