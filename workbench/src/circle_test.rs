@@ -112,9 +112,10 @@ fn backlash_m(machine: &Machine) -> f64 {
 }
 
 fn name(compensation: &[AxisCompensation]) -> &'static str {
-    match compensation.first().map(|axis| axis.reversal) {
+    match compensation.first().map(|axis| &axis.reversal) {
         None | Some(Compensation::None) => "none",
         Some(Compensation::Coulomb { .. }) => "coulomb",
+        Some(Compensation::Model(_)) => "model",
         Some(Compensation::Pulse(_)) => "pulse",
     }
 }

@@ -81,6 +81,8 @@ pub enum Method {
     Coulomb,
     /// The paper's pulse on the speed setpoint
     Pulse,
+    /// A model of friction and of the screw's wind-up, fed forward
+    Model,
 }
 
 /// Arguments of `circle`.
@@ -117,6 +119,8 @@ pub struct CircleArguments {
 pub enum TuneMethod {
     /// The paper's pulse on the speed setpoint
     Pulse,
+    /// A model of friction and of the screw's wind-up, from records of the axes
+    Model,
 }
 
 /// Arguments of `tune`.

@@ -3,8 +3,14 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use servo::objects::Parameter;
 
 use crate::error::{Failure, Outcome};
+
+/// Elements of the drive's friction model.
+pub const ELEMENTS: usize = Parameter::FRICTION_LEVELS.len();
+/// Speeds at which the drive has a factor on the levels.
+pub const LEVELS: usize = Parameter::LEVEL_FACTORS.len();
 
 /// The paper's pulse in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,8 +24,62 @@ pub struct Pulse {
     pub start_delay_s: f64,
 }
 
+/// Friction as the drive's model has it, in SI units at the table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// Levels at which the elements slip, N.
+    pub level_n: [f64; ELEMENTS],
+    /// Ways after which they slip, m.
+    pub slip_m: [f64; ELEMENTS],
+    /// Factors on the levels at speeds from standstill to the span.
+    pub factor: [f64; LEVELS],
+    /// Speed of the last factor.
+    pub span_m_per_s: f64,
+    /// Factors come within this way; zero: at once.
+    pub lag_m: f64,
+    /// Factors come within this time; zero: at once.
+    pub lag_s: f64,
+    /// Viscous friction.
+    pub viscous_n_s_per_m: f64,
+    /// Stiffness of the screw that the friction of the table winds up.
+    pub stiffness_n_per_m: f64,
+    /// What of the inertia is the motor's.
+    pub motor_inertia_kg: f64,
+    /// From the begin of its cycle until the torque acts as friction does.
+    pub ahead_s: f64,
+    /// Damping of presliding over its stiffness.
+    pub damping_s: f64,
+    /// The wind-up of the screw is so far ahead of friction.
+    pub windup_ahead_s: f64,
+}
+
+impl Model {
+    /// Level of sliding friction, N.
+    #[must_use]
+    pub fn level_n(&self) -> f64 {
+        self.level_n.iter().sum()
+    }
+
+    /// A model that says nothing.
+    pub const OFF: Self = Self {
+        level_n: [0.0; ELEMENTS],
+        slip_m: [1.0e-5; ELEMENTS],
+        factor: [1.0; LEVELS],
+        span_m_per_s: 0.0,
+        lag_m: 0.0,
+        lag_s: 0.0,
+        viscous_n_s_per_m: 0.0,
+        stiffness_n_per_m: f64::INFINITY,
+        motor_inertia_kg: 0.0,
+        ahead_s: 0.0,
+        damping_s: 0.0,
+        windup_ahead_s: 0.0,
+    };
+}
+
 /// What the drive does about reversals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "method", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Compensation {
     /// Velocity and acceleration feedforward only.
@@ -32,10 +92,12 @@ pub enum Compensation {
     },
     /// The paper's pulse on the speed setpoint.
     Pulse(Pulse),
+    /// A model of the friction, and of what it does to the screw.
+    Model(Box<Model>),
 }
 
 /// Compensation of one axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisCompensation {
     /// Reversal compensation.
@@ -83,7 +145,7 @@ pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
         let axis = found.ok_or_else(lacking)?;
         check(path, axis)?;
         Ok(AxisCompensation {
-            reversal: axis.reversal,
+            reversal: axis.reversal.clone(),
             backlash_m: axis.backlash_m,
         })
     };
@@ -94,7 +156,7 @@ pub fn read(path: &Path, axes: &[String]) -> Outcome<Vec<AxisCompensation>> {
 struct Wrong(&'static str, &'static str, f64);
 
 fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
-    let checked = check_reversal(axis.reversal).and_then(|()| {
+    let checked = check_reversal(&axis.reversal).and_then(|()| {
         let gap_m = axis.backlash_m;
         expect(
             (0.0..=0.01).contains(&gap_m),
@@ -110,14 +172,15 @@ fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
     })
 }
 
-fn check_reversal(reversal: Compensation) -> Result<(), Wrong> {
+fn check_reversal(reversal: &Compensation) -> Result<(), Wrong> {
     match reversal {
         Compensation::None => Ok(()),
         Compensation::Coulomb { force_n } => expect(
             force_n.is_finite(),
-            Wrong("force_n", "a finite number of newtons", force_n),
+            Wrong("force_n", "a finite number of newtons", *force_n),
         ),
-        Compensation::Pulse(pulse) => check_pulse(pulse),
+        Compensation::Pulse(pulse) => check_pulse(*pulse),
+        Compensation::Model(model) => check_model(model),
     }
 }
 
@@ -141,6 +204,38 @@ fn check_pulse(pulse: Pulse) -> Result<(), Wrong> {
     )
 }
 
+fn check_model(model: &Model) -> Result<(), Wrong> {
+    let each = |key, wanted, values: &[f64], range: std::ops::RangeInclusive<f64>| {
+        let wrong = values.iter().find(|value| !range.contains(*value));
+        wrong.map_or(Ok(()), |value| Err(Wrong(key, wanted, *value)))
+    };
+    each("level_n", "0 to 1e6 N", &model.level_n, 0.0..=1.0e6)?;
+    each("slip_m", "1e-9 to 0.1 m", &model.slip_m, 1.0e-9..=0.1)?;
+    each("factor", "0 to 8", &model.factor, 0.0..=8.0)?;
+    let [span, viscous] = [model.span_m_per_s, model.viscous_n_s_per_m];
+    each("span_m_per_s", "0 to 10 m/s", &[span], 0.0..=10.0)?;
+    each(
+        "viscous_n_s_per_m",
+        "0 to 1e7 N s/m",
+        &[viscous],
+        0.0..=1.0e7,
+    )?;
+    each("lag_m", "0 to 0.1 m", &[model.lag_m], 0.0..=0.1)?;
+    each("lag_s", "0 to 1 s", &[model.lag_s], 0.0..=1.0)?;
+    let stiffness = model.stiffness_n_per_m;
+    expect(
+        stiffness > 0.0,
+        Wrong("stiffness_n_per_m", "above zero", stiffness),
+    )?;
+    let inertia = model.motor_inertia_kg;
+    each("motor_inertia_kg", "0 to 1e6 kg", &[inertia], 0.0..=1.0e6)?;
+    each("ahead_s", "0 to 0.1 s", &[model.ahead_s], 0.0..=0.1)?;
+    let damping = model.damping_s;
+    each("damping_s", "0 to 0.1 s", &[damping], 0.0..=0.1)?;
+    let ahead = model.windup_ahead_s;
+    each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)
+}
+
 fn expect(holds: bool, otherwise: Wrong) -> Result<(), Wrong> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
@@ -153,7 +248,7 @@ pub fn text(axes: &[String], compensation: &[AxisCompensation]) -> Outcome<Strin
     let named = axes.iter().zip(compensation);
     let axis = named.map(|(name, c)| NamedAxis {
         name: name.clone(),
-        reversal: c.reversal,
+        reversal: c.reversal.clone(),
         backlash_m: c.backlash_m,
     });
     toml::to_string(&CompensationFile {
@@ -170,6 +265,14 @@ mod tests {
         height_m_per_s: -2.0e-3,
         time_constant_s: 5.0e-3,
         start_delay_s: 0.0,
+    };
+
+    const MODEL: Model = Model {
+        level_n: [40.0; ELEMENTS],
+        factor: [1.2; LEVELS],
+        span_m_per_s: 4.0e-3,
+        windup_ahead_s: -2.0e-4,
+        ..Model::OFF
     };
 
     fn names() -> Vec<String> {
@@ -194,10 +297,10 @@ mod tests {
     fn what_was_written_is_read_again() {
         let written = [
             of(Compensation::Pulse(PULSE)),
-            of(Compensation::Coulomb { force_n: -3.5 }),
+            of(Compensation::Model(Box::new(MODEL))),
         ];
         assert_eq!(read_back(&written).unwrap(), written);
-        let none = [AxisCompensation::default(); 2];
+        let none = [AxisCompensation::default(), AxisCompensation::default()];
         assert_eq!(read_back(&none).unwrap(), none);
     }
 
@@ -207,6 +310,11 @@ mod tests {
             let mut pulse = PULSE;
             change(&mut pulse);
             of(Compensation::Pulse(pulse))
+        };
+        let model = |change: fn(&mut Model)| {
+            let mut model = MODEL;
+            change(&mut model);
+            of(Compensation::Model(Box::new(model)))
         };
         let gap = AxisCompensation {
             backlash_m: 0.011,
@@ -223,6 +331,17 @@ mod tests {
                 "height_m_per_s",
             ),
             (of(Compensation::Coulomb { force_n: f64::NAN }), "force_n"),
+            (model(|model| model.level_n[3] = -1.0), "level_n"),
+            (model(|model| model.slip_m[9] = 0.0), "slip_m"),
+            (model(|model| model.factor[16] = 8.1), "factor"),
+            (
+                model(|model| model.stiffness_n_per_m = 0.0),
+                "stiffness_n_per_m",
+            ),
+            (
+                model(|model| model.windup_ahead_s = f64::NAN),
+                "windup_ahead_s",
+            ),
             (gap, "backlash_m"),
         ] {
             let refusal = read_back(&[AxisCompensation::default(), wrong]).unwrap_err();

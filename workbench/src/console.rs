@@ -39,21 +39,38 @@ pub fn print_circle(report: &CircleReport) {
     }
 }
 
+/// A compensation in a few words.
+fn parameters(reversal: &Compensation) -> String {
+    match reversal {
+        Compensation::None => "no compensation".into(),
+        Compensation::Coulomb { force_n } => format!("Coulomb {force_n:.0} N"),
+        Compensation::Pulse(pulse) => format!(
+            "{:.3} mm/s, {:.1} ms, start delay {:.1} ms",
+            1.0e3 * pulse.height_m_per_s,
+            1.0e3 * pulse.time_constant_s,
+            1.0e3 * pulse.start_delay_s
+        ),
+        Compensation::Model(model) => format!(
+            "model of {:.0} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm",
+            model.level_n(),
+            model.level_n() * model.factor[0],
+            model.viscous_n_s_per_m,
+            1.0e-6 * model.stiffness_n_per_m
+        ),
+    }
+}
+
 /// Prints what tuning found.
 pub fn print_tuned(names: &[String], tuned: &Tuned) {
     let bursts_um = tuned.before_um.into_iter().zip(tuned.after_um);
     for ((name, compensation), (before, after)) in
         names.iter().zip(&tuned.compensation).zip(bursts_um)
     {
-        if let Compensation::Pulse(pulse) = compensation.reversal {
-            println!(
-                "axis {name}: {:.3} mm/s, {:.1} ms, start delay {:.1} ms: burst {before:.2} µm → {after:.2} µm ({:.0} % less)",
-                1.0e3 * pulse.height_m_per_s,
-                1.0e3 * pulse.time_constant_s,
-                1.0e3 * pulse.start_delay_s,
-                100.0 * (1.0 - after / before)
-            );
-        }
+        println!(
+            "axis {name}: {}: burst {before:.2} µm → {after:.2} µm ({:.0} % less)",
+            parameters(&compensation.reversal),
+            100.0 * (1.0 - after / before)
+        );
     }
     println!("{} circles", tuned.circles);
 }

@@ -12,7 +12,7 @@ use plant_sim::machine::{MachineAxis, PositionSensor};
 use servo::objects::{Entry, Parameter, TABLE};
 use servo::parameters::ParameterSet;
 
-use crate::compensation::{AxisCompensation, Compensation};
+use crate::compensation::{AxisCompensation, Compensation, Model};
 use crate::error::{Failure, Outcome};
 
 /// 10 nm, the position count of drive and bus.
@@ -214,9 +214,11 @@ impl Set {
 
     fn compensation(&mut self, compensation: &AxisCompensation) -> Outcome<()> {
         let (mut coulomb_n, mut height, mut constant_s, mut delay_s) = (0.0, 0.0, 0.0, 0.0);
-        match compensation.reversal {
+        let mut model = None;
+        match &compensation.reversal {
             Compensation::None => {}
-            Compensation::Coulomb { force_n } => coulomb_n = force_n,
+            Compensation::Model(own) => model = Some(own),
+            Compensation::Coulomb { force_n } => coulomb_n = *force_n,
             Compensation::Pulse(pulse) => {
                 (height, constant_s, delay_s) = (
                     pulse.height_m_per_s,
@@ -237,7 +239,56 @@ impl Set {
             Parameter::BacklashGap,
             "backlash_m",
             compensation.backlash_m,
-        )
+        )?;
+        self.model(model.map_or(&Model::OFF, |own| own))
+    }
+
+    fn model(&mut self, model: &Model) -> Outcome<()> {
+        let per_newton = self.torque_per_newton;
+        for (place, level_n) in Parameter::FRICTION_LEVELS.into_iter().zip(model.level_n) {
+            self.put(place, "model level_n", level_n * per_newton)?;
+        }
+        for (place, slip_m) in Parameter::FRICTION_WAYS.into_iter().zip(model.slip_m) {
+            self.put(place, "model slip_m", slip_m)?;
+        }
+        for (place, factor) in Parameter::LEVEL_FACTORS.into_iter().zip(model.factor) {
+            self.put(place, "model factor", factor)?;
+        }
+        let windup = 1.0 / model.stiffness_n_per_m / per_newton;
+        for (place, key, value) in [
+            (
+                Parameter::LevelSpan,
+                "model span_m_per_s",
+                model.span_m_per_s,
+            ),
+            (Parameter::LevelLagWay, "model lag_m", model.lag_m),
+            (Parameter::LevelLagTime, "model lag_s", model.lag_s),
+            (
+                Parameter::ViscousTorque,
+                "model viscous_n_s_per_m",
+                model.viscous_n_s_per_m * per_newton,
+            ),
+            (Parameter::FrictionAhead, "model ahead_s", model.ahead_s),
+            (
+                Parameter::FrictionDamping,
+                "model damping_s",
+                model.damping_s,
+            ),
+            (
+                Parameter::WindupAhead,
+                "model windup_ahead_s",
+                model.windup_ahead_s,
+            ),
+            (Parameter::Windup, "model stiffness_n_per_m", windup),
+            (
+                Parameter::MotorInertia,
+                "model motor_inertia_kg",
+                model.motor_inertia_kg * per_newton,
+            ),
+        ] {
+            self.put(place, key, value)?;
+        }
+        Ok(())
     }
 }
 

@@ -4,20 +4,25 @@
 //! circle without compensation ─▶ start_values ─▶ valley (X) ─▶ valley (Y) ─▶ circle with both
 //! ```
 //!
-//! [`coulomb_force`] is the other way to a compensation: one force per axis, from a record.
+//! [`coulomb_force`] and [`friction_model`] are other ways to a compensation: one force per axis, or
+//! a model, from a record.
 
 pub mod coulomb_force;
+pub mod friction_model;
 mod start_values;
 mod tuning_circles;
 mod valley;
 
 use std::cell::RefCell;
 
+use identification::Identification;
 use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
 
 use crate::ballbar::Point;
 use crate::compensation::{AxisCompensation, Compensation, Pulse};
 use crate::error::{Failure, Outcome};
+use crate::model_file::Known;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use start_values::start;
@@ -51,6 +56,38 @@ pub fn pulse(stand: &Stand<'_>, circle: &Circle, start_delay_s: f64) -> Outcome<
     session.perform(&stand.uncompensated(), None, |session| {
         let circles = RefCell::new(TuningCircles::on(session, circle));
         tune_both(&circles, stand, start_delay_s)
+    })
+}
+
+/// The model of friction of both axes, from what was identified; circles only tell what it is
+/// worth.
+///
+/// # Errors
+/// Where a circle cannot be run, or the operator interrupts.
+pub fn model(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Outcome<Tuned> {
+    let of_axis = |(axis, result): (&MachineAxis, &Identification)| {
+        let known = Known::of_machine(axis, stand.machine.period_s);
+        let model = friction_model::of_axis(&known, result);
+        AxisCompensation {
+            reversal: model.map_or(Compensation::None, |model| {
+                Compensation::Model(Box::new(model))
+            }),
+            backlash_m: 0.0,
+        }
+    };
+    let axes = stand.machine.axes.iter().zip(results);
+    let compensation: Vec<AxisCompensation> = axes.map(of_axis).collect();
+    let session = stand.connect(TUNING_RUN)?;
+    session.perform(&stand.uncompensated(), None, |session| {
+        let mut circles = TuningCircles::on(session, circle);
+        let before_um = circles.run(&stand.uncompensated())?.bursts_um;
+        let after_um = circles.run(&compensation)?.bursts_um;
+        Ok(Tuned {
+            compensation: compensation.clone(),
+            before_um,
+            after_um,
+            circles: circles.count,
+        })
     })
 }
 

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! v_cmd = v_ref + Kv (x_ref − x) + pulse          position loop, motor or load side
-//! v_f  += α (v_motor − v_f)                         velocity filter
+//! v_f  += α (v_motor − v_wind − v_f)                velocity filter
 //! e_v   = v_cmd − v_f                               velocity loop, motor side
 //! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless T is driven beyond the limit
 //! ```
 //!
-//! The motor's velocity is the difference of two encoder positions. Anti-windup acts against the
+//! The motor's velocity is the difference of two encoder positions; what it has to have of it for
+//! the wind-up of the screw (v_wind) is taken off before the filter, so that the filter delays both
+//! alike. Anti-windup acts against the
 //! torque that is really commanded, after every limit: the integral stands still while the torque
 //! is at its limit and the error would push it further.
 
@@ -42,6 +44,8 @@ pub struct CascadeInput {
     pub error: PositionError,
     /// Velocity setpoint with everything that is added to it.
     pub velocity_setpoint: Velocity,
+    /// Velocity that the motor has to have beside that of the table, to wind the screw up.
+    pub expected_velocity: Velocity,
     /// Acceleration of the setpoint.
     pub acceleration: Acceleration,
     /// Velocity of the motor.
@@ -76,6 +80,15 @@ impl CascadeState {
         }
     }
 
+    /// The same with a torque more in the integral, which somebody else held until now.
+    #[must_use]
+    pub fn taking(self, torque: Torque) -> Self {
+        Self {
+            integral: self.integral.plus(torque),
+            ..self
+        }
+    }
+
     /// The integral part of the torque.
     #[must_use]
     pub const fn integral(&self) -> Torque {
@@ -87,7 +100,8 @@ impl CascadeState {
         let setpoint = input
             .velocity_setpoint
             .plus(config.position_gain.times(input.error));
-        self.velocity = filtered(self.velocity, input.motor_velocity, config.velocity_filter);
+        let off = input.motor_velocity.minus(input.expected_velocity);
+        self.velocity = filtered(self.velocity, off, config.velocity_filter);
         let error = setpoint.minus(self.velocity);
         let integral = self
             .integral

@@ -8,6 +8,7 @@
 //!              ┌─ next velocity ─▶ direction ─▶ reversal ─▶ pulse ─┐
 //!              ├─ velocity ────────────────────────────────────────┤
 //! [reference] ─┼─ acceleration ────────────────────────────────────┼▶ cascade ─▶ filter ─▶ torque
+//!              ├─ all of it ─▶ friction model ─▶ torque, wind-up ──┤
 //!              └─ position + backlash offset − measurement ─▶ error ┘
 //! ```
 //!
@@ -40,6 +41,7 @@ pub mod backlash;
 pub mod cascade;
 pub mod direction;
 pub mod filter;
+pub mod friction;
 pub mod pulse;
 pub mod reference;
 mod root;
@@ -49,6 +51,7 @@ use backlash::{BacklashConfig, BacklashState};
 use cascade::{CascadeConfig, CascadeInput, CascadeState};
 use direction::{Direction, DirectionMemory};
 use filter::{FilterConfig, FilterState};
+use friction::{FrictionConfig, FrictionState};
 use pulse::{PulseConfig, PulseState};
 use reference::{Reference, ReferenceConfig};
 use units::{Position, PositionError, Torque, Velocity};
@@ -78,6 +81,8 @@ pub struct Config {
     pub backlash: BacklashConfig,
     /// Coulomb feedforward: this torque in the commanded direction; zero switches it off.
     pub coulomb: Torque,
+    /// Friction model: what it says is fed forward.
+    pub friction: FrictionConfig,
     /// Torque filter.
     pub filter: FilterConfig,
 }
@@ -88,6 +93,7 @@ pub struct State {
     direction: DirectionMemory,
     pulse: PulseState,
     backlash: BacklashState,
+    friction: FrictionState,
     cascade: CascadeState,
     filter: FilterState,
     motor: Option<Position>,
@@ -114,6 +120,33 @@ impl State {
             motor: Some(motor.after(velocity.reversed())),
             ..self
         }
+    }
+
+    /// What is known of the friction.
+    #[must_use]
+    pub const fn friction(&self) -> FrictionState {
+        self.friction
+    }
+
+    /// The same with what is known of the friction: it is a state of the axis, and stays when
+    /// torque goes and comes. The integral holds what the model does not.
+    #[must_use]
+    pub fn with_friction(self, friction: FrictionState) -> Self {
+        Self {
+            cascade: self.cascade.taking(friction.held().reversed()),
+            friction,
+            ..self
+        }
+    }
+
+    /// One cycle without torque: friction goes along with what is measured.
+    pub fn follow(&mut self, config: &FrictionConfig, measured: Position) {
+        self.friction.follow(config, measured);
+    }
+
+    /// Nobody knows any more where the axis is.
+    pub fn forget_friction(&mut self) {
+        self.friction.forget();
     }
 
     /// Where the backlash unit has the motor, beside the setpoint.
@@ -171,20 +204,30 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let following_error = reference
         .position
         .error_from(measured(config.position_source, input));
+    let model = state.friction.step(&config.friction, reference);
+    state.cascade = state.cascade.taking(model.released);
+    // With a model the motor is expected to have a velocity; without one its setpoint is that of
+    // the table.
+    let (expected, unexpected) = if config.friction.is_off() {
+        (Velocity::ZERO, reference.velocity)
+    } else {
+        (reference.velocity.plus(model.velocity), Velocity::ZERO)
+    };
     // With the load scale in the loop the table has to be at the setpoint itself; only the motor
     // gets the offset's velocity.
     let offset = match config.position_source {
-        PositionSource::Motor => offset,
+        PositionSource::Motor => offset.plus(model.offset),
         PositionSource::Load => PositionError::ZERO,
     };
     let proposal = state.cascade.propose(
         &config.cascade,
         &CascadeInput {
             error: following_error.plus(offset),
-            velocity_setpoint: reference.velocity.plus(offset_velocity).plus(pulse),
+            velocity_setpoint: unexpected.plus(offset_velocity).plus(pulse),
+            expected_velocity: expected,
             acceleration: reference.acceleration,
             motor_velocity,
-            friction: coulomb(config.coulomb, direction),
+            friction: coulomb(config.coulomb, direction).plus(model.torque),
         },
     );
     let limit = config.cascade.torque_limit;

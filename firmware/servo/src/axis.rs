@@ -191,7 +191,10 @@ impl Axis {
             Some(fault) if self.drive.is_energised() => self.latch(fault, settings, notices),
             // Without torque nothing is at stake: forget the old position, so that nobody enables
             // on it.
-            Some(_) => self.encoders.forget(),
+            Some(_) => {
+                self.encoders.forget();
+                self.law.forget_friction();
+            }
             None => {}
         }
         let acceleration = self
@@ -311,7 +314,7 @@ impl Axis {
             .held
             .filter(|_| preset.from_last)
             .unwrap_or(preset.torque);
-        self.law = State::holding(torque);
+        self.law = State::holding(torque).with_friction(self.law.friction());
         let Some(at) = self.encoders.position() else {
             return;
         };
@@ -335,9 +338,9 @@ impl Axis {
         self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
 
-    /// No torque: the law and the reference start anew.
+    /// No torque: the law and the reference start anew; friction is where it was.
     fn rest(&mut self) {
-        self.law = State::default();
+        self.law = State::default().with_friction(self.law.friction());
         self.track = None;
         self.last.torque = Torque::ZERO;
         self.last.reference = None;
@@ -353,6 +356,11 @@ impl Axis {
         notices: &mut Notices,
     ) -> bool {
         let Some(reference) = self.step_reference(settings, contents) else {
+            if let Some(measured) = measured {
+                let source = settings.config.position_source;
+                self.law
+                    .follow(&settings.config.friction, measured.of(source));
+            }
             return false;
         };
         self.advance(settings, reference.standing, notices);

@@ -17,6 +17,9 @@
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
+use controller::friction::{
+    Ahead, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag,
+};
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::units::{
@@ -24,7 +27,7 @@ use controller::units::{
     WayPerIncrement,
 };
 use controller::{Config, PositionSource};
-use fixed::types::{I2F30, I8F24, I20F12, I24F8, I56F8};
+use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
 use crate::objects::Parameter;
@@ -46,7 +49,11 @@ const MICROS: u64 = 1_000_000;
 const Q8: u64 = 1 << 8;
 const Q12: u64 = 1 << 12;
 const Q24: u64 = 1 << 24;
+const Q28: u64 = 1 << 28;
 const Q32: u64 = 1 << 32;
+const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
+/// The friction model looks so many cycles ahead at most, with 24 fractional bits.
+const LONGEST_AHEAD: i32 = 8 << 24;
 /// A position gain above one per cycle is not stable.
 const LARGEST_POSITION_GAIN: i32 = 1 << 24;
 /// 2⁻⁸ of 10 nm per cycle.
@@ -82,6 +89,17 @@ impl ParameterSet {
             way: reading.way()?,
             rated_torque_mnm: self.get(Parameter::RatedTorque),
         })
+    }
+}
+
+/// A look ahead by so many cycles, ten at most: nothing of it leaves 8.24 bits.
+fn ahead_by(cycles: I8F24) -> Ahead {
+    let square = I8F24::saturating_from_num(cycles.wide_mul(cycles));
+    let sum = square.saturating_add(cycles);
+    Ahead {
+        cycles,
+        way_by_acceleration: I8F24::from_bits(sum.to_bits().wrapping_shr(1)),
+        velocity_by_acceleration: cycles.saturating_add(HALF_A_CYCLE),
     }
 }
 
@@ -188,6 +206,7 @@ impl Reading<'_> {
             pulse: self.pulse()?,
             backlash: self.backlash()?,
             coulomb: self.torque(Parameter::CoulombTorque),
+            friction: self.friction()?,
             filter: self.filter()?,
             reference: self.reference()?,
         })
@@ -305,6 +324,143 @@ impl Reading<'_> {
             velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
+    }
+
+    fn friction(&self) -> Result<FrictionConfig, SetError> {
+        let mut elements = [Element::default(); ELEMENTS];
+        for ((element, level), way) in elements
+            .iter_mut()
+            .zip(Parameter::FRICTION_LEVELS)
+            .zip(Parameter::FRICTION_WAYS)
+        {
+            *element = self.element(level, way)?;
+        }
+        let ahead = self.cycles(Parameter::FrictionAhead)?;
+        let torque = ahead.saturating_add(HALF_A_CYCLE);
+        Ok(FrictionConfig {
+            elements,
+            levels: self.levels()?,
+            lag: self.level_lag()?,
+            viscous: self.viscous()?,
+            torque: ahead_by(torque),
+            torque_after: ahead_by(torque.saturating_add(I8F24::ONE)),
+            damping_cycles: self.cycles(Parameter::FrictionDamping)?,
+            compliance: self.compliance()?,
+            windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
+            motor_inertia: AccelerationGain(I24F8::from_bits(self.motor_inertia()?)),
+        })
+    }
+
+    /// Level over way, per count. Below 2²⁸ · 10¹⁰ · 2¹², that is 2⁷⁴.
+    fn element(&self, level: Parameter, way: Parameter) -> Result<Element, SetError> {
+        let stiffness = Self::held(
+            way,
+            &[self.steps(level), way.unit().per_si, Q12],
+            &[self.steps(way), COUNTS_PER_M],
+        )?;
+        Ok(Element {
+            stiffness: VelocityGain(I20F12::from_bits(stiffness)),
+            level_micro_nm: self.raw(level),
+        })
+    }
+
+    /// A time in cycles. Below 2¹⁷ · 2²⁴.
+    fn cycles(&self, parameter: Parameter) -> Result<I8F24, SetError> {
+        let bits = Self::held(parameter, &[self.steps(parameter), Q24], &[self.period_us])?;
+        if bits > LONGEST_AHEAD {
+            return Err(SetError::TooLarge(parameter));
+        }
+        Ok(I8F24::from_bits(bits))
+    }
+
+    fn signed_cycles(&self, parameter: Parameter) -> Result<I8F24, SetError> {
+        let cycles = self.cycles(parameter)?;
+        Ok(if self.raw(parameter) < 0 {
+            cycles.saturating_neg()
+        } else {
+            cycles
+        })
+    }
+
+    /// 16 intervals over the span, per count and cycle.
+    fn levels(&self) -> Result<LevelCurve, SetError> {
+        let span = Parameter::LevelSpan;
+        let intervals = if self.steps(span) == 0 {
+            0
+        } else {
+            Self::held(
+                span,
+                &[16, span.unit().per_si, MICROS, Q24],
+                &[self.steps(span), self.period_us, COUNTS_PER_M],
+            )?
+        };
+        Ok(LevelCurve {
+            intervals_per_velocity: I8F24::from_bits(intervals),
+            factors: self.factors(),
+        })
+    }
+
+    /// 1 over a way, per count, and over a time, per cycle; what is faster than that is at once.
+    fn level_lag(&self) -> Result<LevelLag, SetError> {
+        let (way, time) = (Parameter::LevelLagWay, Parameter::LevelLagTime);
+        let share = |parameter: Parameter, numerator: &[u64], denominator: u64| {
+            if self.steps(parameter) == 0 {
+                return Ok(I8F24::ZERO);
+            }
+            Self::held(parameter, numerator, &[self.steps(parameter), denominator])
+                .map(I8F24::from_bits)
+        };
+        Ok(LevelLag {
+            per_way: share(way, &[way.unit().per_si, Q24], COUNTS_PER_M)?,
+            per_cycle: share(time, &[self.period_us, Q24], 1)?,
+        })
+    }
+
+    /// Millionths as binary fractions; their rows keep them below 8.
+    fn factors(&self) -> [I8F24; LEVELS] {
+        Parameter::LEVEL_FACTORS.map(|place| {
+            let bits =
+                Fraction::new(&[self.steps(place), Q24], &[MICROS]).and_then(Fraction::nearest);
+            let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+            I8F24::from_bits(bits.unwrap_or(i32::MAX))
+        })
+    }
+
+    /// Torque per velocity, per count and cycle: over T.
+    fn viscous(&self) -> Result<VelocityGain, SetError> {
+        let parameter = Parameter::ViscousTorque;
+        let bits = Self::held(
+            parameter,
+            &[self.steps(parameter), Q12, MICROS],
+            &[parameter.unit().per_si, TORQUE_PER_COUNT, self.period_us],
+        )?;
+        Ok(VelocityGain(I20F12::from_bits(bits)))
+    }
+
+    /// Counts of 10 nm per µN·m. Below 2³¹ · 10⁸ · 2²⁸.
+    fn compliance(&self) -> Result<I4F28, SetError> {
+        let parameter = Parameter::Windup;
+        let bits = Self::held(
+            parameter,
+            &[self.steps(parameter), COUNTS_PER_M, Q28],
+            &[parameter.unit().per_si, MICROS],
+        )?;
+        Ok(I4F28::from_bits(bits))
+    }
+
+    /// As the gain of the acceleration feedforward, of the motor alone.
+    fn motor_inertia(&self) -> Result<i32, SetError> {
+        let inertia = Parameter::MotorInertia;
+        Self::held(
+            inertia,
+            &[self.steps(inertia), Q8, MICROS, MICROS],
+            &[
+                inertia.unit().per_si,
+                TORQUE_PER_COUNT,
+                self.period_us,
+                self.period_us,
+            ],
+        )
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {

@@ -37,6 +37,8 @@ const HERTZ: Unit = unit("1e-4 Hz", 10_000);
 const INERTIA: Unit = unit("1e-7 N m/(m/s^2)", 10_000_000);
 const MICRO_NM: Unit = unit("uN m", 1_000_000);
 const MILLI_NM: Unit = unit("mN m", 1_000);
+const VISCOUS: Unit = unit("1e-6 N m/(m/s)", 1_000_000);
+const WINDUP: Unit = unit("0.01 nm/(N m)", 100_000_000_000);
 const TENTH_NANOMETRE: Unit = unit("0.1 nm", 10_000_000_000);
 const NANOMETRE: Unit = unit("nm", 1_000_000_000);
 const COUNT: Unit = unit("10 nm", 100_000_000);
@@ -115,6 +117,55 @@ macro_rules! parameters {
                 Self::FilterA2,
             ];
 
+            /// Levels of the friction elements.
+            pub const FRICTION_LEVELS: [Self; 10] = [
+                Self::FrictionLevel1,
+                Self::FrictionLevel2,
+                Self::FrictionLevel3,
+                Self::FrictionLevel4,
+                Self::FrictionLevel5,
+                Self::FrictionLevel6,
+                Self::FrictionLevel7,
+                Self::FrictionLevel8,
+                Self::FrictionLevel9,
+                Self::FrictionLevel10,
+            ];
+
+            /// Ways of the friction elements.
+            pub const FRICTION_WAYS: [Self; 10] = [
+                Self::FrictionWay1,
+                Self::FrictionWay2,
+                Self::FrictionWay3,
+                Self::FrictionWay4,
+                Self::FrictionWay5,
+                Self::FrictionWay6,
+                Self::FrictionWay7,
+                Self::FrictionWay8,
+                Self::FrictionWay9,
+                Self::FrictionWay10,
+            ];
+
+            /// Factors on the friction levels over the speed.
+            pub const LEVEL_FACTORS: [Self; 17] = [
+                Self::LevelFactor0,
+                Self::LevelFactor1,
+                Self::LevelFactor2,
+                Self::LevelFactor3,
+                Self::LevelFactor4,
+                Self::LevelFactor5,
+                Self::LevelFactor6,
+                Self::LevelFactor7,
+                Self::LevelFactor8,
+                Self::LevelFactor9,
+                Self::LevelFactor10,
+                Self::LevelFactor11,
+                Self::LevelFactor12,
+                Self::LevelFactor13,
+                Self::LevelFactor14,
+                Self::LevelFactor15,
+                Self::LevelFactor16,
+            ];
+
             /// Step of its raw number.
             #[must_use]
             pub const fn unit(self) -> Unit {
@@ -185,6 +236,52 @@ parameters! {
     PulseStartDelay = (0x2110, 3), "reversal pulse start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
     BacklashGap = (0x2111, 0), "backlash to compensate, the whole gap", TENTH_NANOMETRE, (0, 100_000_000), 0;
     CoulombTorque = (0x2112, 0), "Coulomb feedforward", MICRO_NM, SIGNED_TORQUE, 0;
+    FrictionLevel1 = (0x2150, 1), "friction element 1, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel2 = (0x2150, 2), "friction element 2, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel3 = (0x2150, 3), "friction element 3, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel4 = (0x2150, 4), "friction element 4, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel5 = (0x2150, 5), "friction element 5, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel6 = (0x2150, 6), "friction element 6, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel7 = (0x2150, 7), "friction element 7, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel8 = (0x2150, 8), "friction element 8, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel9 = (0x2150, 9), "friction element 9, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionLevel10 = (0x2150, 10), "friction element 10, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
+    FrictionWay1 = (0x2151, 1), "friction element 1, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay2 = (0x2151, 2), "friction element 2, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay3 = (0x2151, 3), "friction element 3, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay4 = (0x2151, 4), "friction element 4, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay5 = (0x2151, 5), "friction element 5, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay6 = (0x2151, 6), "friction element 6, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay7 = (0x2151, 7), "friction element 7, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay8 = (0x2151, 8), "friction element 8, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay9 = (0x2151, 9), "friction element 9, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    FrictionWay10 = (0x2151, 10), "friction element 10, way after which it slips", TENTH_NANOMETRE, (1, 1_000_000_000), 100_000;
+    LevelFactor0 = (0x2152, 1), "factor on the friction levels at 0/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor1 = (0x2152, 2), "factor on the friction levels at 1/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor2 = (0x2152, 3), "factor on the friction levels at 2/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor3 = (0x2152, 4), "factor on the friction levels at 3/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor4 = (0x2152, 5), "factor on the friction levels at 4/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor5 = (0x2152, 6), "factor on the friction levels at 5/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor6 = (0x2152, 7), "factor on the friction levels at 6/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor7 = (0x2152, 8), "factor on the friction levels at 7/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor8 = (0x2152, 9), "factor on the friction levels at 8/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor9 = (0x2152, 10), "factor on the friction levels at 9/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor10 = (0x2152, 11), "factor on the friction levels at 10/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor11 = (0x2152, 12), "factor on the friction levels at 11/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor12 = (0x2152, 13), "factor on the friction levels at 12/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor13 = (0x2152, 14), "factor on the friction levels at 13/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor14 = (0x2152, 15), "factor on the friction levels at 14/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor15 = (0x2152, 16), "factor on the friction levels at 15/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelFactor16 = (0x2152, 17), "factor on the friction levels at 16/16 of 2153h", MILLIONTH, (0, 8_000_000), 1_000_000;
+    LevelSpan = (0x2153, 0), "speed at the end of the factors on the friction levels (0: all as at standstill)", MICROMETRE_PER_S, POSITIVE, 0;
+    LevelLagWay = (0x2157, 1), "factor on the friction levels comes within this way (0: at once)", TENTH_NANOMETRE, (0, 1_000_000_000), 0;
+    LevelLagTime = (0x2157, 2), "factor on the friction levels comes within this time (0: at once)", MICROSECOND, (0, 1_000_000), 0;
+    ViscousTorque = (0x2154, 0), "viscous feedforward", VISCOUS, POSITIVE, 0;
+    FrictionAhead = (0x2155, 1), "friction torque acts so long after its cycle has begun", MICROSECOND, (0, 100_000), 0;
+    WindupAhead = (0x2155, 2), "wind-up of the screw is so far ahead of friction", MICROSECOND, (-100_000, 100_000), 0;
+    FrictionDamping = (0x2155, 3), "damping of presliding over its stiffness", MICROSECOND, (0, 100_000), 0;
+    Windup = (0x2156, 1), "wind-up of the screw per torque of friction", WINDUP, POSITIVE, 0;
+    MotorInertia = (0x2156, 2), "inertia of the motor alone, for the wind-up", INERTIA, POSITIVE, 0;
     VelocityLimit = (0x607F, 0), "velocity limit of the axis", MICROMETRE_PER_S, POSITIVE, 0;
     AccelerationLimit = (0x60C5, 0), "acceleration limit of the axis", MICROMETRE_PER_S2, POSITIVE, 0;
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;

@@ -48,11 +48,14 @@ fn compensation_of(
     match (arguments.compensation, file) {
         (Method::None, None) => Ok(stand.uncompensated()),
         (Method::None, Some(_)) => Err(Failure::new(
-            "--compensation-file: needs --compensation pulse or coulomb; without it the file would not be used",
+            "--compensation-file: needs --compensation pulse, coulomb or model; without it the file would not be used",
         )),
         (Method::Coulomb, None) => coulomb_force::measured(stand),
         (Method::Pulse, None) => Err(Failure::new(
             "--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`",
+        )),
+        (Method::Model, None) => Err(Failure::new(
+            "--compensation model: needs --compensation-file; make one with `quadrant tune --method model --out FILE`",
         )),
         (method, Some(path)) => {
             let read = compensation::read(path, &stand.axis_names())?;
@@ -70,8 +73,10 @@ fn compensation_of(
 
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {
     matches!(
-        (method, compensation.reversal),
-        (Method::Pulse, Compensation::Pulse(_)) | (Method::Coulomb, Compensation::Coulomb { .. })
+        (method, &compensation.reversal),
+        (Method::Pulse, Compensation::Pulse(_))
+            | (Method::Coulomb, Compensation::Coulomb { .. })
+            | (Method::Model, Compensation::Model(_))
     )
 }
 

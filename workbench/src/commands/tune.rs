@@ -1,12 +1,14 @@
-//! `quadrant tune`: compensation parameters from circles, as at a real machine.
+//! `quadrant tune`: compensation parameters from circles or records, as at a real machine.
 
 use crate::cli::{self, TuneMethod};
+use crate::commissioning::identified_axes;
 use crate::compensation;
 use crate::console;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output_files::write;
+use crate::output_files::{make_folder, write};
 use crate::session::Stand;
+use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::check_circle;
 use crate::tuning::{self, Tuned};
 
@@ -26,11 +28,23 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     };
     let tuned = match arguments.method {
         TuneMethod::Pulse => tuning::pulse(&stand, &circle, start_delay_s)?,
+        TuneMethod::Model => model(&stand, &circle)?,
     };
     write(&arguments.out, &file(arguments, &stand, &tuned)?)?;
     console::print_tuned(&stand.axis_names(), &tuned);
     println!("wrote {}", arguments.out.display());
     Ok(())
+}
+
+/// Records the axes, identifies them and makes the model of what was found.
+fn model(stand: &Stand<'_>, circle: &Circle) -> Outcome<Tuned> {
+    let folder = std::env::temp_dir().join(format!("quadrant-tune-{}", std::process::id()));
+    make_folder(&folder)?;
+    let results = identified_axes::record(stand, &folder)
+        .and_then(|()| identified_axes::identify(stand, &folder));
+    // The folder is in the system's temporary directory: leaving it behind is untidy, not wrong.
+    let _ = std::fs::remove_dir_all(&folder);
+    tuning::model(stand, circle, &results?)
 }
 
 fn start_delay_s(start_delay_ms: f64) -> Outcome<f64> {
@@ -44,11 +58,24 @@ fn start_delay_s(start_delay_ms: f64) -> Outcome<f64> {
 
 /// The compensation file, headed by the circle that it is good for.
 fn file(arguments: &cli::Tune, stand: &Stand<'_>, tuned: &Tuned) -> Outcome<String> {
-    let head = format!(
-        "# Tuned at R {} mm, F {} mm/min in {} circles: best there, and only there.\n",
-        arguments.radius_mm, arguments.feed_mm_min, tuned.circles
-    );
+    let (radius, feed) = (arguments.radius_mm, arguments.feed_mm_min);
+    let head = match arguments.method {
+        TuneMethod::Pulse => format!(
+            "# Tuned at R {radius} mm, F {feed} mm/min in {} circles: best there, and only there.\n",
+            tuned.circles
+        ),
+        TuneMethod::Model => format!(
+            "# From records of the axes, for every radius and feed; burst at R {radius} mm, F {feed} mm/min {}.\n",
+            fall(tuned)
+        ),
+    };
     Ok(head + &compensation::text(&stand.axis_names(), &tuned.compensation)?)
+}
+
+/// The largest burst of both axes, before and after.
+fn fall(tuned: &Tuned) -> String {
+    let [before, after] = [tuned.before_um, tuned.after_um].map(|[x, y]| x.max(y));
+    format!("{before:.2} µm without, {after:.2} µm with it")
 }
 
 #[cfg(test)]

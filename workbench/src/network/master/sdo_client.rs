@@ -53,7 +53,7 @@ impl<L: Link> Master<L> {
         let period_us = u32::try_from(self.period.as_micros()).unwrap_or(u32::MAX);
         for (index, axis) in machine.axes.iter().enumerate() {
             self.download(index, objects::DECLARED_PERIOD, Expedited::u32(period_us))?;
-            let own = compensation.get(index).copied().unwrap_or_default();
+            let own = compensation.get(index).cloned().unwrap_or_default();
             for (entry, value) in drive_parameters::parameters(axis, machine.period_s, &own)? {
                 self.download(index, entry.address, Expedited::i32(value))?;
             }

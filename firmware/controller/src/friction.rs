@@ -1,0 +1,271 @@
+//! Friction as a state over displacement: what the model knows of it, fed forward.
+//!
+//! ```text
+//! x(k+1) ─▶ elements ─▶ F(k+1) ─┬─▶ ahead of the reference ─▶ F when the torque acts ─▶ torque
+//!                               └─▶ change of F · compliance ─▶ wind-up ─▶ speed of the motor
+//! ```
+//!
+//! **Elements.** Friction is the sum of Maxwell-slip elements (springs that slip at a level), as in
+//! Al-Bender, Lampaert, Swevers, "The generalized Maxwell-slip model", IEEE TAC 50 (2005) 1883. In
+//! presliding they follow Masing's rules by themselves; sliding, their levels follow the speed
+//! ([`LevelCurve`]). Their only input is the way of the reference. There is no event, so nothing
+//! chatters: a setpoint that flips one count moves a spring by one count.
+//!
+//! **Wind-up.** The screw transmits the friction of the table and is wound up by it, `F / K`. When
+//! friction changes sign the motor has to go that way in addition: its change belongs to the speed
+//! setpoint, in time with the encoders, and its acceleration takes torque.
+//!
+//! **Time.** The elements stand at x(k+1), the newest setpoint. What acts later, from k + 1 to
+//! k + 2 and after the lag of the current loop, is taken from a look ahead along the reference's
+//! velocity and acceleration ([`Ahead`]), which leaves the elements where they are.
+
+use fixed::types::{I4F28, I8F24, I20F12, I24F8, I30F2, I40F24};
+
+use crate::reference::Reference;
+use crate::units::{
+    Acceleration, AccelerationGain, Position, PositionError, Torque, Velocity, VelocityGain,
+};
+
+mod element;
+mod levels;
+mod path;
+
+pub use element::Element;
+pub use levels::{LEVELS, LevelCurve, LevelLag};
+pub use path::Ahead;
+use path::Path;
+
+/// Elements of the model.
+pub const ELEMENTS: usize = 10;
+/// What the model says of the axis; all zero switches it off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrictionConfig {
+    /// Elements; the sum of their levels is the Coulomb torque.
+    pub elements: [Element; ELEMENTS],
+    /// Levels over the speed.
+    pub levels: LevelCurve,
+    /// How they fall behind it.
+    pub lag: LevelLag,
+    /// Viscous torque per velocity.
+    pub viscous: VelocityGain,
+    /// From x(k+1) to when the torque acts.
+    pub torque: Ahead,
+    /// The same one cycle later.
+    pub torque_after: Ahead,
+    /// Friction has a damping in presliding: its rate of change counts so many cycles.
+    pub damping_cycles: I8F24,
+    /// Wind-up of the screw per torque of friction, 10 nm per µN·m.
+    pub compliance: I4F28,
+    /// The wind-up follows the rate of change of friction, so many cycles of it; the damping of
+    /// presliding makes them more, that of the screw less.
+    pub windup_cycles: I8F24,
+    /// Torque per acceleration of the motor alone.
+    pub motor_inertia: AccelerationGain,
+}
+
+impl FrictionConfig {
+    /// Whether it says nothing.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        self.viscous == VelocityGain::default()
+            && self
+                .elements
+                .iter()
+                .all(|element| element.level_micro_nm == 0)
+    }
+}
+
+/// Where the elements stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrictionState {
+    /// Where they were last; `None`: nothing is known of them, and they begin where the axis is.
+    at: Option<Position>,
+    elements: [I40F24; ELEMENTS],
+    /// Factor on the levels; `None`: that of the speed.
+    factor: Option<I8F24>,
+    recent: Option<Recent>,
+}
+
+/// Friction of the last cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Recent {
+    before: Torque,
+    present: Torque,
+    next: Torque,
+    acting: Torque,
+}
+
+/// What the model adds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Feedforward {
+    /// Torque that overcomes friction and winds the screw up.
+    pub torque: Torque,
+    /// Velocity of the motor in addition to that of the table.
+    pub velocity: Velocity,
+    /// Way of the motor in addition to that of the table.
+    pub offset: PositionError,
+    /// What the elements held when the model was switched off: somebody else has to hold it now.
+    pub released: Torque,
+}
+
+impl FrictionState {
+    /// One cycle of an axis that follows a reference.
+    pub fn step(&mut self, config: &FrictionConfig, reference: &Reference) -> Feedforward {
+        if config.is_off() {
+            let released = self.held();
+            self.forget();
+            return Feedforward {
+                released,
+                ..Feedforward::default()
+            };
+        }
+        let velocity = reference.next_velocity;
+        let acceleration = reference.acceleration;
+        let next_position = reference.position.after(velocity);
+        let at_next = velocity.plus(half(acceleration));
+        let begin = velocity.minus(half(acceleration));
+        let way = self
+            .at
+            .map_or(Velocity::ZERO, |before| next_position.step_from(before));
+        let path = Path::between(begin, at_next, I8F24::ONE, way);
+        self.move_along(config, &path, next_position, at_next);
+        let next = self.held().plus(config.viscous.times(at_next));
+        let [acting, after] = [&config.torque, &config.torque_after]
+            .map(|ahead| self.ahead(config, ahead, velocity, acceleration));
+        let before = self.recent.unwrap_or(Recent {
+            before: next,
+            present: next,
+            next,
+            acting,
+        });
+        self.recent = Some(Recent {
+            before: before.present,
+            present: before.next,
+            next,
+            acting,
+        });
+        let change = before.next.minus(before.present);
+        let bend = next
+            .minus(before.next)
+            .minus(before.present.minus(before.before));
+        let windup = change.plus(damping(config.windup_cycles, bend));
+        let turn = after.minus(acting).minus(acting.minus(before.acting));
+        let inertia = config
+            .motor_inertia
+            .times(Acceleration(wound(config.compliance, turn)));
+        Feedforward {
+            torque: acting
+                .plus(damping(config.damping_cycles, after.minus(before.acting)))
+                .plus(inertia),
+            velocity: Velocity(wound(config.compliance, windup)),
+            offset: offset(config.compliance, before.next),
+            released: Torque::ZERO,
+        }
+    }
+
+    /// One cycle of an axis that is moved by others: the elements go along with what is measured.
+    pub fn follow(&mut self, config: &FrictionConfig, measured: Position) {
+        if config.is_off() {
+            return self.forget();
+        }
+        let velocity = self
+            .at
+            .map_or(Velocity::ZERO, |before| measured.step_from(before));
+        self.move_along(config, &Path::straight(velocity), measured, velocity);
+        self.recent = None;
+    }
+
+    /// Nobody knows any more where the axis is: the elements are unknown, and grow into their
+    /// levels as it moves.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    fn move_along(
+        &mut self,
+        config: &FrictionConfig,
+        path: &Path,
+        to: Position,
+        velocity: Velocity,
+    ) {
+        let factor = self.factor_after(config, path.length(), velocity, I8F24::ONE);
+        for (torque, element) in self.elements.iter_mut().zip(&config.elements) {
+            *torque = element.passed(*torque, path, factor);
+        }
+        (self.at, self.factor) = (Some(to), Some(factor));
+    }
+
+    /// The factor on the levels a way and some cycles later, at a velocity there.
+    fn factor_after(
+        &self,
+        config: &FrictionConfig,
+        way: Velocity,
+        velocity: Velocity,
+        cycles: I8F24,
+    ) -> I8F24 {
+        let aim = config.levels.at(velocity);
+        let before = self.factor.unwrap_or(aim);
+        config.lag.passed(before, aim, way, cycles)
+    }
+
+    /// What the elements hold.
+    #[must_use]
+    pub fn held(&self) -> Torque {
+        let sum = |sum: I40F24, torque: &I40F24| sum.saturating_add(*torque);
+        Torque(self.elements.iter().fold(I40F24::ZERO, sum))
+    }
+
+    fn ahead(
+        &self,
+        config: &FrictionConfig,
+        ahead: &Ahead,
+        velocity: Velocity,
+        acceleration: Acceleration,
+    ) -> Torque {
+        let way = scaled(velocity.0, ahead.cycles)
+            .saturating_add(scaled(acceleration.0, ahead.way_by_acceleration));
+        let there = velocity
+            .0
+            .saturating_add(scaled(acceleration.0, ahead.velocity_by_acceleration));
+        let there = Velocity(there);
+        let begin = velocity.plus(half(acceleration));
+        let path = Path::between(begin, there, ahead.cycles, Velocity(way));
+        let factor = self.factor_after(config, path.length(), there, ahead.cycles);
+        let elements = self.elements.iter().zip(&config.elements);
+        let sum = elements.fold(I40F24::ZERO, |sum, (torque, element)| {
+            sum.saturating_add(element.passed(*torque, &path, factor))
+        });
+        Torque(sum).plus(config.viscous.times(there))
+    }
+}
+
+/// A velocity or its change times a factor, saturated.
+fn scaled(value: I20F12, factor: I8F24) -> I20F12 {
+    I20F12::saturating_from_num(value.wide_mul(factor))
+}
+
+fn half(acceleration: Acceleration) -> Velocity {
+    Velocity(I20F12::from_bits(acceleration.0.to_bits().wrapping_shr(1)))
+}
+
+/// A torque in a quarter of µN·m: 30.2 bits times 4.28 bits are 34.30 bits, exact.
+fn coarse(torque: Torque) -> I30F2 {
+    I30F2::saturating_from_num(torque.0)
+}
+
+/// The change over two cycles times a number of them.
+fn damping(cycles: I8F24, change: Torque) -> Torque {
+    // 30.2 bits times 8.24 bits: 38.26 bits, exact; one bit less is half of it.
+    let product = coarse(change).wide_mul(cycles).to_bits();
+    Torque(I40F24::from_bits(product.wrapping_shr(3)))
+}
+
+fn wound(compliance: I4F28, change: Torque) -> I20F12 {
+    I20F12::saturating_from_num(coarse(change).wide_mul(compliance))
+}
+
+fn offset(compliance: I4F28, torque: Torque) -> PositionError {
+    PositionError(I24F8::saturating_from_num(
+        coarse(torque).wide_mul(compliance),
+    ))
+}

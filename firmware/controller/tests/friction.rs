@@ -1,0 +1,313 @@
+//! The friction model beside a floating-point twin, and what its torque must never do.
+//!
+//! The twin is written from the equations of the module docs in `f64`; the time of a turn is
+//! rounded to a 64th of the look ahead there too, since that is the law's and no rounding of its
+//! numbers.
+
+use controller::friction::{
+    Ahead, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS, LevelCurve,
+    LevelLag,
+};
+use controller::reference::Reference;
+use controller::units::{Acceleration, AccelerationGain, Position, Velocity, VelocityGain};
+use fixed::types::{I4F28, I8F24, I20F12, I56F8};
+use proptest::prelude::*;
+
+/// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
+const LEVEL: f64 = 636_620.0;
+/// Largest difference of the torques, µN·m: half a percent of that level; where the reference turns
+/// round in the look ahead, and rounding may choose another 64th of it, 2 %.
+const BOUND_MICRO_NM: f64 = 0.005 * LEVEL;
+const BOUND_AT_TURN_MICRO_NM: f64 = 0.02 * LEVEL;
+/// Largest difference of the velocities of the wind-up, 10 nm per cycle.
+const BOUND_VELOCITY: f64 = 0.5;
+
+/// Levels in µN·m and ways in 10 nm.
+fn elements() -> [(f64, f64); ELEMENTS] {
+    let weight = |place: usize| (place + 1) as f64;
+    let all: f64 = (0..ELEMENTS).map(weight).sum();
+    std::array::from_fn(|place| {
+        (
+            LEVEL * weight(place) / all,
+            30.0 * 1.6_f64.powi(place as i32),
+        )
+    })
+}
+
+fn ahead(cycles: f64) -> Ahead {
+    Ahead {
+        cycles: I8F24::from_num(cycles),
+        way_by_acceleration: I8F24::from_num(0.5 * cycles * (cycles + 1.0)),
+        velocity_by_acceleration: I8F24::from_num(cycles + 0.5),
+    }
+}
+
+fn factors() -> [f64; LEVELS] {
+    std::array::from_fn(|place| 1.0 + 0.3 * (-(0.15 * place as f64).powi(2)).exp())
+}
+
+const PER_VELOCITY: f64 = 16.0 / 370.0;
+const VISCOUS: f64 = 31.8;
+const LAG_PER_WAY: f64 = 1.0 / 1300.0;
+const AHEAD: f64 = 1.0;
+const DAMPING: f64 = 0.75;
+const WINDUP_CYCLES: f64 = 0.58;
+const COMPLIANCE: f64 = 5.2e-4;
+const INERTIA: f64 = 10_050.0;
+
+fn config() -> FrictionConfig {
+    FrictionConfig {
+        elements: elements().map(|(level, way)| Element {
+            stiffness: VelocityGain(I20F12::from_num(level / way)),
+            level_micro_nm: level as i32,
+        }),
+        levels: LevelCurve {
+            intervals_per_velocity: I8F24::from_num(PER_VELOCITY),
+            factors: factors().map(I8F24::from_num),
+        },
+        lag: LevelLag {
+            per_way: I8F24::from_num(LAG_PER_WAY),
+            per_cycle: I8F24::ZERO,
+        },
+        viscous: VelocityGain(I20F12::from_num(VISCOUS)),
+        torque: ahead(AHEAD),
+        torque_after: ahead(AHEAD + 1.0),
+        damping_cycles: I8F24::from_num(DAMPING),
+        compliance: I4F28::from_num(COMPLIANCE),
+        windup_cycles: I8F24::from_num(WINDUP_CYCLES),
+        motor_inertia: AccelerationGain(fixed::types::I24F8::from_num(INERTIA)),
+    }
+}
+
+/// A path in counts: the reference of a cycle.
+fn reference(at: impl Fn(f64) -> f64, cycle: u32) -> Reference {
+    let time = f64::from(cycle);
+    let on_grid = |time: f64| (at(time) * 256.0).round() / 256.0;
+    let next = on_grid(time + 1.0) - on_grid(time);
+    Reference {
+        position: Position(I56F8::from_num(on_grid(time))),
+        velocity: Velocity(I20F12::from_num(on_grid(time) - on_grid(time - 1.0))),
+        next_velocity: Velocity(I20F12::from_num(next)),
+        acceleration: Acceleration(I20F12::from_num(
+            at(time + 2.0) - 2.0 * at(time + 1.0) + at(time),
+        )),
+        ..Reference::default()
+    }
+}
+
+#[derive(Default)]
+struct Twin {
+    at: Option<f64>,
+    elements: [f64; ELEMENTS],
+    factor: Option<f64>,
+    recent: Option<[f64; 4]>,
+}
+
+impl Twin {
+    fn level(&self, way: f64, velocity: f64) -> f64 {
+        let place = (velocity.abs() * PER_VELOCITY).min(16.0);
+        let (from, factors) = ((place.floor() as usize).min(15), factors());
+        let aim = factors[from] + (factors[from + 1] - factors[from]) * (place - from as f64);
+        let before = self.factor.unwrap_or(aim);
+        before + (aim - before) * (way * LAG_PER_WAY).min(1.0)
+    }
+
+    /// The elements after a path between two velocities, and the factor on their levels.
+    fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], f64) {
+        let on = if begin * end < 0.0 {
+            let share = begin.abs() / (begin.abs() + end.abs());
+            0.5 * begin * cycles * (64.0 * share).floor() / 64.0
+        } else {
+            way
+        };
+        let factor = self.level(on.abs() + (way - on).abs(), end);
+        let mut torques = self.elements;
+        for (torque, (level, slip)) in torques.iter_mut().zip(elements()) {
+            for part in [on, way - on] {
+                let limit = level * factor;
+                *torque = (*torque + level / slip * part).clamp(-limit, limit);
+            }
+        }
+        (torques, factor)
+    }
+
+    /// Torque, velocity and offset.
+    fn step(&mut self, reference: &Reference) -> [f64; 3] {
+        let position: f64 = reference.position.0.to_num();
+        let v: f64 = reference.next_velocity.0.to_num();
+        let a: f64 = reference.acceleration.0.to_num();
+        let way = self.at.map_or(0.0, |at| position + v - at);
+        let (torques, factor) = self.passed(v - 0.5 * a, v + 0.5 * a, 1.0, way);
+        (self.elements, self.factor, self.at) = (torques, Some(factor), Some(position + v));
+        let next = torques.iter().sum::<f64>() + VISCOUS * (v + 0.5 * a);
+        let acting = |cycles: f64| {
+            let way = v * cycles + 0.5 * a * cycles * (cycles + 1.0);
+            let there = v + a * (cycles + 0.5);
+            let (torques, _) = self.passed(v + 0.5 * a, there, cycles, way);
+            torques.iter().sum::<f64>() + VISCOUS * there
+        };
+        let (now, after) = (acting(AHEAD), acting(AHEAD + 1.0));
+        let [before, present, last, acted] = self.recent.unwrap_or([next, next, next, now]);
+        self.recent = Some([present, last, next, now]);
+        let bend = next - last - (present - before);
+        let turn = after - 2.0 * now + acted;
+        [
+            now + 0.5 * DAMPING * (after - acted) + INERTIA * COMPLIANCE * turn,
+            COMPLIANCE * (last - present + 0.5 * WINDUP_CYCLES * bend),
+            COMPLIANCE * last,
+        ]
+    }
+}
+
+fn said(feedforward: &Feedforward) -> [f64; 3] {
+    [
+        feedforward.torque.0.to_num(),
+        feedforward.velocity.0.to_num(),
+        feedforward.offset.0.to_num(),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn the_law_follows_its_twin(
+        amplitude in 10.0_f64..1.0e6, period in 100.0_f64..5000.0, second in 0.0_f64..0.3, phase in 0.0_f64..6.0,
+    ) {
+        // No faster than 2000 counts per cycle, no harder than 200 per cycle².
+        let turn = std::f64::consts::TAU / period;
+        let amplitude = amplitude.min(2000.0 / turn).min(200.0 / (turn * turn));
+        let at = |time: f64| amplitude * ((turn * time).sin() + second * (2.7 * turn * time + phase).sin());
+        let (mut law, mut twin, config) = (FrictionState::default(), Twin::default(), config());
+        for cycle in 2..3000 {
+            let reference = reference(at, cycle);
+            let [torque, windup, offset] = said(&law.step(&config, &reference));
+            let [torque_there, velocity_there, offset_there] = twin.step(&reference);
+            // Ahead of the newest setpoint by two cycles and a half, and remembered for one.
+            let velocity = |time: f64| at(time + 1.0) - at(time);
+            let turns = velocity(f64::from(cycle) - 2.0) * velocity(f64::from(cycle) + 4.0) <= 0.0;
+            let bound = if turns { BOUND_AT_TURN_MICRO_NM } else { BOUND_MICRO_NM };
+            prop_assert!((torque - torque_there).abs() < bound, "cycle {cycle}: {torque} {torque_there}");
+            prop_assert!((windup - velocity_there).abs() < BOUND_VELOCITY, "cycle {cycle}: {windup} {velocity_there}");
+            prop_assert!((offset - offset_there).abs() < BOUND_VELOCITY * 2.0, "cycle {cycle}: {offset} {offset_there}");
+        }
+    }
+
+    /// Whatever comes: its torque is at most that of all levels at their highest factor and the
+    /// damping and inertia of their change from one side to the other.
+    #[test]
+    fn no_reference_makes_it_panic_or_lets_an_element_pass_its_level(
+        cycles in proptest::collection::vec((any::<i32>(), any::<i32>(), any::<i32>()), 1..60),
+    ) {
+        let (mut law, config) = (FrictionState::default(), config());
+        for (position, velocity, acceleration) in cycles {
+            law.step(&config, &Reference {
+                position: Position(I56F8::from_bits(i64::from(position))),
+                next_velocity: Velocity(I20F12::from_bits(velocity)),
+                acceleration: Acceleration(I20F12::from_bits(acceleration)),
+                ..Reference::default()
+            });
+            prop_assert!(law.held().0.to_num::<f64>().abs() <= 1.3 * LEVEL + 20.0);
+        }
+    }
+}
+
+/// Steps along positions in counts, at most some counts apart; gives the torques.
+fn along(law: &mut FrictionState, config: &FrictionConfig, positions: &[f64]) -> Vec<f64> {
+    let step = |cycle: usize| {
+        let at = |time: f64| positions[(time as usize).min(positions.len() - 1)];
+        reference(at, cycle as u32)
+    };
+    (0..positions.len().saturating_sub(2))
+        .map(|cycle| law.step(config, &step(cycle)).torque.0.to_num())
+        .collect()
+}
+
+#[test]
+fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
+    let config = FrictionConfig {
+        damping_cycles: I8F24::ZERO,
+        compliance: I4F28::ZERO,
+        viscous: VelocityGain::default(),
+        ..config()
+    };
+    let mut law = FrictionState::default();
+    let there: Vec<f64> = (0..3000).map(f64::from).collect();
+    along(&mut law, &config, &there);
+    let held: f64 = law.held().0.to_num();
+    assert!(held > 0.99 * LEVEL, "it slides: {held}");
+    let flips: Vec<f64> = (0..2000)
+        .map(|cycle| {
+            2999.0
+                - if cycle / 100 % 2 == 0 {
+                    0.0
+                } else {
+                    1.0 / 256.0
+                }
+        })
+        .collect();
+    let stiffness: f64 = elements().iter().map(|(level, way)| level / way).sum();
+    for torque in along(&mut law, &config, &flips) {
+        // Factor 1.3 at standstill may raise a level that is passed only by way.
+        assert!(
+            (torque - held).abs() < 4.0 * stiffness / 256.0 + 1.0,
+            "{torque}"
+        );
+    }
+}
+
+#[test]
+fn a_loop_within_presliding_closes_where_it_began() {
+    let config = FrictionConfig {
+        lag: LevelLag::default(),
+        levels: LevelCurve::default(),
+        ..config()
+    };
+    let mut law = FrictionState::default();
+    let ramp = |from: f64, to: f64| -> Vec<f64> {
+        let steps = ((to - from).abs()).ceil();
+        (0..=steps as u32)
+            .map(|step| from + (to - from) * f64::from(step) / steps)
+            .collect()
+    };
+    along(&mut law, &config, &ramp(0.0, 3000.0));
+    along(&mut law, &config, &ramp(3000.0, 2700.0));
+    let before: f64 = law.held().0.to_num();
+    along(&mut law, &config, &ramp(2700.0, 2800.0));
+    along(&mut law, &config, &ramp(2800.0, 2700.0));
+    let after: f64 = law.held().0.to_num();
+    // Masing: a small loop leaves no trace in the large one, but for the last step of each ramp.
+    assert!((after - before).abs() < 0.01 * LEVEL, "{before} {after}");
+}
+
+#[test]
+fn switched_off_it_hands_over_what_it_held_and_knows_nothing_any_more() {
+    let (mut law, on) = (FrictionState::default(), config());
+    let there: Vec<f64> = (0..3000).map(f64::from).collect();
+    along(&mut law, &on, &there);
+    let held = law.held();
+    let off = FrictionConfig::default();
+    let last = reference(|_| 2999.0, 10);
+    let feedforward = law.step(&off, &last);
+    assert_eq!(feedforward.released, held);
+    assert_eq!(law, FrictionState::default());
+    assert_eq!(law.step(&off, &last), Feedforward::default());
+}
+
+#[test]
+fn what_others_do_to_the_axis_counts_and_what_nobody_saw_does_not() {
+    let (mut law, config) = (FrictionState::default(), config());
+    for count in 0..3000 {
+        law.follow(&config, Position::from_counts(count));
+    }
+    assert!(
+        law.held().0.to_num::<f64>() > 0.99 * LEVEL,
+        "pushed one way"
+    );
+    for count in (0..3000).rev() {
+        law.follow(&config, Position::from_counts(count));
+    }
+    assert!(law.held().0.to_num::<f64>() < -0.99 * LEVEL, "and back");
+    law.forget();
+    assert_eq!(law.held().0, 0);
+    law.follow(&config, Position::from_counts(1_000_000));
+    assert_eq!(law.held().0, 0, "the first position after that is no way");
+}

@@ -1,0 +1,217 @@
+//! The drive's model of friction, from what was identified of an axis.
+//!
+//! ```text
+//! presliding ─▶ elements     stribeck ─▶ factors, lag     compliance, masses ─▶ wind-up
+//! ```
+//!
+//! Elements have ways from rest: after a reversal a spring goes twice as far until it slips the
+//! other way (Masing). Elements that were identified are taken as they are. A bristle (Dahl) comes
+//! off its level within its deflection δ after a reversal, so from rest its curve is
+//! `V(x) = F (1 − exp(−2 x / δ))`, and is cut into elements: those that slip between a and b carry
+//! `[V − x V']` from a to b and have the stiffness `V'(a) − V'(b)`.
+
+use axis_model::{Compliance, Coulomb, Effect, Estimate, Inertia, Presliding, Stribeck, Viscous};
+use identification::Identification;
+
+use crate::compensation::{ELEMENTS, LEVELS, Model};
+use crate::model_file::Known;
+
+/// Friction that no reversal shows to give way slips within this, m.
+const RIGID_M: f64 = 1.0e-6;
+/// The factors end where the Stribeck fall has come down to this share of itself.
+const END_OF_FALL: f64 = 2.0e-3;
+
+/// What was identified of an axis, one effect by one.
+struct Found<'a> {
+    coulomb_n: f64,
+    viscous: f64,
+    inertia: Option<&'a Inertia<Estimate>>,
+    stribeck: Option<&'a Stribeck<Estimate>>,
+    presliding: Option<&'a Presliding<Estimate>>,
+    compliance: Option<&'a Compliance<Estimate>>,
+}
+
+impl<'a> Found<'a> {
+    fn of(result: &'a Identification) -> Self {
+        let mut found = Self {
+            coulomb_n: 0.0,
+            viscous: 0.0,
+            inertia: None,
+            stribeck: None,
+            presliding: None,
+            compliance: None,
+        };
+        for effect in &result.effects {
+            match effect {
+                Effect::Coulomb(Coulomb { coulomb }) => found.coulomb_n = coulomb.value.max(0.0),
+                Effect::Viscous(Viscous { viscous }) => found.viscous = viscous.value.max(0.0),
+                Effect::Inertia(own) => found.inertia = Some(own),
+                Effect::Stribeck(own) => found.stribeck = Some(own),
+                Effect::Presliding(own) => found.presliding = Some(own),
+                Effect::Compliance(own) => found.compliance = Some(own),
+                _ => {}
+            }
+        }
+        found
+    }
+
+    /// Excess of the level at standstill over that of fast motion, a share of it.
+    fn rise(&self) -> f64 {
+        let excess = self.stribeck.map_or(0.0, |own| own.excess.value.max(0.0));
+        excess / self.coulomb_n
+    }
+
+    fn bristle_m(&self) -> Option<f64> {
+        let own = self.presliding?;
+        Some(own.deflection.value.max(RIGID_M))
+    }
+
+    fn factors(&self) -> ([f64; LEVELS], f64) {
+        let Some(own) = self.stribeck else {
+            return ([1.0; LEVELS], 0.0);
+        };
+        let exponent = own.exponent.as_ref().map_or(2.0, |own| own.value);
+        let end = (-END_OF_FALL.ln()).powf(1.0 / exponent);
+        let mut factors = [1.0; LEVELS];
+        for (place, factor) in factors.iter_mut().enumerate() {
+            let speed = end * place as f64 / (LEVELS - 1) as f64;
+            *factor += self.rise() * (-speed.powf(exponent)).exp();
+        }
+        (factors, end * own.velocity.value)
+    }
+}
+
+/// The model of an axis; `None` where no friction was identified.
+#[must_use]
+pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
+    let found = Found::of(result);
+    if found.coulomb_n <= 0.0 {
+        return None;
+    }
+    let curve = result.report.presliding.as_ref();
+    let slipping = curve.filter(|curve| !curve.elements.is_empty());
+    let elements = match (slipping, found.bristle_m()) {
+        (Some(curve), Some(_)) => {
+            let own = curve.elements.iter();
+            let own = own.map(|element| (element.share * found.coulomb_n, element.deflection));
+            few(own.collect())
+        }
+        (_, Some(bristle_m)) => of_bristle(found.coulomb_n, bristle_m),
+        (_, None) => vec![(found.coulomb_n, RIGID_M)],
+    };
+    let (factor, span_m_per_s) = found.factors();
+    let mut model = Model {
+        factor,
+        span_m_per_s,
+        viscous_n_s_per_m: found.viscous,
+        ahead_s: known.lag_s,
+        ..Model::OFF
+    };
+    for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
+        (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
+    }
+    model.lag_s = found.stribeck.map_or(0.0, |own| lag_s(own));
+    if let (None, Some(bristle_m)) = (slipping, found.bristle_m()) {
+        give_bristle(&mut model, &found, bristle_m);
+    }
+    give_screw(&mut model, &found, known);
+    Some(model)
+}
+
+fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {
+    stribeck.lag.as_ref().map_or(0.0, |lag| lag.value.max(0.0))
+}
+
+/// A bristle comes to another level within its deflection, and has a damping.
+fn give_bristle(model: &mut Model, found: &Found<'_>, bristle_m: f64) {
+    model.lag_m = bristle_m * (1.0 + found.rise());
+    let damping = found.presliding.and_then(|own| own.damping.as_ref());
+    let damping = damping.map_or(0.0, |own| own.value.max(0.0));
+    model.damping_s = damping * bristle_m / found.coulomb_n;
+}
+
+/// The screw that friction winds up, where it was identified.
+fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
+    let all_kg = found
+        .inertia
+        .map_or(known.inertia_kg, |own| own.inertia.value);
+    let load = found.inertia.and_then(|own| own.load.as_ref());
+    let (Some(screw), Some(load)) = (found.compliance, load) else {
+        return;
+    };
+    let stiffness = screw.stiffness.value;
+    let damping = screw.damping.as_ref().map_or(0.0, |own| own.value.max(0.0));
+    model.stiffness_n_per_m = stiffness;
+    model.motor_inertia_kg = (all_kg - load.value).max(0.0);
+    model.windup_ahead_s = model.damping_s - damping / stiffness;
+}
+
+/// A bristle as elements, cut where `V'` has come down to (1 − i / n)² of its begin: the tail is as
+/// long as the begin is steep.
+fn of_bristle(level_n: f64, deflection_m: f64) -> Vec<(f64, f64)> {
+    let scale_m = 0.5 * deflection_m;
+    // With e = exp(−x / scale), V' is e level / scale and V − x V' is level (1 − e (1 − ln e)).
+    let carried = |e: f64| 1.0 - if e > 0.0 { e * (1.0 - e.ln()) } else { 0.0 };
+    let cut = |place: usize| (1.0 - place as f64 / ELEMENTS as f64).powi(2);
+    let element = |place: usize| {
+        let (from, to) = (cut(place), cut(place + 1));
+        let level = carried(to) - carried(from);
+        (level_n * level, scale_m * level / (from - to))
+    };
+    (0..ELEMENTS).map(element).collect()
+}
+
+/// As many elements as the drive has, at most: the two nearest become one, as stiff and as strong.
+fn few(elements: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut elements: Vec<(f64, f64)> = elements
+        .into_iter()
+        .filter(|(level, _)| *level > 0.0)
+        .collect();
+    elements.sort_by(|one, other| one.1.total_cmp(&other.1));
+    while elements.len() > ELEMENTS {
+        let ratio = |place: &usize| elements[place + 1].1 / elements[*place].1;
+        let nearest = (0..elements.len() - 1).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let place = nearest.unwrap_or(0);
+        let (one, other) = (elements[place], elements.remove(place + 1));
+        let level = one.0 + other.0;
+        elements[place] = (level, level / (one.0 / one.1 + other.0 / other.1));
+    }
+    elements
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn force(elements: &[(f64, f64)], way_m: f64) -> f64 {
+        let of = |(level, slip): &(f64, f64)| level * (way_m / slip).min(1.0);
+        elements.iter().map(of).sum()
+    }
+
+    #[test]
+    fn elements_of_a_bristle_follow_its_curve_to_a_hundredth_of_the_level() {
+        let elements = of_bristle(400.0, 1.0e-5);
+        assert!(
+            (force(&elements, 1.0) - 400.0).abs() < 1.0e-9,
+            "the whole level"
+        );
+        for place in 0..400 {
+            let way_m = 1.0e-7 * f64::from(place);
+            let curve = 400.0 * (1.0 - (-2.0 * way_m / 1.0e-5).exp());
+            let off = force(&elements, way_m) - curve;
+            assert!(off.abs() < 4.0, "{off} N at {way_m} m");
+        }
+    }
+
+    #[test]
+    fn more_elements_than_the_drive_has_become_fewer_with_the_same_level_and_stiffness() {
+        let many: Vec<(f64, f64)> = (1..=14)
+            .map(|place| (10.0 * f64::from(place % 4), 1.0e-6 * f64::from(place)))
+            .collect();
+        let fewer = few(many.clone());
+        assert_eq!(fewer.len(), ELEMENTS);
+        let stiffness = |elements: &[(f64, f64)]| force(elements, 1.0e-9);
+        assert!((force(&fewer, 1.0) - force(&many, 1.0)).abs() < 1.0e-9);
+        assert!((stiffness(&fewer) / stiffness(&many) - 1.0).abs() < 1.0e-9);
+    }
+}
