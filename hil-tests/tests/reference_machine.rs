@@ -93,7 +93,9 @@ fn the_pulse_removes_four_fifths_at_its_own_feed_and_the_paper_warns_rightly_abo
     }
     let machine = quiet_reference();
     let stand = Stand::in_process(&machine);
-    let tuned = tuning::pulse(&stand, &circle(100.0, 2000.0), 0.0).unwrap();
+    let tuned = tuning::pulse(&stand, &circle(100.0, 2000.0), 0.0)
+        .unwrap()
+        .unwrap();
     let cells = Scope::now().rows("reference-machine", &CIRCLES, 1, 3);
     let rows = on_all_cores(cells, |cell| figures(cell, &tuned.compensation)).concat();
     golden::check_some(

@@ -4,6 +4,7 @@ use identification::{Identification, figures};
 
 use crate::ballbar::REVERSALS;
 use crate::circle_test::CircleReport;
+use crate::commissioning::feeds::AtFeed;
 use crate::compensation::Compensation;
 use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
 use crate::tuning::Tuned;
@@ -39,6 +40,13 @@ pub fn print_circle(report: &CircleReport) {
     }
 }
 
+/// How much less, or more, there is after than before.
+fn change(before: f64, after: f64) -> String {
+    let less = 100.0 * (1.0 - after / before);
+    let word = if less < 0.0 { "more" } else { "less" };
+    format!("{:.0} % {word}", less.abs())
+}
+
 /// A compensation in a few words.
 fn parameters(reversal: &Compensation) -> String {
     match reversal {
@@ -60,6 +68,22 @@ fn parameters(reversal: &Compensation) -> String {
     }
 }
 
+/// Prints the circles at several feeds.
+pub fn print_feeds(feeds: &[AtFeed]) {
+    println!("feed, mm/min   burst before, µm   after, µm   less, %   G before, µm   after, µm");
+    for at in feeds {
+        println!(
+            "{:>12.0} {:>18.2} {:>11.2} {:>9.1} {:>14.2} {:>11.2}",
+            at.feed_mm_min,
+            at.burst_before_um,
+            at.burst_after_um,
+            at.reduction_percent(),
+            at.circular_deviation_g_before_um,
+            at.circular_deviation_g_after_um
+        );
+    }
+}
+
 /// Prints what tuning found.
 pub fn print_tuned(names: &[String], tuned: &Tuned) {
     let bursts_um = tuned.before_um.into_iter().zip(tuned.after_um);
@@ -67,9 +91,9 @@ pub fn print_tuned(names: &[String], tuned: &Tuned) {
         names.iter().zip(&tuned.compensation).zip(bursts_um)
     {
         println!(
-            "axis {name}: {}: burst {before:.2} µm → {after:.2} µm ({:.0} % less)",
+            "axis {name}: {}: burst {before:.2} µm → {after:.2} µm ({})",
             parameters(&compensation.reversal),
-            100.0 * (1.0 - after / before)
+            change(before, after)
         );
     }
     println!("{} circles", tuned.circles);

@@ -16,15 +16,14 @@ mod valley;
 use std::cell::RefCell;
 
 use identification::Identification;
-use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
 
-use crate::ballbar::Point;
-use crate::compensation::{AxisCompensation, Compensation, Pulse};
-use crate::error::{Failure, Outcome};
+use crate::compensation::{AxisCompensation, Compensation};
+use crate::error::Outcome;
 use crate::model_file::Known;
 use crate::session::Stand;
 use crate::trajectory::Circle;
+pub use start_values::LEAST_PEAK_UM;
 use start_values::start;
 use tuning_circles::TuningCircles;
 use valley::Search;
@@ -47,11 +46,12 @@ const TOLERANCE_UM: f64 = 0.05;
 /// Noise of tuning runs is another than that of the circles that judge the result.
 const TUNING_RUN: u64 = 1000;
 
-/// Tunes the pulse of both axes at one circle.
+/// Tunes the pulse of both axes at one circle. An axis without a burst gets none; without a burst
+/// on any of them there is nothing to tune.
 ///
 /// # Errors
-/// Where a circle cannot be run, the machine shows no burst, or the operator interrupts.
-pub fn pulse(stand: &Stand<'_>, circle: &Circle, start_delay_s: f64) -> Outcome<Tuned> {
+/// Where a circle cannot be run, or the operator interrupts.
+pub fn pulse(stand: &Stand<'_>, circle: &Circle, start_delay_s: f64) -> Outcome<Option<Tuned>> {
     let session = stand.connect(TUNING_RUN)?;
     session.perform(&stand.uncompensated(), None, |session| {
         let circles = RefCell::new(TuningCircles::on(session, circle));
@@ -60,11 +60,15 @@ pub fn pulse(stand: &Stand<'_>, circle: &Circle, start_delay_s: f64) -> Outcome<
 }
 
 /// The model of friction of both axes, from what was identified; circles only tell what it is
-/// worth.
+/// worth. Where no axis has friction there is none.
 ///
 /// # Errors
 /// Where a circle cannot be run, or the operator interrupts.
-pub fn model(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Outcome<Tuned> {
+pub fn model(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    results: &[Identification],
+) -> Outcome<Option<Tuned>> {
     let of_axis = |(axis, result): (&MachineAxis, &Identification)| {
         let known = Known::of_machine(axis, stand.machine.period_s);
         let model = friction_model::of_axis(&known, result);
@@ -77,17 +81,20 @@ pub fn model(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> 
     };
     let axes = stand.machine.axes.iter().zip(results);
     let compensation: Vec<AxisCompensation> = axes.map(of_axis).collect();
+    if compensation == stand.uncompensated() {
+        return Ok(None);
+    }
     let session = stand.connect(TUNING_RUN)?;
     session.perform(&stand.uncompensated(), None, |session| {
         let mut circles = TuningCircles::on(session, circle);
         let before_um = circles.run(&stand.uncompensated())?.bursts_um;
         let after_um = circles.run(&compensation)?.bursts_um;
-        Ok(Tuned {
+        Ok(Some(Tuned {
             compensation: compensation.clone(),
             before_um,
             after_um,
             circles: circles.count,
-        })
+        }))
     })
 }
 
@@ -95,11 +102,13 @@ fn tune_both(
     circles: &RefCell<TuningCircles<'_, '_>>,
     stand: &Stand<'_>,
     start_delay_s: f64,
-) -> Outcome<Tuned> {
+) -> Outcome<Option<Tuned>> {
     let mut compensation = stand.uncompensated();
     let before = circles.borrow_mut().run(&compensation)?;
     for axis in 0..2 {
-        let start = burst_to_compensate(&before.points, axis, before.radius_m, stand.machine)?;
+        let Some(start) = start(&before.points, axis, before.radius_m, stand.machine) else {
+            continue;
+        };
         let search = Search {
             circles,
             axis,
@@ -109,27 +118,23 @@ fn tune_both(
         };
         compensation[axis].reversal = Compensation::Pulse(search.run(start)?);
     }
+    if compensation == stand.uncompensated() {
+        return Ok(None);
+    }
     let after = circles.borrow_mut().run(&compensation)?;
     let circles = circles.borrow().count;
-    Ok(Tuned {
+    Ok(Some(Tuned {
         compensation,
         before_um: before.bursts_um,
         after_um: after.bursts_um,
         circles,
-    })
+    }))
 }
 
-/// The pulse to begin with, from the uncompensated circle.
-fn burst_to_compensate(
-    points: &[Point],
-    axis: usize,
-    radius_m: f64,
-    machine: &Machine,
-) -> Outcome<Pulse> {
-    start(points, axis, radius_m, machine).ok_or_else(|| {
-        Failure::new(format!(
-            "axis {}: no burst to compensate on this circle",
-            machine.axes[axis].name
-        ))
-    })
+impl Tuned {
+    /// The largest burst of any axis before and after, µm.
+    #[must_use]
+    pub fn largest_um(&self) -> [f64; 2] {
+        [self.before_um, self.after_um].map(|bursts| bursts.into_iter().fold(0.0, f64::max))
+    }
 }

@@ -31,6 +31,7 @@ mod levels;
 mod path;
 
 pub use element::Element;
+use levels::Factor;
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
@@ -82,7 +83,7 @@ pub struct FrictionState {
     at: Option<Position>,
     elements: [I40F24; ELEMENTS],
     /// Factor on the levels; `None`: that of the speed.
-    factor: Option<I8F24>,
+    factor: Option<Factor>,
     recent: Option<Recent>,
 }
 
@@ -190,7 +191,7 @@ impl FrictionState {
     ) {
         let factor = self.factor_after(config, path.length(), velocity, I8F24::ONE);
         for (torque, element) in self.elements.iter_mut().zip(&config.elements) {
-            *torque = element.passed(*torque, path, factor);
+            *torque = element.passed(*torque, path, factor.acting);
         }
         (self.at, self.factor) = (Some(to), Some(factor));
     }
@@ -202,10 +203,10 @@ impl FrictionState {
         way: Velocity,
         velocity: Velocity,
         cycles: I8F24,
-    ) -> I8F24 {
+    ) -> Factor {
         let aim = config.levels.at(velocity);
-        let before = self.factor.unwrap_or(aim);
-        config.lag.passed(before, aim, way, cycles)
+        let before = self.factor.unwrap_or(Factor::at(aim));
+        before.passed(config.lag, aim, way, cycles)
     }
 
     /// What the elements hold.
@@ -233,7 +234,7 @@ impl FrictionState {
         let factor = self.factor_after(config, path.length(), there, ahead.cycles);
         let elements = self.elements.iter().zip(&config.elements);
         let sum = elements.fold(I40F24::ZERO, |sum, (torque, element)| {
-            sum.saturating_add(element.passed(*torque, &path, factor))
+            sum.saturating_add(element.passed(*torque, &path, factor.acting))
         });
         Torque(sum).plus(config.viscous.times(there))
     }

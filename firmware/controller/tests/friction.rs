@@ -49,6 +49,7 @@ fn factors() -> [f64; LEVELS] {
 const PER_VELOCITY: f64 = 16.0 / 370.0;
 const VISCOUS: f64 = 31.8;
 const LAG_PER_WAY: f64 = 1.0 / 1300.0;
+const LAG_PER_CYCLE: f64 = 1.0 / 6.0;
 const AHEAD: f64 = 1.0;
 const DAMPING: f64 = 0.75;
 const WINDUP_CYCLES: f64 = 0.58;
@@ -67,7 +68,7 @@ fn config() -> FrictionConfig {
         },
         lag: LevelLag {
             per_way: I8F24::from_num(LAG_PER_WAY),
-            per_cycle: I8F24::ZERO,
+            per_cycle: I8F24::from_num(LAG_PER_CYCLE),
         },
         viscous: VelocityGain(I20F12::from_num(VISCOUS)),
         torque: ahead(AHEAD),
@@ -99,32 +100,35 @@ fn reference(at: impl Fn(f64) -> f64, cycle: u32) -> Reference {
 struct Twin {
     at: Option<f64>,
     elements: [f64; ELEMENTS],
-    factor: Option<f64>,
+    /// Behind the speed by the time, and that by the way.
+    factor: Option<[f64; 2]>,
     recent: Option<[f64; 4]>,
 }
 
 impl Twin {
-    fn level(&self, way: f64, velocity: f64) -> f64 {
+    fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 2] {
         let place = (velocity.abs() * PER_VELOCITY).min(16.0);
         let (from, factors) = ((place.floor() as usize).min(15), factors());
         let aim = factors[from] + (factors[from + 1] - factors[from]) * (place - from as f64);
-        let before = self.factor.unwrap_or(aim);
-        before + (aim - before) * (way * LAG_PER_WAY).min(1.0)
+        let [level, acting] = self.factor.unwrap_or([aim; 2]);
+        let level = level + (aim - level) * (cycles * LAG_PER_CYCLE).min(1.0);
+        let acting = acting + (level - acting) * (way * LAG_PER_WAY).min(1.0);
+        [level, acting]
     }
 
     /// The elements after a path between two velocities, and the factor on their levels.
-    fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], f64) {
+    fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], [f64; 2]) {
         let on = if begin * end < 0.0 {
             let share = begin.abs() / (begin.abs() + end.abs());
             0.5 * begin * cycles * (64.0 * share).floor() / 64.0
         } else {
             way
         };
-        let factor = self.level(on.abs() + (way - on).abs(), end);
+        let factor = self.level(on.abs() + (way - on).abs(), end, cycles);
         let mut torques = self.elements;
         for (torque, (level, slip)) in torques.iter_mut().zip(elements()) {
             for part in [on, way - on] {
-                let limit = level * factor;
+                let limit = level * factor[1];
                 *torque = (*torque + level / slip * part).clamp(-limit, limit);
             }
         }

@@ -1,7 +1,7 @@
 //! `quadrant commission`: the main job, from recording to the circle with compensation.
 //!
 //! ```text
-//! record ─▶ identify ─▶ circle ─▶ tune ─▶ circle with the tuned pulse ─▶ report
+//! loops stable? ─▶ record ─▶ identify ─▶ circle ─▶ try pulse and model ─▶ circles with the better ─▶ report
 //! ```
 
 use std::path::Path;
@@ -11,8 +11,12 @@ use plant_sim::Machine;
 
 use crate::circle_test::{self, CircleRun};
 use crate::cli;
+use crate::commissioning::feeds;
+use crate::commissioning::fitness::{self, Oscillation};
 use crate::commissioning::identified_axes;
 use crate::commissioning::result::{Commissioned, burst_reduction_percent};
+use crate::commissioning::trials::{self, Trials};
+use crate::commissioning::unfit;
 use crate::compensation::{self, AxisCompensation};
 use crate::console;
 use crate::error::{Failure, Outcome};
@@ -23,7 +27,6 @@ use crate::progress;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::{check_circle, fitting_circle};
-use crate::tuning::{self, Tuned};
 
 /// Runs the main job.
 ///
@@ -42,34 +45,59 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
         place,
         interrupt: interrupt.clone(),
     };
+    let oscillations = fitness::oscillations(&stand)?;
+    for oscillation in &oscillations {
+        println!("{}", oscillation.sentence());
+    }
+    if oscillations.iter().any(Oscillation::is_unfit) {
+        return end_unfit(&machine, &oscillations, out);
+    }
     identified_axes::record(&stand, out)?;
     let kept =
         |failure: Failure| Failure::new(format!("{failure}; the records are in {}", out.display()));
-    after_recording(&stand, &circle, out).map_err(kept)?;
+    after_recording(&stand, &circle, &oscillations, out).map_err(kept)?;
     println!("report: {}", out.join("report.html").display());
     Ok(())
 }
 
+/// A machine that oscillates is not commissioned: the report says what to change first.
+fn end_unfit(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
+    unfit::report(machine, oscillations, out)?;
+    println!(
+        "not commissioned; report: {}",
+        out.join("report.html").display()
+    );
+    Ok(())
+}
+
 /// The steps after the records.
-fn after_recording(stand: &Stand<'_>, circle: &Circle, out: &Path) -> Outcome<()> {
+fn after_recording(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    oscillations: &[Oscillation],
+    out: &Path,
+) -> Outcome<()> {
     write(&out.join("quadrant.dbc"), &dbc(stand.machine)?)?;
     let results = identify(stand, out)?;
     let before = circle_before(stand, circle, out)?;
-    let tuned = tune(stand, circle, out)?;
-    let after = circle_after(stand, circle, &tuned.compensation, out)?;
+    let trials = try_out(stand, circle, &results, out)?;
+    let after = circle_after(stand, circle, &trials.taken, out)?;
     let reduction_percent = burst_reduction_percent(&before.report, &after.report);
     println!(
-        "circle after: largest burst {:.2} µm, {reduction_percent:.1} % less",
-        after.report.figures.peak_max_um
+        "circle after, {}: largest burst {:.2} µm, {reduction_percent:.1} % less",
+        trials.method, after.report.figures.peak_max_um
     );
     let commissioned = Commissioned {
         stand,
         circle,
+        oscillations,
         results: &results,
+        feeds: feeds::run(stand, [&before, &after], circle, &trials.taken)?,
         before: &before,
-        tuned: &tuned,
+        trials: &trials,
         after: &after,
     };
+    console::print_feeds(&commissioned.feeds);
     commissioned.write(out)
 }
 
@@ -104,14 +132,16 @@ fn circle_before(stand: &Stand<'_>, circle: &Circle, out: &Path) -> Outcome<Circ
     Ok(run)
 }
 
-fn tune(stand: &Stand<'_>, circle: &Circle, out: &Path) -> Outcome<Tuned> {
-    progress::step("tuning the pulse on circles");
-    let tuned = tuning::pulse(stand, circle, 0.0)?;
-    let names = stand.axis_names();
-    let text = compensation::text(&names, &tuned.compensation)?;
+fn try_out(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    results: &[Identification],
+    out: &Path,
+) -> Outcome<Trials> {
+    let trials = trials::run(stand, circle, results)?;
+    let text = compensation::text(&stand.axis_names(), &trials.taken)?;
     write(&out.join("compensation.toml"), &text)?;
-    console::print_tuned(&names, &tuned);
-    Ok(tuned)
+    Ok(trials)
 }
 
 fn circle_after(

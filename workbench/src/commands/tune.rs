@@ -27,8 +27,8 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
         interrupt: interrupt.clone(),
     };
     let tuned = match arguments.method {
-        TuneMethod::Pulse => tuning::pulse(&stand, &circle, start_delay_s)?,
-        TuneMethod::Model => model(&stand, &circle)?,
+        TuneMethod::Pulse => tuning::pulse(&stand, &circle, start_delay_s)?.ok_or_else(nothing)?,
+        TuneMethod::Model => model(&stand, &circle)?.ok_or_else(without_friction)?,
     };
     write(&arguments.out, &file(arguments, &stand, &tuned)?)?;
     console::print_tuned(&stand.axis_names(), &tuned);
@@ -36,8 +36,18 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     Ok(())
 }
 
+fn nothing() -> Failure {
+    Failure::new(
+        "no axis has a burst to compensate on this circle: nothing was tuned, and no file written",
+    )
+}
+
+fn without_friction() -> Failure {
+    Failure::new("no friction was identified on any axis: no model was made, and no file written")
+}
+
 /// Records the axes, identifies them and makes the model of what was found.
-fn model(stand: &Stand<'_>, circle: &Circle) -> Outcome<Tuned> {
+fn model(stand: &Stand<'_>, circle: &Circle) -> Outcome<Option<Tuned>> {
     let folder = std::env::temp_dir().join(format!("quadrant-tune-{}", std::process::id()));
     make_folder(&folder)?;
     let results = identified_axes::record(stand, &folder)
@@ -74,7 +84,7 @@ fn file(arguments: &cli::Tune, stand: &Stand<'_>, tuned: &Tuned) -> Outcome<Stri
 
 /// The largest burst of both axes, before and after.
 fn fall(tuned: &Tuned) -> String {
-    let [before, after] = [tuned.before_um, tuned.after_um].map(|[x, y]| x.max(y));
+    let [before, after] = tuned.largest_um();
     format!("{before:.2} µm without, {after:.2} µm with it")
 }
 

@@ -5,8 +5,11 @@ use std::path::Path;
 use identification::{Identification, Report, figures};
 use serde::Serialize;
 
+use super::feeds::AtFeed;
+use super::fitness::Oscillation;
 use super::reversal_curves::six_curves;
 use super::reversal_run::reversal_rows;
+use super::trials::{TrialSummary, Trials};
 use crate::ballbar::Point;
 use crate::circle_test::{CircleReport, CircleRun};
 use crate::compensation::AxisCompensation;
@@ -18,16 +21,19 @@ use crate::presentation::result_chapters::add_identification;
 use crate::presentation::result_tables::{TextTable, head, sentence};
 use crate::session::Stand;
 use crate::trajectory::Circle;
-use crate::tuning::Tuned;
 
 /// `summary.json`.
 #[derive(Serialize)]
 struct SummaryFile<'a> {
     machine: &'a str,
+    oscillations: &'a [Oscillation],
     axes: Vec<AxisSummary<'a>>,
     circle_before: &'a CircleReport,
     circle_after: &'a CircleReport,
     burst_reduction_percent: f64,
+    method: &'static str,
+    tried: Vec<TrialSummary>,
+    feeds: &'a [AtFeed],
     tuning_circles: u32,
     bus_load_percent: f64,
 }
@@ -45,12 +51,16 @@ pub struct Commissioned<'a> {
     pub stand: &'a Stand<'a>,
     /// The circle that it was commissioned on.
     pub circle: &'a Circle,
+    /// What the loops do by themselves, too little to end the job.
+    pub oscillations: &'a [Oscillation],
     /// What each axis lacks.
     pub results: &'a [Identification],
     /// The circle without compensation.
     pub before: &'a CircleRun,
-    /// What was tuned.
-    pub tuned: &'a Tuned,
+    /// Circles at several feeds.
+    pub feeds: Vec<AtFeed>,
+    /// What was tried, and what was taken.
+    pub trials: &'a Trials,
     /// The circle with it.
     pub after: &'a CircleRun,
 }
@@ -77,6 +87,7 @@ impl Commissioned<'_> {
         let axes = machine.axes.iter().zip(self.results);
         SummaryFile {
             machine: &machine.name,
+            oscillations: self.oscillations,
             axes: axes
                 .map(|(axis, result)| AxisSummary {
                     name: &axis.name,
@@ -86,7 +97,10 @@ impl Commissioned<'_> {
             circle_before: &self.before.report,
             circle_after: &self.after.report,
             burst_reduction_percent: self.reduction_percent(),
-            tuning_circles: self.tuned.circles,
+            method: self.trials.method,
+            tried: self.trials.summaries(),
+            feeds: &self.feeds,
+            tuning_circles: self.trials.circles(),
             bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
         }
     }
@@ -125,15 +139,67 @@ impl Commissioned<'_> {
     fn add_overview(&self, page: &mut Page) -> Outcome<()> {
         let first = self.results.first();
         page.key(&format!(
-            "{}. Largest burst on the circle: {:.2} µm before, {:.2} µm with the tuned pulse, {:.1} % less.",
+            "{}. Largest burst on the circle: {:.2} µm before, {:.2} µm with {}, {:.1} % less.",
             first.map_or_else(String::new, |result| sentence(&result.report)),
             self.before.report.figures.peak_max_um,
             self.after.report.figures.peak_max_um,
+            in_words(self.trials.method),
             self.reduction_percent()
         ));
+        for oscillation in self.oscillations {
+            page.paragraph(&oscillation.sentence());
+        }
+        page.table(&self.feeds_table());
+        page.paragraph("What was tried on the circle; the one that leaves least is in the drive and in compensation.toml.");
+        page.table(&self.trials_table());
         page.table(&self.overview_table());
         page.pictures(&[self.polar()?]);
         Ok(())
+    }
+
+    fn feeds_table(&self) -> TextTable {
+        let of_feed = |at: &AtFeed| {
+            let mut cells = vec![format!("{:.0}", at.feed_mm_min)];
+            cells.extend(
+                [
+                    at.burst_before_um,
+                    at.burst_after_um,
+                    at.reduction_percent(),
+                    at.circular_deviation_g_before_um,
+                    at.circular_deviation_g_after_um,
+                ]
+                .map(figures::error),
+            );
+            cells
+        };
+        let mut rows = vec![head([
+            "feed, mm/min",
+            "burst before, µm",
+            "burst after, µm",
+            "less, %",
+            "G before, µm",
+            "G after, µm",
+        ])];
+        rows.extend(self.feeds.iter().map(of_feed));
+        rows
+    }
+
+    fn trials_table(&self) -> TextTable {
+        let mut rows = vec![head([
+            "tried",
+            "burst before, µm",
+            "burst after, µm",
+            "circles",
+        ])];
+        rows.extend(self.trials.summaries().iter().map(|trial| {
+            vec![
+                in_words(trial.method).to_owned(),
+                figures::error(trial.burst_before_um),
+                figures::error(trial.burst_after_um),
+                trial.circles.to_string(),
+            ]
+        }));
+        rows
     }
 
     fn overview_table(&self) -> TextTable {
@@ -154,7 +220,7 @@ impl Commissioned<'_> {
              (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
         );
         self.add_curves(page, "before", &self.stand.uncompensated())?;
-        self.add_curves(page, "after", &self.tuned.compensation)
+        self.add_curves(page, "after", &self.trials.taken)
     }
 
     fn add_curves(
@@ -166,6 +232,14 @@ impl Commissioned<'_> {
         let rows = reversal_rows(self.stand, compensation, self.circle)?;
         page.pictures(&six_curves(self.stand.machine, name, &rows)?);
         Ok(())
+    }
+}
+
+fn in_words(method: &str) -> &str {
+    match method {
+        "pulse" => "the tuned pulse",
+        "model" => "the model of friction",
+        _ => "no compensation, since none helps",
     }
 }
 

@@ -10,8 +10,8 @@ use crate::compensation::Pulse;
 /// Way that the pulse adds, over the area under the burst: found on the reference machine, and only
 /// a start value.
 const WAY_OVER_AREA: f64 = 1.25;
-/// A burst that is not ten times the tolerance of the search is noise.
-const LEAST_PEAK_UM: f64 = 10.0 * TOLERANCE_UM;
+/// A burst that is not ten times the tolerance of the search is noise, µm.
+pub const LEAST_PEAK_UM: f64 = 10.0 * TOLERANCE_UM;
 
 /// The pulse to begin with on one axis; `None` where it shows no burst.
 pub(super) fn start(

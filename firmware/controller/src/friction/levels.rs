@@ -46,33 +46,59 @@ impl LevelCurve {
         let share = I8F24::from_bits(
             i32::try_from(place.wrapping_shr(12) & 0x00FF_FFFF).unwrap_or_default(),
         );
-        let step = to.saturating_sub(from).wide_mul(share);
-        from.saturating_add(I8F24::saturating_from_num(step))
+        between(from, to, share)
     }
 }
 
-/// How the levels fall behind the speed: by a share per way and per cycle of what they are off.
-/// Bristles come to another level within their deflection (Canudas de Wit et al., IEEE TAC 40
-/// (1995) 419); generalised Maxwell slip within a time.
+/// How the levels fall behind the speed: first within a time (as those of generalised Maxwell slip
+/// do), then within a way: bristles come to another level within their deflection (Canudas de Wit
+/// et al., IEEE TAC 40 (1995) 419). Zero: at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LevelLag {
-    /// Share per way of 10 nm.
-    pub per_way: I8F24,
-    /// Share per cycle.
+    /// Share of what the level is off that it makes up for per cycle.
     pub per_cycle: I8F24,
+    /// The same per way of 10 nm.
+    pub per_way: I8F24,
 }
 
-impl LevelLag {
-    /// The factor that was `before`, on its way to `aim`, a way and some cycles later. Without any
-    /// lag it is there at once.
-    pub(super) fn passed(self, before: I8F24, aim: I8F24, way: Velocity, cycles: I8F24) -> I8F24 {
-        if self.per_way == I8F24::ZERO && self.per_cycle == I8F24::ZERO {
-            return aim;
+/// Factor on the levels on its way to that of the speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Factor {
+    /// Behind the speed by the time.
+    level: I8F24,
+    /// Behind that by the way.
+    pub(super) acting: I8F24,
+}
+
+impl Factor {
+    /// One that has been there for long.
+    pub(super) fn at(factor: I8F24) -> Self {
+        Self {
+            level: factor,
+            acting: factor,
         }
-        let by_way = I8F24::saturating_from_num(way.0.saturating_abs().wide_mul(self.per_way));
-        let by_time = I8F24::saturating_from_num(cycles.wide_mul(self.per_cycle));
-        let share = by_way.saturating_add(by_time).min(I8F24::ONE);
-        let step = aim.saturating_sub(before).wide_mul(share);
-        before.saturating_add(I8F24::saturating_from_num(step))
     }
+
+    /// The same on its way to `aim`, a way and some cycles later.
+    pub(super) fn passed(self, lag: LevelLag, aim: I8F24, way: Velocity, cycles: I8F24) -> Self {
+        let level = if lag.per_cycle == I8F24::ZERO {
+            aim
+        } else {
+            let share = I8F24::saturating_from_num(cycles.wide_mul(lag.per_cycle));
+            between(self.level, aim, share)
+        };
+        let acting = if lag.per_way == I8F24::ZERO {
+            level
+        } else {
+            let share = I8F24::saturating_from_num(way.0.saturating_abs().wide_mul(lag.per_way));
+            between(self.acting, level, share)
+        };
+        Self { level, acting }
+    }
+}
+
+/// Between two factors, at a share of the way, the whole of it at most.
+fn between(from: I8F24, to: I8F24, share: I8F24) -> I8F24 {
+    let step = to.saturating_sub(from).wide_mul(share.min(I8F24::ONE));
+    from.saturating_add(I8F24::saturating_from_num(step))
 }

@@ -1,0 +1,75 @@
+//! Circles at other feeds, without and with what was taken: a compensation is worth what it is at
+//! every feed.
+
+use serde::Serialize;
+
+use crate::circle_test::{self, CircleRun};
+use crate::compensation::AxisCompensation;
+use crate::error::Outcome;
+use crate::session::Stand;
+use crate::trajectory::Circle;
+use crate::trajectory::circle_limits::check_circle;
+
+/// Feeds beside that of the circle, as shares of it.
+const OTHERS: [f64; 2] = [0.25, 4.0];
+
+/// A feed, and the circle at it.
+#[derive(Clone, Debug, Serialize)]
+pub struct AtFeed {
+    /// Feed, mm/min.
+    pub feed_mm_min: f64,
+    /// Largest burst without compensation, µm.
+    pub burst_before_um: f64,
+    /// Largest burst with it, µm.
+    pub burst_after_um: f64,
+    /// Circular deviation G without compensation, µm.
+    pub circular_deviation_g_before_um: f64,
+    /// Circular deviation G with it, µm.
+    pub circular_deviation_g_after_um: f64,
+}
+
+impl AtFeed {
+    fn of([before, after]: [&CircleRun; 2]) -> Self {
+        let [one, other] = [&before.report.figures, &after.report.figures];
+        Self {
+            feed_mm_min: before.report.feed_mm_min,
+            burst_before_um: one.peak_max_um,
+            burst_after_um: other.peak_max_um,
+            circular_deviation_g_before_um: one.circular_deviation_g_um,
+            circular_deviation_g_after_um: other.circular_deviation_g_um,
+        }
+    }
+
+    /// How much smaller the burst is, percent.
+    #[must_use]
+    pub fn reduction_percent(&self) -> f64 {
+        100.0 * (1.0 - self.burst_after_um / self.burst_before_um)
+    }
+}
+
+/// The circle that was run, and those at other feeds that the machine can do, by feed.
+///
+/// # Errors
+/// Where a circle cannot be run, or the operator interrupts.
+pub fn run(
+    stand: &Stand<'_>,
+    known: [&CircleRun; 2],
+    circle: &Circle,
+    compensation: &[AxisCompensation],
+) -> Outcome<Vec<AtFeed>> {
+    let mut feeds = vec![AtFeed::of(known)];
+    for share in OTHERS {
+        let other = Circle {
+            feed_m_per_s: share * circle.feed_m_per_s,
+            ..*circle
+        };
+        if check_circle(stand.machine, &other).is_err() {
+            continue;
+        }
+        let before = circle_test::run(stand, &other, &stand.uncompensated(), None)?;
+        let after = circle_test::run(stand, &other, compensation, None)?;
+        feeds.push(AtFeed::of([&before, &after]));
+    }
+    feeds.sort_by(|one, other| one.feed_mm_min.total_cmp(&other.feed_mm_min));
+    Ok(feeds)
+}

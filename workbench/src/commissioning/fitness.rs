@@ -1,0 +1,284 @@
+//! Whether an axis is fit to be compensated: a loop that oscillates is told so before anything is
+//! recorded or tuned on it.
+//!
+//! The axes stand, then run through the middle of their travel at two speeds. What a loop does by itself it does at the same
+//! frequency whatever the speed; what comes from the screw or the motor follows the speed, and
+//! noise does neither.
+
+use plant_sim::machine::{MachineAxis, PositionSensor};
+use serde::Serialize;
+
+use crate::error::Outcome;
+use crate::network::master::AxisCycle;
+use crate::progress;
+use crate::session::{Session, Stand};
+use crate::trajectory::Move;
+use crate::trajectory::circle_limits::Slowest;
+
+/// How long the axes stand and run, s.
+const HOLD_S: f64 = 1.0;
+/// The two speeds, as shares of the velocity limit; both run within a part of the travel.
+const SPEED_SHARES: [f64; 2] = [0.02, 0.05];
+/// A run takes this part of the travel at most.
+const TRAVEL_SHARE: f64 = 0.4;
+/// From this amplitude on an axis is not fit, µm: friction, ripple and gaps of healthy axes leave as
+/// much in motion.
+const UNFIT_UM: f64 = 5.0;
+const LEAST_IN_MOTION_UM: f64 = UNFIT_UM;
+/// From this amplitude on an oscillation is told at standstill, µm, where only noise is left, and
+/// from so many steps of the coarser encoder.
+const LEAST_STANDING_UM: f64 = 1.0;
+const LEAST_STEPS: f64 = 3.0;
+/// Fewer crossings of the mean are the motion itself, or a drift.
+const LEAST_CROSSINGS: f64 = 8.0;
+/// The amplitude in the second half of a run is at least this share of that in the first: a motion
+/// that dies out is a settling.
+const LASTING: f64 = 0.5;
+/// Frequencies that differ by less than this share are the same.
+const SAME: f64 = 0.2;
+/// A force that comes so near to its limit is at it.
+const AT_LIMIT: f64 = 0.98;
+
+/// An oscillation that an axis does by itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Oscillation {
+    /// The axis.
+    pub axis: String,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude of the position, µm.
+    pub amplitude_um: f64,
+    /// Whether the axis stands or runs.
+    pub at_standstill: bool,
+    /// The force comes to its limit.
+    pub at_force_limit: bool,
+}
+
+/// Position error and force of one axis over a run.
+#[derive(Clone, Debug, Default)]
+struct Run {
+    error_um: Vec<f64>,
+    force_n: Vec<f64>,
+}
+
+/// Oscillations of the axes of a machine; none is what it should be.
+///
+/// # Errors
+/// Where the machine cannot be moved, or the operator interrupts.
+pub fn oscillations(stand: &Stand<'_>) -> Outcome<Vec<Oscillation>> {
+    progress::step("whether the loops are stable");
+    let session = stand.connect(FITNESS_RUN)?;
+    session.perform(&stand.uncompensated(), None, |session| {
+        let still = standing(session, stand)?;
+        let running = [
+            moving(session, stand, SPEED_SHARES[0])?,
+            moving(session, stand, SPEED_SHARES[1])?,
+        ];
+        let axes = stand.machine.axes.iter().enumerate();
+        Ok(axes
+            .filter_map(|(place, axis)| {
+                let limit_n = axis.actual.force_limit_n;
+                let period_s = stand.machine.period_s;
+                let seen = |run: &Run, least_um| Seen::of(run, period_s, limit_n, least_um);
+                let [slow, fast] =
+                    [&running[0], &running[1]].map(|runs| seen(&runs[place], LEAST_IN_MOTION_UM));
+                judged(seen(&still[place], least_standing_um(axis)), [slow, fast])
+                    .map(|(seen, at_standstill)| seen.told(&axis.name, at_standstill))
+            })
+            .collect())
+    })
+}
+
+fn least_standing_um(axis: &MachineAxis) -> f64 {
+    let actual = &axis.actual;
+    let motor_m = actual.lead_m_per_rev / f64::from(actual.motor_encoder_counts_per_rev);
+    let step_m = motor_m.max(actual.load_encoder_resolution_m);
+    LEAST_STANDING_UM.max(1.0e6 * LEAST_STEPS * step_m)
+}
+
+/// Noise of this run is another than that of the others.
+const FITNESS_RUN: u64 = 2000;
+
+fn standing(session: &mut Session<'_>, stand: &Stand<'_>) -> Outcome<Vec<Run>> {
+    let home = vec![0.0; stand.machine.axes.len()];
+    session.go_to(&home)?;
+    recorded(session, stand, HOLD_S, |_| home.clone())
+}
+
+/// A run through the middle of the travel; most of it at a constant speed.
+fn moving(session: &mut Session<'_>, stand: &Stand<'_>, share: f64) -> Outcome<Vec<Run>> {
+    let slowest = Slowest::of(stand.machine);
+    let speed = (share * slowest.velocity_m_per_s).min(TRAVEL_SHARE * slowest.travel_m / HOLD_S);
+    let end = |side: f64| vec![0.5 * side * speed * HOLD_S; stand.machine.axes.len()];
+    session.go_to(&end(-1.0))?;
+    let path = Move::new(&end(-1.0), &end(1.0), speed, slowest.acceleration_m_per_s2);
+    recorded(session, stand, path.duration_s(), |time_s| path.at(time_s))
+}
+
+fn recorded(
+    session: &mut Session<'_>,
+    stand: &Stand<'_>,
+    duration_s: f64,
+    at: impl Fn(f64) -> Vec<f64>,
+) -> Outcome<Vec<Run>> {
+    let mut runs = vec![Run::default(); stand.machine.axes.len()];
+    session.follow(duration_s, at, |_, cycles| {
+        for ((run, cycle), axis) in runs.iter_mut().zip(cycles).zip(&stand.machine.axes) {
+            run.error_um
+                .push(1.0e6 * (cycle.reference_m - measured_m(axis.gains.position_sensor, cycle)));
+            run.force_n.push(cycle.force_n);
+        }
+    })?;
+    Ok(runs)
+}
+
+fn measured_m(sensor: PositionSensor, cycle: &AxisCycle) -> f64 {
+    match sensor {
+        PositionSensor::Motor => cycle.motor_m,
+        PositionSensor::Load => cycle.load_m,
+    }
+}
+
+/// What is seen of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    frequency_hz: f64,
+    amplitude_um: f64,
+    at_limit: bool,
+}
+
+impl Seen {
+    /// `None` where nothing oscillates, or what does dies out.
+    fn of(run: &Run, period_s: f64, limit_n: f64, least_um: f64) -> Option<Self> {
+        let rows = run.error_um.len();
+        // The first and the last quarter are the begin and the end of the motion.
+        let rest = run.error_um.get(rows / 4..rows - rows / 4)?;
+        let (first, second) = rest.split_at(rest.len() / 2);
+        let [before, after] = [first, second].map(amplitude);
+        let crossings = crossings(second);
+        if after < least_um || after < LASTING * before || crossings < LEAST_CROSSINGS {
+            return None;
+        }
+        let most_n = run
+            .force_n
+            .iter()
+            .fold(0.0_f64, |most, n| most.max(n.abs()));
+        Some(Self {
+            frequency_hz: crossings / (2.0 * period_s * second.len() as f64),
+            amplitude_um: after,
+            at_limit: most_n > AT_LIMIT * limit_n,
+        })
+    }
+
+    fn told(self, axis: &str, at_standstill: bool) -> Oscillation {
+        Oscillation {
+            axis: axis.to_owned(),
+            frequency_hz: self.frequency_hz,
+            amplitude_um: self.amplitude_um,
+            at_standstill,
+            at_force_limit: self.at_limit,
+        }
+    }
+}
+
+/// What the loop does by itself, and whether at standstill.
+fn judged(still: Option<Seen>, running: [Option<Seen>; 2]) -> Option<(Seen, bool)> {
+    if let Some(seen) = still {
+        return Some((seen, true));
+    }
+    let [Some(slow), Some(fast)] = running else {
+        return None;
+    };
+    let apart = (fast.frequency_hz / slow.frequency_hz - 1.0).abs();
+    (apart < SAME).then_some((fast, false))
+}
+
+/// Amplitude of a sine of the same power, about the mean.
+fn amplitude(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let power = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / count;
+    (2.0 * power).sqrt()
+}
+
+/// Crossings of the mean.
+fn crossings(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let crosses = |pair: &&[f64]| (pair[0] > mean) != (pair[1] > mean);
+    values.windows(2).filter(crosses).count() as f64
+}
+
+impl Oscillation {
+    /// Whether an axis with it is not to be compensated: it makes friction and circles unknowable.
+    #[must_use]
+    pub fn is_unfit(&self) -> bool {
+        self.amplitude_um >= UNFIT_UM
+    }
+
+    /// One sentence: what, how much, what to do.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let place = if self.at_standstill {
+            "at standstill"
+        } else {
+            "in motion, at the same frequency at two speeds"
+        };
+        let limit = if self.at_force_limit {
+            ", its force at the limit"
+        } else {
+            ""
+        };
+        format!(
+            "axis {}: the loop oscillates {place} at {:.0} Hz with {:.1} µm{limit}; lower velocity_bandwidth_hz, \
+             and position_gain_per_s with it, until it stands still, and commission again",
+            self.axis, self.frequency_hz, self.amplitude_um
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(amplitude_um: f64, hz: f64, decay_per_s: f64) -> Run {
+        let at = |cycle: u32| {
+            let time_s = 1.0e-3 * f64::from(cycle);
+            amplitude_um
+                * (-decay_per_s * time_s).exp()
+                * (std::f64::consts::TAU * hz * time_s).sin()
+                + 3.0
+        };
+        Run {
+            error_um: (0..1000).map(at).collect(),
+            force_n: vec![990.0; 1000],
+        }
+    }
+
+    fn seen(run: &Run) -> Option<Seen> {
+        Seen::of(run, 1.0e-3, 1000.0, 5.0)
+    }
+
+    #[test]
+    fn a_lasting_oscillation_is_seen_with_frequency_and_amplitude_and_a_settling_is_not() {
+        let lasting = seen(&run(40.0, 31.0, 0.0)).unwrap();
+        assert!((lasting.frequency_hz - 31.0).abs() < 1.5, "{lasting:?}");
+        assert!((lasting.amplitude_um - 40.0).abs() < 1.0, "{lasting:?}");
+        assert!(lasting.at_limit);
+        assert_eq!(seen(&run(400.0, 31.0, 5.0)), None, "it dies out");
+        assert_eq!(seen(&run(4.5, 31.0, 0.0)), None, "it is small");
+        assert_eq!(seen(&run(40.0, 3.0, 0.0)), None, "it is the motion itself");
+    }
+
+    #[test]
+    fn what_follows_the_speed_is_not_the_loops() {
+        let [slow, fast] = [12.0, 30.0].map(|hz| seen(&run(20.0, hz, 0.0)));
+        assert_eq!(judged(None, [slow, fast]), None);
+        assert_eq!(judged(None, [slow, None]), None);
+        assert!(matches!(judged(None, [slow, slow]), Some((_, false))));
+        assert!(matches!(judged(fast, [None, None]), Some((_, true))));
+    }
+}

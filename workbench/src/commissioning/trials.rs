@@ -1,0 +1,152 @@
+//! What is tried against the burst on the circle, and what of it is taken: the best, and nothing
+//! where nothing helps.
+
+use identification::Identification;
+use serde::Serialize;
+
+use crate::compensation::AxisCompensation;
+use crate::console;
+use crate::error::Outcome;
+use crate::progress;
+use crate::session::Stand;
+use crate::trajectory::Circle;
+use crate::tuning::{self, LEAST_PEAK_UM, Tuned};
+
+/// A compensation that was tried.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Its name.
+    pub method: &'static str,
+    /// What came of it.
+    pub tuned: Tuned,
+}
+
+/// A trial in `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct TrialSummary {
+    /// Its name.
+    pub method: &'static str,
+    /// Largest burst without it, µm.
+    pub burst_before_um: f64,
+    /// Largest burst with it, µm.
+    pub burst_after_um: f64,
+    /// Circles that it took.
+    pub circles: u32,
+}
+
+/// What was tried and what was taken.
+#[derive(Clone, Debug)]
+pub struct Trials {
+    /// In the order in which they were tried.
+    pub all: Vec<Trial>,
+    /// What the drive gets.
+    pub taken: Vec<AxisCompensation>,
+    /// Its name; `none` where nothing helps.
+    pub method: &'static str,
+}
+
+impl Trials {
+    /// In a few words for `summary.json`.
+    #[must_use]
+    pub fn summaries(&self) -> Vec<TrialSummary> {
+        let of = |trial: &Trial| {
+            let [burst_before_um, burst_after_um] = trial.tuned.largest_um();
+            TrialSummary {
+                method: trial.method,
+                burst_before_um,
+                burst_after_um,
+                circles: trial.tuned.circles,
+            }
+        };
+        self.all.iter().map(of).collect()
+    }
+
+    /// Circles that all of them took.
+    #[must_use]
+    pub fn circles(&self) -> u32 {
+        self.all.iter().map(|trial| trial.tuned.circles).sum()
+    }
+}
+
+/// Tries the tuned pulse and the model of friction.
+///
+/// # Errors
+/// Where a circle cannot be run, or the operator interrupts.
+pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Outcome<Trials> {
+    let mut all = Vec::new();
+    progress::step("tuning the pulse on circles");
+    if let Some(tuned) = tuning::pulse(stand, circle, 0.0)? {
+        all.push(Trial {
+            method: "pulse",
+            tuned,
+        });
+    }
+    progress::step("the model of friction on a circle");
+    if let Some(tuned) = tuning::model(stand, circle, results)? {
+        all.push(Trial {
+            method: "model",
+            tuned,
+        });
+    }
+    for trial in &all {
+        println!("{}:", trial.method);
+        console::print_tuned(&stand.axis_names(), &trial.tuned);
+    }
+    Ok(chosen(all, stand.uncompensated()))
+}
+
+/// What leaves more than this share of the burst does not help: noise alone does as much.
+const LEFT_AT_MOST: f64 = 0.9;
+
+/// The one that leaves the smallest burst, where there is one and it leaves less of it.
+fn chosen(all: Vec<Trial>, nothing: Vec<AxisCompensation>) -> Trials {
+    let helps = |trial: &&Trial| {
+        let [before, after] = trial.tuned.largest_um();
+        before >= LEAST_PEAK_UM && after < LEFT_AT_MOST * before
+    };
+    let left = |trial: &&Trial| trial.tuned.largest_um()[1];
+    let best = all
+        .iter()
+        .filter(helps)
+        .min_by(|one, other| left(one).total_cmp(&left(other)));
+    let (taken, method) = best.map_or((nothing, "none"), |trial| {
+        (trial.tuned.compensation.clone(), trial.method)
+    });
+    Trials { all, taken, method }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::Compensation;
+
+    fn trial(method: &'static str, force_n: f64, after_um: f64) -> Trial {
+        let own = AxisCompensation {
+            reversal: Compensation::Coulomb { force_n },
+            backlash_m: 0.0,
+        };
+        Trial {
+            method,
+            tuned: Tuned {
+                compensation: vec![own],
+                before_um: [10.0, 9.0],
+                after_um: [1.0, after_um],
+                circles: 2,
+            },
+        }
+    }
+
+    #[test]
+    fn the_best_is_taken_and_nothing_where_nothing_helps() {
+        let two = vec![trial("pulse", 1.0, 4.0), trial("model", 2.0, 3.0)];
+        let trials = chosen(two, Vec::new());
+        assert_eq!(trials.method, "model");
+        assert_eq!(trials.taken, trials.all[1].tuned.compensation);
+        assert_eq!(trials.circles(), 4);
+        let worse = vec![trial("pulse", 1.0, 9.5), trial("model", 2.0, 30.0)];
+        let nothing = vec![AxisCompensation::default()];
+        let trials = chosen(worse, nothing.clone());
+        assert_eq!((trials.method, trials.taken), ("none", nothing));
+        assert_eq!(trials.summaries()[1].burst_after_um, 30.0);
+    }
+}

@@ -1,0 +1,75 @@
+//! The report of a machine that is not fit to be compensated: what it does by itself, and what to
+//! change first.
+
+use std::path::Path;
+
+use plant_sim::Machine;
+use serde::Serialize;
+
+use super::fitness::Oscillation;
+use crate::error::Outcome;
+use crate::output_files::{json, write};
+use crate::presentation::page::Page;
+use crate::presentation::result_tables::{TextTable, head};
+
+/// `summary.json` of such a machine.
+#[derive(Serialize)]
+struct Summary<'a> {
+    machine: &'a str,
+    verdict: &'static str,
+    oscillations: &'a [Oscillation],
+}
+
+/// Writes `summary.json` and `report.html`.
+///
+/// # Errors
+/// Where a file cannot be written.
+pub fn report(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
+    let summary = Summary {
+        machine: &machine.name,
+        verdict: "unfit",
+        oscillations,
+    };
+    write(&out.join("summary.json"), &json(&summary)?)?;
+    write(&out.join("report.html"), &page(machine, oscillations))
+}
+
+fn page(machine: &Machine, oscillations: &[Oscillation]) -> String {
+    let mut page = Page::new(&format!("Machine {} is not commissioned", machine.name));
+    for oscillation in oscillations {
+        page.key(&oscillation.sentence());
+    }
+    page.table(&table(oscillations));
+    page.paragraph(
+        "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds. An oscillation that lasts is the loop's \
+         own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded: friction that is \
+         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse.",
+    );
+    page.finish()
+}
+
+fn table(oscillations: &[Oscillation]) -> TextTable {
+    let mut rows = vec![head([
+        "axis",
+        "frequency, Hz",
+        "amplitude, µm",
+        "seen",
+        "force at its limit",
+    ])];
+    rows.extend(oscillations.iter().map(|own| {
+        let seen = if own.at_standstill {
+            "at standstill"
+        } else {
+            "in motion"
+        };
+        let limit = if own.at_force_limit { "yes" } else { "no" };
+        vec![
+            own.axis.clone(),
+            format!("{:.1}", own.frequency_hz),
+            format!("{:.1}", own.amplitude_um),
+            seen.to_owned(),
+            limit.to_owned(),
+        ]
+    }));
+    rows
+}
