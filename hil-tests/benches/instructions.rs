@@ -31,7 +31,7 @@ use protocol::{CanFrame, Station};
 use serde::Deserialize;
 use servo::Servo;
 use servo::objects::{self, Parameter};
-use workbench::compensation::{AxisCompensation, Compensation, Pulse};
+use workbench::compensation::{AxisCompensation, Compensation, ELEMENTS, Model, Pulse};
 use workbench::drive_parameters;
 use workbench::error::Outcome;
 use workbench::network::in_process::InProcess;
@@ -71,12 +71,13 @@ fn main() -> ExitCode {
         Drive::Everything,
         &budgets.everything,
     );
+    let model = one(&folder, &image, "model", Drive::Model, &budgets.model);
     let notices = a_wrong_bit_is_noticed(&folder, &image);
     println!(
         "\none bit of one recorded answer turned: {}",
         if notices { "noticed" } else { "NOT NOTICED" }
     );
-    if plain && everything && notices {
+    if plain && everything && model && notices {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
@@ -110,6 +111,8 @@ enum Drive {
     Plain,
     /// Pulse, Coulomb feedforward, backlash and a torque filter as well.
     Everything,
+    /// The model of friction.
+    Model,
 }
 
 /// A servo on the bus that takes down what it hears and says.
@@ -267,6 +270,32 @@ const EVERYTHING: AxisCompensation = AxisCompensation {
     backlash_m: 20.0e-6,
 };
 
+/// Near what `tune --method model` finds for the reference machine.
+fn model() -> AxisCompensation {
+    let mut model = Model {
+        level_n: [40.0; ELEMENTS],
+        span_m_per_s: 3.7e-3,
+        lag_m: 1.3e-5,
+        viscous_n_s_per_m: 2000.0,
+        stiffness_n_per_m: 1.2e8,
+        motor_inertia_kg: 632.0,
+        ahead_s: 5.0e-4,
+        damping_s: 7.5e-4,
+        windup_ahead_s: 5.8e-4,
+        ..Model::OFF
+    };
+    for (place, slip_m) in model.slip_m.iter_mut().enumerate() {
+        *slip_m = 1.0e-6 * (1 + 2 * place) as f64;
+    }
+    for (place, factor) in model.factor.iter_mut().enumerate() {
+        *factor = 1.0 + 0.3 * (-0.02 * (place * place) as f64).exp();
+    }
+    AxisCompensation {
+        reversal: Compensation::Model(Box::new(model)),
+        backlash_m: 0.0,
+    }
+}
+
 fn configure(master: &mut Master<InProcess>, machine: &Machine, drive: Drive) -> Outcome<()> {
     match drive {
         Drive::Plain => master.configure(machine, &[AxisCompensation::default()]),
@@ -274,6 +303,7 @@ fn configure(master: &mut Master<InProcess>, machine: &Machine, drive: Drive) ->
             master.configure(machine, &[EVERYTHING])?;
             add_coulomb(master, &machine.axes[0], machine.period_s)
         }
+        Drive::Model => master.configure(machine, &[model()]),
     }
 }
 
@@ -450,6 +480,7 @@ impl Bounds {
 struct Budgets {
     plain: Budget,
     everything: Budget,
+    model: Budget,
 }
 
 fn budgets() -> Budgets {

@@ -163,7 +163,7 @@ fn quadrant() -> f64 {
     let link = Interfaces::open(&machine, "vcan0").expect("vcan0 is there");
     let mut master = Master::start(link, &machine).expect("the nodes answer");
     master
-        .configure(&machine, &[AxisCompensation::default(); 2])
+        .configure(&machine, &vec![AxisCompensation::default(); 2])
         .expect("the drives take their parameters");
     master.enable().expect("the drives come up");
     let begun = Instant::now();

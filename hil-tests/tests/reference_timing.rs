@@ -25,7 +25,7 @@ fn a_step_of_acceleration_costs_what_it_cost_without_a_preview() {
     let mut session = Session::open(
         &machine,
         &Place::InProcess,
-        &[AxisCompensation::default(); 2],
+        &vec![AxisCompensation::default(); 2],
         0,
     )
     .unwrap();

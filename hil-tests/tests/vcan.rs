@@ -110,7 +110,7 @@ impl Setup<'_> {
         }
         let mut master = Master::start(link, &machine).unwrap();
         master
-            .configure(&machine, &[AxisCompensation::default(); 2])
+            .configure(&machine, &vec![AxisCompensation::default(); 2])
             .unwrap();
         master.enable().unwrap();
         master

@@ -210,8 +210,8 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
         wrong.map_or(Ok(()), |value| Err(Wrong(key, wanted, *value)))
     };
     each("level_n", "0 to 1e6 N", &model.level_n, 0.0..=1.0e6)?;
-    each("slip_m", "1e-9 to 0.1 m", &model.slip_m, 1.0e-9..=0.1)?;
-    each("factor", "0 to 8", &model.factor, 0.0..=8.0)?;
+    each("slip_m", "1e-9 to 1e-3 m", &model.slip_m, 1.0e-9..=1.0e-3)?;
+    each("factor", "0 to 3.9", &model.factor, 0.0..=3.9)?;
     let [span, viscous] = [model.span_m_per_s, model.viscous_n_s_per_m];
     each("span_m_per_s", "0 to 10 m/s", &[span], 0.0..=10.0)?;
     each(
@@ -220,7 +220,7 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
         &[viscous],
         0.0..=1.0e7,
     )?;
-    each("lag_m", "0 to 0.1 m", &[model.lag_m], 0.0..=0.1)?;
+    each("lag_m", "0 to 1e-3 m", &[model.lag_m], 0.0..=1.0e-3)?;
     each("lag_s", "0 to 1 s", &[model.lag_s], 0.0..=1.0)?;
     let stiffness = model.stiffness_n_per_m;
     expect(
@@ -333,7 +333,7 @@ mod tests {
             (of(Compensation::Coulomb { force_n: f64::NAN }), "force_n"),
             (model(|model| model.level_n[3] = -1.0), "level_n"),
             (model(|model| model.slip_m[9] = 0.0), "slip_m"),
-            (model(|model| model.factor[16] = 8.1), "factor"),
+            (model(|model| model.factor[16] = 4.0), "factor"),
             (
                 model(|model| model.stiffness_n_per_m = 0.0),
                 "stiffness_n_per_m",

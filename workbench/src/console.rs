@@ -4,7 +4,6 @@ use identification::{Identification, figures};
 
 use crate::ballbar::REVERSALS;
 use crate::circle_test::CircleReport;
-use crate::commissioning::feeds::AtFeed;
 use crate::compensation::Compensation;
 use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
 use crate::tuning::Tuned;
@@ -65,22 +64,6 @@ fn parameters(reversal: &Compensation) -> String {
             model.viscous_n_s_per_m,
             1.0e-6 * model.stiffness_n_per_m
         ),
-    }
-}
-
-/// Prints the circles at several feeds.
-pub fn print_feeds(feeds: &[AtFeed]) {
-    println!("feed, mm/min   burst before, µm   after, µm   less, %   G before, µm   after, µm");
-    for at in feeds {
-        println!(
-            "{:>12.0} {:>18.2} {:>11.2} {:>9.1} {:>14.2} {:>11.2}",
-            at.feed_mm_min,
-            at.burst_before_um,
-            at.burst_after_um,
-            at.reduction_percent(),
-            at.circular_deviation_g_before_um,
-            at.circular_deviation_g_after_um
-        );
     }
 }
 

@@ -31,6 +31,7 @@ mod levels;
 mod path;
 
 pub use element::Element;
+use element::Strain;
 use levels::Factor;
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
@@ -38,7 +39,7 @@ use path::Path;
 
 /// Elements of the model.
 pub const ELEMENTS: usize = 10;
-/// What the model says of the axis; all zero switches it off.
+/// What the model says of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
     /// Elements; the sum of their levels is the Coulomb torque.
@@ -64,24 +65,16 @@ pub struct FrictionConfig {
     pub motor_inertia: AccelerationGain,
 }
 
-impl FrictionConfig {
-    /// Whether it says nothing.
-    #[must_use]
-    pub fn is_off(&self) -> bool {
-        self.viscous == VelocityGain::default()
-            && self
-                .elements
-                .iter()
-                .all(|element| element.level_micro_nm == 0)
-    }
-}
+type Strains = [Strain; ELEMENTS];
 
 /// Where the elements stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionState {
     /// Where they were last; `None`: nothing is known of them, and they begin where the axis is.
     at: Option<Position>,
-    elements: [I40F24; ELEMENTS],
+    strains: Strains,
+    /// What they hold.
+    held: Torque,
     /// Factor on the levels; `None`: that of the speed.
     factor: Option<Factor>,
     recent: Option<Recent>,
@@ -105,21 +98,11 @@ pub struct Feedforward {
     pub velocity: Velocity,
     /// Way of the motor in addition to that of the table.
     pub offset: PositionError,
-    /// What the elements held when the model was switched off: somebody else has to hold it now.
-    pub released: Torque,
 }
 
 impl FrictionState {
     /// One cycle of an axis that follows a reference.
     pub fn step(&mut self, config: &FrictionConfig, reference: &Reference) -> Feedforward {
-        if config.is_off() {
-            let released = self.held();
-            self.forget();
-            return Feedforward {
-                released,
-                ..Feedforward::default()
-            };
-        }
         let velocity = reference.next_velocity;
         let acceleration = reference.acceleration;
         let next_position = reference.position.after(velocity);
@@ -160,15 +143,11 @@ impl FrictionState {
                 .plus(inertia),
             velocity: Velocity(wound(config.compliance, windup)),
             offset: offset(config.compliance, before.next),
-            released: Torque::ZERO,
         }
     }
 
     /// One cycle of an axis that is moved by others: the elements go along with what is measured.
     pub fn follow(&mut self, config: &FrictionConfig, measured: Position) {
-        if config.is_off() {
-            return self.forget();
-        }
         let velocity = self
             .at
             .map_or(Velocity::ZERO, |before| measured.step_from(before));
@@ -190,9 +169,8 @@ impl FrictionState {
         velocity: Velocity,
     ) {
         let factor = self.factor_after(config, path.length(), velocity, I8F24::ONE);
-        for (torque, element) in self.elements.iter_mut().zip(&config.elements) {
-            *torque = element.passed(*torque, path, factor.acting);
-        }
+        self.strains = self.strained(config, path, factor);
+        self.held = torque(config, &self.strains);
         (self.at, self.factor) = (Some(to), Some(factor));
     }
 
@@ -209,11 +187,28 @@ impl FrictionState {
         before.passed(config.lag, aim, way, cycles)
     }
 
+    /// Whether anything is known of the elements.
+    #[must_use]
+    pub const fn is_known(&self) -> bool {
+        self.at.is_some()
+    }
+
+    /// The strains after a path.
+    fn strained(&self, config: &FrictionConfig, path: &Path, factor: Factor) -> Strains {
+        let limit = element::limit(factor.acting);
+        let mut strains = self.strains;
+        for way in [Some(path.on), path.back].into_iter().flatten() {
+            for (strain, element) in strains.iter_mut().zip(&config.elements) {
+                *strain = element.moved(*strain, way, limit);
+            }
+        }
+        strains
+    }
+
     /// What the elements hold.
     #[must_use]
-    pub fn held(&self) -> Torque {
-        let sum = |sum: I40F24, torque: &I40F24| sum.saturating_add(*torque);
-        Torque(self.elements.iter().fold(I40F24::ZERO, sum))
+    pub const fn held(&self) -> Torque {
+        self.held
     }
 
     fn ahead(
@@ -232,12 +227,17 @@ impl FrictionState {
         let begin = velocity.plus(half(acceleration));
         let path = Path::between(begin, there, ahead.cycles, Velocity(way));
         let factor = self.factor_after(config, path.length(), there, ahead.cycles);
-        let elements = self.elements.iter().zip(&config.elements);
-        let sum = elements.fold(I40F24::ZERO, |sum, (torque, element)| {
-            sum.saturating_add(element.passed(*torque, &path, factor.acting))
-        });
-        Torque(sum).plus(config.viscous.times(there))
+        torque(config, &self.strained(config, &path, factor)).plus(config.viscous.times(there))
     }
+}
+
+/// The torque of all elements; from 29 to 24 fractional bits.
+fn torque(config: &FrictionConfig, strains: &Strains) -> Torque {
+    let strains = strains.iter().zip(&config.elements);
+    let sum = strains.fold(0_i64, |sum, (strain, element)| {
+        sum.wrapping_add(element.torque(*strain))
+    });
+    Torque(I40F24::from_bits(sum.wrapping_shr(5)))
 }
 
 /// A velocity or its change times a factor, saturated.

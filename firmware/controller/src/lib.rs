@@ -51,7 +51,7 @@ use backlash::{BacklashConfig, BacklashState};
 use cascade::{CascadeConfig, CascadeInput, CascadeState};
 use direction::{Direction, DirectionMemory};
 use filter::{FilterConfig, FilterState};
-use friction::{FrictionConfig, FrictionState};
+use friction::{Feedforward, FrictionConfig, FrictionState};
 use pulse::{PulseConfig, PulseState};
 use reference::{Reference, ReferenceConfig};
 use units::{Position, PositionError, Torque, Velocity};
@@ -82,7 +82,7 @@ pub struct Config {
     /// Coulomb feedforward: this torque in the commanded direction; zero switches it off.
     pub coulomb: Torque,
     /// Friction model: what it says is fed forward.
-    pub friction: FrictionConfig,
+    pub friction: Option<FrictionConfig>,
     /// Torque filter.
     pub filter: FilterConfig,
 }
@@ -140,8 +140,24 @@ impl State {
     }
 
     /// One cycle without torque: friction goes along with what is measured.
-    pub fn follow(&mut self, config: &FrictionConfig, measured: Position) {
-        self.friction.follow(config, measured);
+    pub fn follow(&mut self, config: &Config, measured: Position) {
+        match &config.friction {
+            Some(model) => self.friction.follow(model, measured),
+            None => self.friction.forget(),
+        }
+    }
+
+    /// What the friction model adds. Where it was switched off the integral takes over what the
+    /// elements held.
+    fn model(&mut self, config: &Config, reference: &Reference) -> Feedforward {
+        if let Some(model) = &config.friction {
+            return self.friction.step(model, reference);
+        }
+        if self.friction.is_known() {
+            self.cascade = self.cascade.taking(self.friction.held());
+            self.friction.forget();
+        }
+        Feedforward::default()
     }
 
     /// Nobody knows any more where the axis is.
@@ -204,14 +220,13 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let following_error = reference
         .position
         .error_from(measured(config.position_source, input));
-    let model = state.friction.step(&config.friction, reference);
-    state.cascade = state.cascade.taking(model.released);
+    let model = state.model(config, reference);
     // With a model the motor is expected to have a velocity; without one its setpoint is that of
     // the table.
-    let (expected, unexpected) = if config.friction.is_off() {
-        (Velocity::ZERO, reference.velocity)
-    } else {
+    let (expected, unexpected) = if config.friction.is_some() {
         (reference.velocity.plus(model.velocity), Velocity::ZERO)
+    } else {
+        (Velocity::ZERO, reference.velocity)
     };
     // With the load scale in the loop the table has to be at the setpoint itself; only the motor
     // gets the offset's velocity.

@@ -4,13 +4,20 @@
 //! rounded to a 64th of the look ahead there too, since that is the law's and no rounding of its
 //! numbers.
 
+use controller::backlash::BacklashConfig;
+use controller::cascade::CascadeConfig;
+use controller::filter::FilterConfig;
 use controller::friction::{
     Ahead, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS, LevelCurve,
     LevelLag,
 };
-use controller::reference::Reference;
-use controller::units::{Acceleration, AccelerationGain, Position, Velocity, VelocityGain};
-use fixed::types::{I4F28, I8F24, I20F12, I56F8};
+use controller::pulse::PulseConfig;
+use controller::reference::{Ramp, Reference, ReferenceConfig};
+use controller::units::{
+    Acceleration, AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain,
+};
+use controller::{Config, Input, PositionSource, State};
+use fixed::types::{I2F30, I4F28, I8F24, I20F12, I56F8};
 use proptest::prelude::*;
 
 /// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
@@ -59,7 +66,7 @@ const INERTIA: f64 = 10_050.0;
 fn config() -> FrictionConfig {
     FrictionConfig {
         elements: elements().map(|(level, way)| Element {
-            stiffness: VelocityGain(I20F12::from_num(level / way)),
+            per_way: I8F24::from_num(1.0 / way),
             level_micro_nm: level as i32,
         }),
         levels: LevelCurve {
@@ -283,20 +290,6 @@ fn a_loop_within_presliding_closes_where_it_began() {
 }
 
 #[test]
-fn switched_off_it_hands_over_what_it_held_and_knows_nothing_any_more() {
-    let (mut law, on) = (FrictionState::default(), config());
-    let there: Vec<f64> = (0..3000).map(f64::from).collect();
-    along(&mut law, &on, &there);
-    let held = law.held();
-    let off = FrictionConfig::default();
-    let last = reference(|_| 2999.0, 10);
-    let feedforward = law.step(&off, &last);
-    assert_eq!(feedforward.released, held);
-    assert_eq!(law, FrictionState::default());
-    assert_eq!(law.step(&off, &last), Feedforward::default());
-}
-
-#[test]
 fn what_others_do_to_the_axis_counts_and_what_nobody_saw_does_not() {
     let (mut law, config) = (FrictionState::default(), config());
     for count in 0..3000 {
@@ -314,4 +307,73 @@ fn what_others_do_to_the_axis_counts_and_what_nobody_saw_does_not() {
     assert_eq!(law.held().0, 0);
     law.follow(&config, Position::from_counts(1_000_000));
     assert_eq!(law.held().0, 0, "the first position after that is no way");
+}
+
+#[test]
+fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
+    let cascade = CascadeConfig {
+        position_gain: PositionGain(I8F24::from_num(0.04)),
+        velocity_gain: VelocityGain(I20F12::from_num(2794)),
+        integral_gain: VelocityGain(I20F12::from_num(131.6)),
+        velocity_filter: I2F30::ONE,
+        torque_limit: Torque::from_micro_nm(14_000_000),
+        ..CascadeConfig::default()
+    };
+    // Beyond the factors and the viscous part, which go with the speed, nothing changes.
+    let model = FrictionConfig {
+        viscous: VelocityGain::default(),
+        ..config()
+    };
+    let law = |friction: Option<FrictionConfig>| Config {
+        cascade,
+        friction,
+        ..plain()
+    };
+    let mut state = State::default();
+    let mut torque_at = |config: &Config, cycle: u32| {
+        let reference = reference(|time| 100.0 * time, cycle);
+        let here = Input {
+            motor: reference.position,
+            load: reference.position,
+            reference,
+        };
+        controller::step(config, &mut state, &here)
+            .torque
+            .0
+            .to_num::<f64>()
+    };
+    let on = law(Some(model));
+    let before = (2..500).map(|cycle| torque_at(&on, cycle)).last().unwrap();
+    assert!(before > 0.9 * LEVEL, "{before}");
+    let after = torque_at(&law(None), 500);
+    assert!((after - before).abs() < 0.01 * LEVEL, "{before} {after}");
+}
+
+/// A law with limits that these paths keep, and nothing on.
+fn plain() -> Config {
+    let unlimited = Velocity(I20F12::MAX);
+    let ramp = Ramp {
+        deceleration: unlimited,
+        jerk: Velocity::ZERO,
+    };
+    Config {
+        reference: ReferenceConfig {
+            velocity_limit: unlimited,
+            acceleration_limit: unlimited,
+            step: unlimited,
+            position_min: Position(I56F8::MIN),
+            position_max: Position(I56F8::MAX),
+            quick_stop: ramp,
+            slow_down: ramp,
+            filter_log2: 0,
+            setpoint_cycles: 1,
+        },
+        position_source: PositionSource::Load,
+        cascade: CascadeConfig::default(),
+        pulse: PulseConfig::default(),
+        backlash: BacklashConfig::default(),
+        coulomb: Torque::ZERO,
+        friction: None,
+        filter: FilterConfig::OFF,
+    }
 }

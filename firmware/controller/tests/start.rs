@@ -4,7 +4,6 @@
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
-use controller::friction::FrictionConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
@@ -45,7 +44,7 @@ fn config() -> Config {
         pulse: PulseConfig::default(),
         backlash: BacklashConfig::default(),
         coulomb: Torque::ZERO,
-        friction: FrictionConfig::default(),
+        friction: None,
         filter: FilterConfig::new([1 << 27, 0, 0, 3 << 27, 0]).unwrap(),
     }
 }

@@ -9,7 +9,6 @@
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
-use controller::friction::FrictionConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
@@ -69,7 +68,7 @@ fn config(source: PositionSource) -> Config {
         },
         backlash: BacklashConfig::default(),
         coulomb: Torque::from_micro_nm(COULOMB as i32),
-        friction: FrictionConfig::default(),
+        friction: None,
         filter: FilterConfig::OFF,
     }
 }

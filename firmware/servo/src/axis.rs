@@ -358,8 +358,7 @@ impl Axis {
         let Some(reference) = self.step_reference(settings, contents) else {
             if let Some(measured) = measured {
                 let source = settings.config.position_source;
-                self.law
-                    .follow(&settings.config.friction, measured.of(source));
+                self.law.follow(&settings.config, measured.of(source));
             }
             return false;
         };

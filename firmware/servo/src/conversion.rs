@@ -326,18 +326,26 @@ impl Reading<'_> {
         })
     }
 
-    fn friction(&self) -> Result<FrictionConfig, SetError> {
+    /// The friction model; without a level and a viscous torque there is none.
+    fn friction(&self) -> Result<Option<FrictionConfig>, SetError> {
+        let says = |parameter: &Parameter| self.steps(*parameter) > 0;
+        if !(Parameter::FRICTION_LEVELS.iter().any(says) || says(&Parameter::ViscousTorque)) {
+            return Ok(None);
+        }
         let mut elements = [Element::default(); ELEMENTS];
         for ((element, level), way) in elements
             .iter_mut()
             .zip(Parameter::FRICTION_LEVELS)
             .zip(Parameter::FRICTION_WAYS)
         {
-            *element = self.element(level, way)?;
+            *element = Element {
+                per_way: self.per_way(way)?,
+                level_micro_nm: self.raw(level),
+            };
         }
         let ahead = self.cycles(Parameter::FrictionAhead)?;
         let torque = ahead.saturating_add(HALF_A_CYCLE);
-        Ok(FrictionConfig {
+        Ok(Some(FrictionConfig {
             elements,
             levels: self.levels()?,
             lag: self.level_lag()?,
@@ -348,20 +356,17 @@ impl Reading<'_> {
             compliance: self.compliance()?,
             windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
             motor_inertia: AccelerationGain(I24F8::from_bits(self.motor_inertia()?)),
-        })
+        }))
     }
 
-    /// Level over way, per count. Below 2²⁸ · 10¹⁰ · 2¹², that is 2⁷⁴.
-    fn element(&self, level: Parameter, way: Parameter) -> Result<Element, SetError> {
-        let stiffness = Self::held(
+    /// One over a way, per count.
+    fn per_way(&self, way: Parameter) -> Result<I8F24, SetError> {
+        let bits = Self::held(
             way,
-            &[self.steps(level), way.unit().per_si, Q12],
+            &[way.unit().per_si, Q24],
             &[self.steps(way), COUNTS_PER_M],
         )?;
-        Ok(Element {
-            stiffness: VelocityGain(I20F12::from_bits(stiffness)),
-            level_micro_nm: self.raw(level),
-        })
+        Ok(I8F24::from_bits(bits))
     }
 
     /// A time in cycles. Below 2¹⁷ · 2²⁴.
@@ -403,17 +408,18 @@ impl Reading<'_> {
     /// 1 over a way, per count, and over a time, per cycle; what is faster than that is at once.
     fn level_lag(&self) -> Result<LevelLag, SetError> {
         let (way, time) = (Parameter::LevelLagWay, Parameter::LevelLagTime);
-        let share = |parameter: Parameter, numerator: &[u64], denominator: u64| {
-            if self.steps(parameter) == 0 {
-                return Ok(I8F24::ZERO);
-            }
-            Self::held(parameter, numerator, &[self.steps(parameter), denominator])
-                .map(I8F24::from_bits)
+        let per_cycle = if self.steps(time) == 0 {
+            I8F24::ZERO
+        } else {
+            let share = Self::held(time, &[self.period_us, Q24], &[self.steps(time)])?;
+            I8F24::from_bits(share)
         };
-        Ok(LevelLag {
-            per_way: share(way, &[way.unit().per_si, Q24], COUNTS_PER_M)?,
-            per_cycle: share(time, &[self.period_us, Q24], 1)?,
-        })
+        let per_way = if self.steps(way) == 0 {
+            I8F24::ZERO
+        } else {
+            self.per_way(way)?
+        };
+        Ok(LevelLag { per_cycle, per_way })
     }
 
     /// Millionths as binary fractions; their rows keep them below 8.

@@ -97,7 +97,7 @@ fn after_recording(
         trials: &trials,
         after: &after,
     };
-    console::print_feeds(&commissioned.feeds);
+    feeds::print(&commissioned.feeds);
     commissioned.write(out)
 }
 

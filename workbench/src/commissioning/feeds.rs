@@ -73,3 +73,19 @@ pub fn run(
     feeds.sort_by(|one, other| one.feed_mm_min.total_cmp(&other.feed_mm_min));
     Ok(feeds)
 }
+
+/// Prints the circles at several feeds.
+pub fn print(feeds: &[AtFeed]) {
+    println!("feed, mm/min   burst before, µm   after, µm   less, %   G before, µm   after, µm");
+    for at in feeds {
+        println!(
+            "{:>12.0} {:>18.2} {:>11.2} {:>9.1} {:>14.2} {:>11.2}",
+            at.feed_mm_min,
+            at.burst_before_um,
+            at.burst_after_um,
+            at.reduction_percent(),
+            at.circular_deviation_g_before_um,
+            at.circular_deviation_g_after_um
+        );
+    }
+}

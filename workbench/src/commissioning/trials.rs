@@ -146,7 +146,7 @@ mod tests {
         let worse = vec![trial("pulse", 1.0, 9.5), trial("model", 2.0, 30.0)];
         let nothing = vec![AxisCompensation::default()];
         let trials = chosen(worse, nothing.clone());
-        assert_eq!((trials.method, trials.taken), ("none", nothing));
         assert_eq!(trials.summaries()[1].burst_after_um, 30.0);
+        assert_eq!((trials.method, trials.taken), ("none", nothing));
     }
 }

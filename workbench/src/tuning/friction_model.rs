@@ -110,7 +110,7 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
     for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
         (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
     }
-    model.lag_s = found.stribeck.map_or(0.0, |own| lag_s(own));
+    model.lag_s = found.stribeck.map_or(0.0, lag_s);
     if let (None, Some(bristle_m)) = (slipping, found.bristle_m()) {
         give_bristle(&mut model, &found, bristle_m);
     }

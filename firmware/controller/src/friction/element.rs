@@ -1,32 +1,43 @@
 //! A Maxwell-slip element.
 
-use fixed::types::{I8F24, I40F24};
+use fixed::types::{I3F29, I8F24, I35F29};
 
-use super::path::Path;
-use crate::units::{Velocity, VelocityGain};
+use crate::units::Velocity;
 
 /// A spring that slips at a level.
+///
+/// What it remembers is its strain: torque over level, so that all elements have one limit, the
+/// factor on the levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Element {
-    /// Torque per way, until it slips.
-    pub stiffness: VelocityGain,
+    /// Strain per way of 10 nm: one over the way after which it slips.
+    pub per_way: I8F24,
     /// Level at which it slips, µN·m; below 2²⁸.
     pub level_micro_nm: i32,
 }
 
+/// Torque over level.
+pub(super) type Strain = I3F29;
+
 impl Element {
-    /// Its torque after a path.
-    pub(super) fn passed(self, torque: I40F24, path: &Path, factor: I8F24) -> I40F24 {
-        let on = self.moved(torque, path.on, factor);
-        path.back.map_or(on, |back| self.moved(on, back, factor))
+    /// Its strain after a way.
+    pub(super) fn moved(self, strain: Strain, way: Velocity, limit: Strain) -> Strain {
+        // 20.12 times 8.24 bits: 28.36 bits, exact; 29 of the fractional ones stay.
+        let bent = way.0.wide_mul(self.per_way).to_bits().wrapping_shr(7);
+        let sum = bent.wrapping_add(i64::from(strain.to_bits()));
+        let limit = i64::from(limit.to_bits());
+        let kept = sum.min(limit).max(limit.wrapping_neg());
+        // Within the limits: nothing is lost.
+        Strain::wrapping_from_num(I35F29::from_bits(kept))
     }
 
-    fn moved(self, torque: I40F24, way: Velocity, factor: I8F24) -> I40F24 {
-        // A level is below 2²⁸, a factor below 2³¹ bits: their product has 24 fractional bits.
-        let level = I40F24::from_bits(
-            i64::from(self.level_micro_nm).wrapping_mul(i64::from(factor.to_bits())),
-        );
-        let sprung = torque.saturating_add(self.stiffness.times(way).0);
-        sprung.min(level).max(level.saturating_neg())
+    /// Its torque, µN·m with 29 fractional bits: below 2⁵⁹, so that ten of them have room.
+    pub(super) fn torque(self, strain: Strain) -> i64 {
+        i64::from(self.level_micro_nm).wrapping_mul(i64::from(strain.to_bits()))
     }
+}
+
+/// The limit of all strains at a factor on the levels: below 4.
+pub(super) fn limit(factor: I8F24) -> Strain {
+    Strain::saturating_from_num(factor)
 }
