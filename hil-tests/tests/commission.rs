@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
+use hil_tests::Scope;
 use hil_tests::golden::{self, row};
+use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
 use workbench::cli::{Commission, MachineArguments};
 use workbench::commands::commission;
 use workbench::interrupt::Interrupt;
+use workbench::network::place::Place;
 
 #[test]
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
@@ -125,6 +129,59 @@ fn check_files(out: &Path) {
         assert!(
             std::fs::metadata(out.join(file)).unwrap().len() > 100,
             "{file}"
+        );
+    }
+}
+
+/// A machine that nothing should be tuned on, and what the report says of it.
+struct Hopeless {
+    name: &'static str,
+    change: fn(&mut MachineAxis),
+    key: &'static str,
+    value: &'static str,
+    said: &'static str,
+}
+
+const HOPELESS: [Hopeless; 2] = [
+    Hopeless {
+        name: "three times the gains",
+        change: |axis| {
+            axis.gains.velocity_bandwidth_hz *= 3.0;
+            axis.gains.position_gain_per_s *= 3.0;
+        },
+        key: "verdict",
+        value: "unfit",
+        said: "the loop oscillates at standstill at 6",
+    },
+    Hopeless {
+        name: "no friction to speak of",
+        change: |axis| (axis.actual.sliding.coulomb_n, axis.actual.sliding.static_n) = (0.1, 0.1),
+        key: "method",
+        value: "none",
+        said: "no compensation, since none helps",
+    },
+];
+
+#[test]
+fn a_machine_that_oscillates_or_has_nothing_to_compensate_gets_a_report_and_no_compensation() {
+    for hopeless in Scope::now().rows("hopeless machines", &HOPELESS, 1, 1) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut machine = Machine::reference();
+        machine.axes.iter_mut().for_each(hopeless.change);
+        commission::commission(
+            &machine,
+            Place::InProcess,
+            folder.path(),
+            &Interrupt::never(),
+        )
+        .unwrap();
+        let read = |file: &str| std::fs::read_to_string(folder.path().join(file)).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
+        assert_eq!(summary[hopeless.key], hopeless.value, "{}", hopeless.name);
+        assert!(
+            read("report.html").contains(hopeless.said),
+            "{}",
+            hopeless.name
         );
     }
 }

@@ -22,6 +22,7 @@ use crate::console;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::network::candump::dbc;
+use crate::network::place::Place;
 use crate::output_files::{make_folder, write};
 use crate::progress;
 use crate::session::Stand;
@@ -35,13 +36,25 @@ use crate::trajectory::circle_limits::{check_circle, fitting_circle};
 /// until then is in the folder.
 pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = arguments.machine.machine_and_place()?;
-    let circle = fitting_circle(&machine);
-    check_circle(&machine, &circle)?;
-    let out = &arguments.out;
+    commission(&machine, place, &arguments.out, interrupt)
+}
+
+/// The same with a machine at its place.
+///
+/// # Errors
+/// As [`run`].
+pub fn commission(
+    machine: &Machine,
+    place: Place,
+    out: &Path,
+    interrupt: &Interrupt,
+) -> Outcome<()> {
+    let circle = fitting_circle(machine);
+    check_circle(machine, &circle)?;
     make_folder(out)?;
-    print_machine(&machine);
+    print_machine(machine);
     let stand = Stand {
-        machine: &machine,
+        machine,
         place,
         interrupt: interrupt.clone(),
     };
@@ -50,7 +63,7 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
         println!("{}", oscillation.sentence());
     }
     if oscillations.iter().any(Oscillation::is_unfit) {
-        return end_unfit(&machine, &oscillations, out);
+        return end_unfit(machine, &oscillations, out);
     }
     identified_axes::record(&stand, out)?;
     let kept =

@@ -18,7 +18,7 @@ use crate::trajectory::circle_limits::Slowest;
 /// How long the axes stand and run, s.
 const HOLD_S: f64 = 1.0;
 /// The two speeds, as shares of the velocity limit; both run within a part of the travel.
-const SPEED_SHARES: [f64; 2] = [0.02, 0.05];
+const SPEED_SHARES: [f64; 2] = [0.05, 0.2];
 /// A run takes this part of the travel at most.
 const TRAVEL_SHARE: f64 = 0.4;
 /// From this amplitude on an axis is not fit, µm: friction, ripple and gaps of healthy axes leave as
@@ -34,6 +34,10 @@ const LEAST_CROSSINGS: f64 = 8.0;
 /// The amplitude in the second half of a run is at least this share of that in the first: a motion
 /// that dies out is a settling.
 const LASTING: f64 = 0.5;
+/// How long an axis settles, s.
+const SETTLE_S: f64 = 0.3;
+/// What is looked at of a run that broke off, s.
+const LAST_S: f64 = 0.25;
 /// Frequencies that differ by less than this share are the same.
 const SAME: f64 = 0.2;
 /// A force that comes so near to its limit is at it.
@@ -61,32 +65,55 @@ struct Run {
     force_n: Vec<f64>,
 }
 
-/// Oscillations of the axes of a machine; none is what it should be.
+/// Oscillations of the axes of a machine; none is what it should be. A drive that stops with a fault
+/// on the way is one that oscillates where its last cycles say so.
 ///
 /// # Errors
-/// Where the machine cannot be moved, or the operator interrupts.
+/// Where the machine cannot be moved for another reason, or the operator interrupts.
 pub fn oscillations(stand: &Stand<'_>) -> Outcome<Vec<Oscillation>> {
     progress::step("whether the loops are stable");
+    let mut runs: Vec<Vec<Run>> = Vec::new();
     let session = stand.connect(FITNESS_RUN)?;
-    session.perform(&stand.uncompensated(), None, |session| {
-        let still = standing(session, stand)?;
-        let running = [
-            moving(session, stand, SPEED_SHARES[0])?,
-            moving(session, stand, SPEED_SHARES[1])?,
-        ];
-        let axes = stand.machine.axes.iter().enumerate();
-        Ok(axes
-            .filter_map(|(place, axis)| {
-                let limit_n = axis.actual.force_limit_n;
-                let period_s = stand.machine.period_s;
-                let seen = |run: &Run, least_um| Seen::of(run, period_s, limit_n, least_um);
-                let [slow, fast] =
-                    [&running[0], &running[1]].map(|runs| seen(&runs[place], LEAST_IN_MOTION_UM));
-                judged(seen(&still[place], least_standing_um(axis)), [slow, fast])
-                    .map(|(seen, at_standstill)| seen.told(&axis.name, at_standstill))
-            })
-            .collect())
-    })
+    let outcome = session.perform(&stand.uncompensated(), None, |session| {
+        standing(session, stand, &mut runs)?;
+        SPEED_SHARES
+            .into_iter()
+            .try_for_each(|share| moving(session, stand, share, &mut runs))
+    });
+    stand.interrupt.check()?;
+    let axes = stand.machine.axes.iter().enumerate();
+    let told = |(place, axis): (usize, &MachineAxis)| {
+        let own: Vec<&Run> = runs.iter().filter_map(|run| run.get(place)).collect();
+        let (seen, at_standstill) = of_axis(axis, &own, stand.machine.period_s, outcome.is_err())?;
+        Some(seen.told(&axis.name, at_standstill))
+    };
+    let found: Vec<Oscillation> = axes.filter_map(told).collect();
+    match outcome {
+        Err(failure) if !found.iter().any(Oscillation::is_unfit) => Err(failure),
+        _ => Ok(found),
+    }
+}
+
+/// What one axis does by itself, and whether at standstill; the last run may have broken off.
+fn of_axis(
+    axis: &MachineAxis,
+    runs: &[&Run],
+    period_s: f64,
+    broke_off: bool,
+) -> Option<(Seen, bool)> {
+    let limit_n = axis.actual.force_limit_n;
+    let seen = |run: &Run, least_um| Seen::of(run, period_s, limit_n, least_um);
+    match (runs, broke_off) {
+        (_, true) => {
+            let last = Seen::at_the_end(runs.last()?, period_s, limit_n)?;
+            Some((last, runs.len() == 1))
+        }
+        ([still, slow, fast], _) => judged(
+            seen(still, least_standing_um(axis)),
+            [slow, fast].map(|run| seen(run, LEAST_IN_MOTION_UM)),
+        ),
+        _ => None,
+    }
 }
 
 fn least_standing_um(axis: &MachineAxis) -> f64 {
@@ -99,37 +126,70 @@ fn least_standing_um(axis: &MachineAxis) -> f64 {
 /// Noise of this run is another than that of the others.
 const FITNESS_RUN: u64 = 2000;
 
-fn standing(session: &mut Session<'_>, stand: &Stand<'_>) -> Outcome<Vec<Run>> {
+fn standing(session: &mut Session<'_>, stand: &Stand<'_>, runs: &mut Vec<Vec<Run>>) -> Outcome<()> {
     let home = vec![0.0; stand.machine.axes.len()];
-    session.go_to(&home)?;
-    recorded(session, stand, HOLD_S, |_| home.clone())
+    led(session, stand, &home, runs)?;
+    recorded(session, stand, HOLD_S, runs, |_| home.clone())
 }
 
-/// A run through the middle of the travel; most of it at a constant speed.
-fn moving(session: &mut Session<'_>, stand: &Stand<'_>, share: f64) -> Outcome<Vec<Run>> {
+/// A run through the middle of the travel.
+fn moving(
+    session: &mut Session<'_>,
+    stand: &Stand<'_>,
+    share: f64,
+    runs: &mut Vec<Vec<Run>>,
+) -> Outcome<()> {
     let slowest = Slowest::of(stand.machine);
     let speed = (share * slowest.velocity_m_per_s).min(TRAVEL_SHARE * slowest.travel_m / HOLD_S);
     let end = |side: f64| vec![0.5 * side * speed * HOLD_S; stand.machine.axes.len()];
-    session.go_to(&end(-1.0))?;
-    let path = Move::new(&end(-1.0), &end(1.0), speed, slowest.acceleration_m_per_s2);
-    recorded(session, stand, path.duration_s(), |time_s| path.at(time_s))
+    led(session, stand, &end(-1.0), runs)?;
+    let acceleration = slowest.acceleration_m_per_s2;
+    let way = Move::new(&end(-1.0), &end(1.0), speed, acceleration);
+    recorded(session, stand, way.duration_s(), runs, |time_s| {
+        way.at(time_s)
+    })
 }
 
+/// Leads the axes to a place and lets them settle. It is recorded only in case that a drive stops.
+fn led(
+    session: &mut Session<'_>,
+    stand: &Stand<'_>,
+    to: &[f64],
+    runs: &mut Vec<Vec<Run>>,
+) -> Outcome<()> {
+    let slowest = Slowest::of(stand.machine);
+    let here: Vec<f64> = (0..to.len())
+        .map(|axis| session.master().axis(axis).reference_m)
+        .collect();
+    let (speed, acceleration) = (
+        0.5 * slowest.velocity_m_per_s,
+        0.5 * slowest.acceleration_m_per_s2,
+    );
+    let way = Move::new(&here, to, speed, acceleration);
+    let duration_s = way.duration_s() + SETTLE_S;
+    recorded(session, stand, duration_s, runs, |time_s| way.at(time_s))?;
+    runs.pop();
+    Ok(())
+}
+
+/// Follows a path; what was recorded is there also where it breaks off.
 fn recorded(
     session: &mut Session<'_>,
     stand: &Stand<'_>,
     duration_s: f64,
+    runs: &mut Vec<Vec<Run>>,
     at: impl Fn(f64) -> Vec<f64>,
-) -> Outcome<Vec<Run>> {
-    let mut runs = vec![Run::default(); stand.machine.axes.len()];
-    session.follow(duration_s, at, |_, cycles| {
-        for ((run, cycle), axis) in runs.iter_mut().zip(cycles).zip(&stand.machine.axes) {
+) -> Outcome<()> {
+    let mut own = vec![Run::default(); stand.machine.axes.len()];
+    let outcome = session.follow(duration_s, at, |_, cycles| {
+        for ((run, cycle), axis) in own.iter_mut().zip(cycles).zip(&stand.machine.axes) {
             run.error_um
                 .push(1.0e6 * (cycle.reference_m - measured_m(axis.gains.position_sensor, cycle)));
             run.force_n.push(cycle.force_n);
         }
-    })?;
-    Ok(runs)
+    });
+    runs.push(own);
+    outcome
 }
 
 fn measured_m(sensor: PositionSensor, cycle: &AxisCycle) -> f64 {
@@ -159,14 +219,25 @@ impl Seen {
         if after < least_um || after < LASTING * before || crossings < LEAST_CROSSINGS {
             return None;
         }
-        let most_n = run
-            .force_n
-            .iter()
-            .fold(0.0_f64, |most, n| most.max(n.abs()));
         Some(Self {
             frequency_hz: crossings / (2.0 * period_s * second.len() as f64),
             amplitude_um: after,
-            at_limit: most_n > AT_LIMIT * limit_n,
+            at_limit: is_at_limit(run, limit_n),
+        })
+    }
+
+    /// Of the last part of a run that broke off, where the drive stopped with a fault.
+    fn at_the_end(run: &Run, period_s: f64, limit_n: f64) -> Option<Self> {
+        let rows = ((LAST_S / period_s).round() as usize).min(run.error_um.len());
+        let last = &run.error_um[run.error_um.len() - rows..];
+        let (amplitude_um, crossings) = (amplitude(last), crossings(last));
+        if amplitude_um < UNFIT_UM || crossings < LEAST_CROSSINGS {
+            return None;
+        }
+        Some(Self {
+            frequency_hz: crossings / (2.0 * period_s * rows as f64),
+            amplitude_um,
+            at_limit: is_at_limit(run, limit_n),
         })
     }
 
@@ -179,6 +250,14 @@ impl Seen {
             at_force_limit: self.at_limit,
         }
     }
+}
+
+fn is_at_limit(run: &Run, limit_n: f64) -> bool {
+    let most_n = run
+        .force_n
+        .iter()
+        .fold(0.0_f64, |most, n| most.max(n.abs()));
+    most_n > AT_LIMIT * limit_n
 }
 
 /// What the loop does by itself, and whether at standstill.
@@ -225,7 +304,7 @@ impl Oscillation {
         let place = if self.at_standstill {
             "at standstill"
         } else {
-            "in motion, at the same frequency at two speeds"
+            "in motion"
         };
         let limit = if self.at_force_limit {
             ", its force at the limit"
@@ -274,8 +353,18 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_broke_off_is_judged_by_its_last_quarter_of_a_second() {
+        let mut growing = run(0.0, 31.0, 0.0);
+        growing.error_um.extend(run(60.0, 50.0, 0.0).error_um);
+        let seen = Seen::at_the_end(&growing, 1.0e-3, 1000.0).unwrap();
+        assert!((seen.frequency_hz - 50.0).abs() < 3.0, "{seen:?}");
+        assert_eq!(Seen::at_the_end(&run(1.0, 50.0, 0.0), 1.0e-3, 1000.0), None);
+        assert_eq!(Seen::at_the_end(&Run::default(), 1.0e-3, 1000.0), None);
+    }
+
+    #[test]
     fn what_follows_the_speed_is_not_the_loops() {
-        let [slow, fast] = [12.0, 30.0].map(|hz| seen(&run(20.0, hz, 0.0)));
+        let [slow, fast] = [24.0, 60.0].map(|hz| seen(&run(20.0, hz, 0.0)));
         assert_eq!(judged(None, [slow, fast]), None);
         assert_eq!(judged(None, [slow, None]), None);
         assert!(matches!(judged(None, [slow, slow]), Some((_, false))));
