@@ -22,8 +22,8 @@ const DRAWS: usize = 200;
 /// The first seed; the records of the golden pages have other ones.
 const FIRST_SEED: u64 = 1001;
 
-/// Makes that have something twice, which a dataset can declare once: a load that is taken up and put
-/// down again, ripples of two orders.
+/// Makes that have something twice, which a dataset can declare once: a load that is taken up and
+/// put down again, ripples of two orders.
 const TWICE: [&str; 5] = [
     "film-scanner",
     "gripper-belt",

@@ -4,8 +4,8 @@
 //! circle without compensation ─▶ start_values ─▶ valley (X) ─▶ valley (Y) ─▶ circle with both
 //! ```
 //!
-//! [`coulomb_force`] and [`friction_model`] are other ways to a compensation: one force per axis, or
-//! a model, from a record.
+//! [`coulomb_force`] and [`friction_model`] are other ways to a compensation: one force per axis,
+//! or a model, from a record.
 
 pub mod coulomb_force;
 pub mod friction_model;

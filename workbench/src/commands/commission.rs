@@ -1,7 +1,7 @@
 //! `quadrant commission`: the main job, from recording to the circle with compensation.
 //!
 //! ```text
-//! loops stable? ─▶ record ─▶ identify ─▶ circle ─▶ try pulse and model ─▶ circles with the better ─▶ report
+//! loops stable? ─▶ record ─▶ identify ─▶ circle ─▶ pulse, model ─▶ circles at feeds ─▶ report
 //! ```
 
 use std::path::Path;

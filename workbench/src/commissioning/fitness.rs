@@ -1,9 +1,9 @@
 //! Whether an axis is fit to be compensated: a loop that oscillates is told so before anything is
 //! recorded or tuned on it.
 //!
-//! The axes stand, then run through the middle of their travel at two speeds. What a loop does by itself it does at the same
-//! frequency whatever the speed; what comes from the screw or the motor follows the speed, and
-//! noise does neither.
+//! The axes stand, then run through the middle of their travel at two speeds. What a loop does by
+//! itself it does at the same frequency whatever the speed; what comes from the screw or the motor
+//! follows the speed, and noise does neither.
 
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use serde::Serialize;
@@ -21,8 +21,8 @@ const HOLD_S: f64 = 1.0;
 const SPEED_SHARES: [f64; 2] = [0.05, 0.2];
 /// A run takes this part of the travel at most.
 const TRAVEL_SHARE: f64 = 0.4;
-/// From this amplitude on an axis is not fit, µm: friction, ripple and gaps of healthy axes leave as
-/// much in motion.
+/// From this amplitude on an axis is not fit, µm: friction, ripple and gaps of healthy axes leave
+/// as much in motion.
 const UNFIT_UM: f64 = 5.0;
 const LEAST_IN_MOTION_UM: f64 = UNFIT_UM;
 /// From this amplitude on an oscillation is told at standstill, µm, where only noise is left, and
@@ -65,8 +65,8 @@ struct Run {
     force_n: Vec<f64>,
 }
 
-/// Oscillations of the axes of a machine; none is what it should be. A drive that stops with a fault
-/// on the way is one that oscillates where its last cycles say so.
+/// Oscillations of the axes of a machine; none is what it should be. A drive that stops with a
+/// fault on the way is one that oscillates where its last cycles say so.
 ///
 /// # Errors
 /// Where the machine cannot be moved for another reason, or the operator interrupts.

@@ -4,6 +4,9 @@
 //! presliding ─▶ elements     stribeck ─▶ factors, lag     compliance, masses ─▶ wind-up
 //! ```
 //!
+//! A Stribeck fall is that which was named, else that which the load's own motion tells: noise of
+//! the effort may hide one from identification that a circle shows.
+//!
 //! Elements have ways from rest: after a reversal a spring goes twice as far until it slips the
 //! other way (Masing). Elements that were identified are taken as they are. A bristle (Dahl) comes
 //! off its level within its deflection δ after a reversal, so from rest its curve is
@@ -52,6 +55,7 @@ impl<'a> Found<'a> {
                 _ => {}
             }
         }
+        found.stribeck = found.stribeck.or(result.fall_of_load.as_ref());
         found
     }
 

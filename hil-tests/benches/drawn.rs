@@ -1,0 +1,200 @@
+//! What the model of friction leaves on machines that nobody chose: `cargo bench -p hil-tests
+//! --bench drawn [-- MACHINES [FIRST]]`.
+//!
+//! A machine is the reference machine with its masses, screw, friction, Stribeck fall, presliding
+//! and current lag each drawn between half and one and a half times; every third has Maxwell slip
+//! of 4 to 12 uneven elements for its bristle, and a
+//! Stribeck fall that lags. Its loop gains are in proportion to its own inertia.
+//! It is commissioned as a user would: loops first, records, identification, model. The table has
+//! the largest burst, µm, without → with at R 100 F 500, 2000 and 8000, what identification named,
+//! and what was told of the loops.
+
+use std::ops::RangeInclusive;
+
+use hil_tests::on_all_cores;
+use plant_sim::Machine;
+use plant_sim::friction::Law;
+use plant_sim::machine::MachineAxis;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, Uniform};
+use workbench::circle_test;
+use workbench::commissioning::fitness;
+use workbench::commissioning::identified_axes;
+use workbench::compensation::AxisCompensation;
+use workbench::session::Stand;
+use workbench::trajectory::Circle;
+use workbench::tuning;
+
+/// Machines.
+const MACHINES: u64 = 12;
+/// Each quantity is the reference machine's times a number from here.
+const SPREAD: RangeInclusive<f64> = 0.5..=1.5;
+/// Every so many machines the friction has another structure.
+const OTHER_STRUCTURE: u64 = 3;
+/// Ways from rest after which elements slip, m.
+const WAYS_M: (f64, f64) = (2.0e-6, 4.0e-5);
+/// Lag of the Stribeck fall beside them, s: without one elements chatter on it.
+const LAG_S: f64 = 3.0e-3;
+/// Feeds, mm/min.
+const FEEDS: [f64; 3] = [500.0, 2000.0, 8000.0];
+
+fn main() {
+    let mut arguments = std::env::args().skip(1).filter(|text| text != "--bench");
+    let mut number = |usual: u64| {
+        let text = arguments.next();
+        text.and_then(|text| text.parse().ok()).unwrap_or(usual)
+    };
+    let (machines, first) = (number(MACHINES), number(1));
+    let seeds: Vec<u64> = (first..first + machines).collect();
+    println!("| machine | friction | F 500 | F 2000 | F 8000 | named | loops |");
+    println!("|---|---|---|---|---|---|---|");
+    for line in on_all_cores(&seeds, |seed| of_seed(*seed)) {
+        println!("{line}");
+    }
+}
+
+/// Numbers of one machine.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    fn between(&mut self, range: RangeInclusive<f64>) -> f64 {
+        let range = Uniform::try_from(range).expect("the range is not empty");
+        range.sample(&mut self.0)
+    }
+
+    fn spread(&mut self, value: &mut f64) {
+        *value *= self.between(SPREAD);
+    }
+}
+
+fn drawn(seed: u64) -> Machine {
+    let mut machine = Machine::reference();
+    machine.seed = seed;
+    let mut axis = machine.axes[0].clone();
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
+    spread(&mut axis, &mut draw);
+    if seed.is_multiple_of(OTHER_STRUCTURE) {
+        axis.actual.law = slip(axis.actual.sliding.coulomb_n, &mut draw);
+        axis.actual.sliding.stribeck_lag_s = LAG_S * draw.between(SPREAD);
+    }
+    for (place, name) in ["X", "Y"].into_iter().enumerate() {
+        machine.axes[place] = MachineAxis {
+            name: name.into(),
+            ..axis.clone()
+        };
+    }
+    machine
+}
+
+fn spread(axis: &mut MachineAxis, draw: &mut Draw) {
+    let actual = &mut axis.actual;
+    let (mechanics, sliding) = (&mut actual.mechanics, &mut actual.sliding);
+    let mut excess_n = sliding.static_n - sliding.coulomb_n;
+    for value in [
+        &mut mechanics.motor_inertia_kg,
+        &mut mechanics.table_mass_kg,
+        &mut mechanics.screw_stiffness_n_per_m,
+        &mut mechanics.screw_damping_n_s_per_m,
+        &mut sliding.coulomb_n,
+        &mut excess_n,
+        &mut sliding.stribeck_velocity_m_per_s,
+        &mut sliding.viscous_n_s_per_m,
+        &mut actual.current_loop_time_constant_s,
+    ] {
+        draw.spread(value);
+    }
+    sliding.static_n = sliding.coulomb_n + excess_n;
+    if let Law::LuGre {
+        bristle_stiffness_n_per_m,
+        bristle_damping_n_s_per_m,
+    } = &mut actual.law
+    {
+        draw.spread(bristle_stiffness_n_per_m);
+        draw.spread(bristle_damping_n_s_per_m);
+    }
+}
+
+/// Maxwell slip with shares that have nothing to do with each other.
+fn slip(level_n: f64, draw: &mut Draw) -> Law {
+    let count = draw.between(4.0..=12.99) as usize;
+    let weights: Vec<f64> = (0..count).map(|_| draw.between(0.05..=1.0)).collect();
+    let all: f64 = weights.iter().sum();
+    let share: Vec<f64> = weights.iter().map(|weight| weight / all).collect();
+    let (shortest, longest) = WAYS_M;
+    let stiffness = share.iter().enumerate().map(|(place, share)| {
+        let even = shortest * (longest / shortest).powf(place as f64 / (count - 1) as f64);
+        share * level_n / (even * draw.between(0.8..=1.2))
+    });
+    Law::MaxwellSlip {
+        stiffness_n_per_m: stiffness.collect(),
+        share,
+    }
+}
+
+fn of_seed(seed: u64) -> String {
+    let machine = drawn(seed);
+    let law = match &machine.axes[0].actual.law {
+        Law::MaxwellSlip { share, .. } => format!("Maxwell slip, {} elements", share.len()),
+        _ => "LuGre".into(),
+    };
+    let stand = Stand::in_process(&machine);
+    let loops = match fitness::oscillations(&stand) {
+        Ok(found) => found,
+        Err(failure) => return format!("| {seed} | {law} | {failure} | | | | |"),
+    };
+    let told: Vec<String> = loops
+        .iter()
+        .map(|own| {
+            format!(
+                "{}: {:.0} Hz, {:.1} µm",
+                own.axis, own.frequency_hz, own.amplitude_um
+            )
+        })
+        .collect();
+    let told = told.join("; ");
+    if loops.iter().any(fitness::Oscillation::is_unfit) {
+        return format!("| {seed} | {law} | not commissioned | | | | {told} |");
+    }
+    let (named, model) = commissioned(&stand);
+    let cells = FEEDS.map(|feed| cell(&stand, feed, model.as_deref()));
+    format!(
+        "| {seed} | {law} | {} | {} | {} | {named} | {told} |",
+        cells[0], cells[1], cells[2]
+    )
+}
+
+/// What was named on the first axis, and the model of both; `None` where there is none.
+fn commissioned(stand: &Stand<'_>) -> (String, Option<Vec<AxisCompensation>>) {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    identified_axes::record(stand, folder.path()).expect("the axes can be recorded");
+    let results = identified_axes::identify(stand, folder.path()).expect("records can be fitted");
+    let report = &results[0].report;
+    let named = format!("{} ({})", report.found.join(", "), report.verdict);
+    let model = tuning::model(stand, &circle(FEEDS[1]), &results).expect("the circle can be run");
+    (named, model.map(|tuned| tuned.compensation))
+}
+
+fn circle(feed_mm_min: f64) -> Circle {
+    Circle {
+        radius_m: 0.1,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 3,
+        counter_clockwise: true,
+    }
+}
+
+fn cell(stand: &Stand<'_>, feed: f64, model: Option<&[AxisCompensation]>) -> String {
+    let burst_um = |compensation: &[AxisCompensation]| {
+        let run = circle_test::run(stand, &circle(feed), compensation, None);
+        run.map(|run| run.report.figures.peak_max_um)
+    };
+    let with = model.map_or_else(|| burst_um(&stand.uncompensated()), burst_um);
+    match (burst_um(&stand.uncompensated()), with) {
+        (Ok(before), Ok(after)) => format!(
+            "{before:.1} → {after:.2} ({:.1} %)",
+            100.0 * (1.0 - after / before)
+        ),
+        (Err(failure), _) | (_, Err(failure)) => failure.to_string(),
+    }
+}
