@@ -34,6 +34,9 @@ const LEAST_CROSSINGS: f64 = 8.0;
 /// The amplitude in the second half of a run is at least this share of that in the first: a motion
 /// that dies out is a settling.
 const LASTING: f64 = 0.5;
+/// Share of velocity and acceleration limits on the way, and of the acceleration of the runs: a
+/// motor that is too weak for more is found by the records, not here.
+const GENTLE: f64 = 0.1;
 /// How long an axis settles, s.
 const SETTLE_S: f64 = 0.3;
 /// What is looked at of a run that broke off, s.
@@ -143,7 +146,7 @@ fn moving(
     let speed = (share * slowest.velocity_m_per_s).min(TRAVEL_SHARE * slowest.travel_m / HOLD_S);
     let end = |side: f64| vec![0.5 * side * speed * HOLD_S; stand.machine.axes.len()];
     led(session, stand, &end(-1.0), runs)?;
-    let acceleration = slowest.acceleration_m_per_s2;
+    let acceleration = GENTLE * slowest.acceleration_m_per_s2;
     let way = Move::new(&end(-1.0), &end(1.0), speed, acceleration);
     recorded(session, stand, way.duration_s(), runs, |time_s| {
         way.at(time_s)
@@ -162,8 +165,8 @@ fn led(
         .map(|axis| session.master().axis(axis).reference_m)
         .collect();
     let (speed, acceleration) = (
-        0.5 * slowest.velocity_m_per_s,
-        0.5 * slowest.acceleration_m_per_s2,
+        GENTLE * slowest.velocity_m_per_s,
+        GENTLE * slowest.acceleration_m_per_s2,
     );
     let way = Move::new(&here, to, speed, acceleration);
     let duration_s = way.duration_s() + SETTLE_S;
