@@ -8,13 +8,13 @@
 //! 2000, and in each cell itself. CELLS takes the first so many cells.
 
 use hil_tests::on_all_cores;
+use hil_tests::rig::circle;
 use identification::{Dataset, Identification, fit_declared};
 use plant_sim::Machine;
 use workbench::circle_test;
 use workbench::commissioning::identified_axes;
 use workbench::compensation::AxisCompensation;
 use workbench::session::Stand;
-use workbench::trajectory::Circle;
 use workbench::tuning::{self, coulomb_force};
 
 /// R mm, F mm/min.
@@ -33,15 +33,6 @@ const CELLS: [(f64, f64); 13] = [
     (10.0, 8000.0),
     (100.0, 100.0),
 ];
-
-fn circle((radius_mm, feed_mm_min): (f64, f64)) -> Circle {
-    Circle {
-        radius_m: 1.0e-3 * radius_mm,
-        feed_m_per_s: feed_mm_min / 6.0e4,
-        turns: 3,
-        counter_clockwise: true,
-    }
-}
 
 /// Methods whose parameters are the same in every cell.
 struct Fixed {
@@ -65,7 +56,7 @@ fn main() {
 
 fn fixed(machine: &Machine) -> Vec<Fixed> {
     let stand = Stand::in_process(machine);
-    let usual = circle(CELLS[0]);
+    let usual = circle(CELLS[0].0, CELLS[0].1);
     let pulse = tuning::pulse(&stand, &usual, 0.0).expect("the pulse can be tuned");
     let (declared, extended) = identified(&stand);
     let model = |results: &[Identification]| {
@@ -108,7 +99,7 @@ fn identified(stand: &Stand<'_>) -> (Vec<Identification>, Vec<Identification>) {
 
 fn of_cell(machine: &Machine, cell: (f64, f64), fixed: &[Fixed]) -> String {
     let stand = Stand::in_process(machine);
-    let circle = circle(cell);
+    let circle = circle(cell.0, cell.1);
     let run = |compensation: &[AxisCompensation]| {
         let run = circle_test::run(&stand, &circle, compensation, None);
         let figures = run.expect("the circle can be run").report.figures;

@@ -12,6 +12,7 @@
 use std::ops::RangeInclusive;
 
 use hil_tests::on_all_cores;
+use hil_tests::rig::circle;
 use plant_sim::Machine;
 use plant_sim::friction::Law;
 use plant_sim::machine::MachineAxis;
@@ -23,7 +24,6 @@ use workbench::commissioning::fitness;
 use workbench::commissioning::identified_axes;
 use workbench::compensation::AxisCompensation;
 use workbench::session::Stand;
-use workbench::trajectory::Circle;
 use workbench::tuning;
 
 /// Machines.
@@ -36,7 +36,9 @@ const OTHER_STRUCTURE: u64 = 3;
 const WAYS_M: (f64, f64) = (2.0e-6, 4.0e-5);
 /// Lag of the Stribeck fall beside them, s: without one elements chatter on it.
 const LAG_S: f64 = 3.0e-3;
-/// Feeds, mm/min.
+/// Radius of the circles, mm.
+const RADIUS_MM: f64 = 100.0;
+/// Their feeds, mm/min.
 const FEEDS: [f64; 3] = [500.0, 2000.0, 8000.0];
 
 fn main() {
@@ -171,22 +173,14 @@ fn commissioned(stand: &Stand<'_>) -> (String, Option<Vec<AxisCompensation>>) {
     let results = identified_axes::identify(stand, folder.path()).expect("records can be fitted");
     let report = &results[0].report;
     let named = format!("{} ({})", report.found.join(", "), report.verdict);
-    let model = tuning::model(stand, &circle(FEEDS[1]), &results).expect("the circle can be run");
+    let model = tuning::model(stand, &circle(RADIUS_MM, FEEDS[1]), &results)
+        .expect("the circle can be run");
     (named, model.map(|tuned| tuned.compensation))
-}
-
-fn circle(feed_mm_min: f64) -> Circle {
-    Circle {
-        radius_m: 0.1,
-        feed_m_per_s: feed_mm_min / 6.0e4,
-        turns: 3,
-        counter_clockwise: true,
-    }
 }
 
 fn cell(stand: &Stand<'_>, feed: f64, model: Option<&[AxisCompensation]>) -> String {
     let burst_um = |compensation: &[AxisCompensation]| {
-        let run = circle_test::run(stand, &circle(feed), compensation, None);
+        let run = circle_test::run(stand, &circle(RADIUS_MM, feed), compensation, None);
         run.map(|run| run.report.figures.peak_max_um)
     };
     let with = model.map_or_else(|| burst_um(&stand.uncompensated()), burst_um);

@@ -11,6 +11,7 @@ use workbench::error::{Failure, Outcome};
 use workbench::network::in_process::InProcess;
 use workbench::network::link::Link;
 use workbench::network::master::Master;
+use workbench::trajectory::Circle;
 
 /// The reference machine without noise, for figures that have to repeat to the digit.
 #[must_use]
@@ -21,6 +22,17 @@ pub fn quiet_reference() -> Machine {
         .iter_mut()
         .for_each(|axis| axis.actual.force_noise_n = 0.0);
     machine
+}
+
+/// Three counter-clockwise turns of a radius in mm at a feed in mm/min.
+#[must_use]
+pub fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
+    Circle {
+        radius_m: 1.0e-3 * radius_mm,
+        feed_m_per_s: feed_mm_min / 6.0e4,
+        turns: 3,
+        counter_clockwise: true,
+    }
 }
 
 /// The reference machine with both axes on one bus, as on a single vcan.

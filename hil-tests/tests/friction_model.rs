@@ -4,6 +4,7 @@
 use std::sync::OnceLock;
 
 use hil_tests::golden::{self, Measured, row};
+use hil_tests::rig::circle;
 use hil_tests::{Scope, on_all_cores};
 use plant_sim::Machine;
 use workbench::ballbar::{self, CircleFigures};
@@ -27,15 +28,6 @@ const CELLS: [(f64, f64, f64); 10] = [
     (10.0, 1000.0, 0.03),
     (10.0, 8000.0, 0.04),
 ];
-
-fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
-    Circle {
-        radius_m: 1.0e-3 * radius_mm,
-        feed_m_per_s: feed_mm_min / 6.0e4,
-        turns: 3,
-        counter_clockwise: true,
-    }
-}
 
 /// What `quadrant tune --method model` makes of the records of the reference machine's axes.
 fn model() -> &'static [AxisCompensation] {

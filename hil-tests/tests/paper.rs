@@ -4,7 +4,7 @@
 //! Plots go to `target/paper/`; `docs/paper.md` has the table.
 
 use hil_tests::golden::{self, Measured, row};
-use hil_tests::rig::{dry_friction, gap_inside, gap_outside, quiet_reference};
+use hil_tests::rig::{circle, dry_friction, gap_inside, gap_outside, quiet_reference};
 use hil_tests::{Scope, on_all_cores};
 use plant_sim::Machine;
 use workbench::ballbar::{self, Point};
@@ -16,15 +16,6 @@ use workbench::network::place::Place;
 use workbench::presentation::plots::{self, Trace};
 use workbench::session::{Session, Stand};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
-
-fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
-    Circle {
-        radius_m: 1.0e-3 * radius_mm,
-        feed_m_per_s: feed_mm_min / 6.0e4,
-        turns: 3,
-        counter_clockwise: true,
-    }
-}
 
 fn none() -> Vec<AxisCompensation> {
     vec![AxisCompensation::default(); 2]

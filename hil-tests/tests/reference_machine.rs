@@ -1,7 +1,7 @@
 //! The reference machine's circles beside the prototype's figures, with the paper's pulse.
 
 use hil_tests::golden::{self, Measured, row};
-use hil_tests::rig::quiet_reference;
+use hil_tests::rig::{circle, quiet_reference};
 use hil_tests::{Scope, on_all_cores};
 use workbench::ballbar::{self, CircleFigures};
 use workbench::compensation::{AxisCompensation, Compensation};
@@ -19,15 +19,6 @@ const CIRCLES: [(f64, f64, f64, f64); 5] = [
     (25.0, 1000.0, 33.64, 6.59),
     (100.0, 500.0, 14.12, 7.29),
 ];
-
-fn circle(radius_mm: f64, feed_mm_min: f64) -> Circle {
-    Circle {
-        radius_m: 1.0e-3 * radius_mm,
-        feed_m_per_s: feed_mm_min / 6.0e4,
-        turns: 3,
-        counter_clockwise: true,
-    }
-}
 
 fn run(circle: &Circle, compensation: &[AxisCompensation]) -> CircleFigures {
     let machine = quiet_reference();

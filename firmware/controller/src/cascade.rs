@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! v_cmd = v_ref + Kv (x_ref − x) + pulse          position loop, motor or load side
-//! v_f  += α (v_motor − v_wind − v_f)                velocity filter
+//! v_f  += α (v_motor − v_exp − v_f)                 velocity filter
 //! e_v   = v_cmd − v_f                               velocity loop, motor side
 //! T     = Kp e_v + I + Ja a_ref + friction        I += Ki e_v, unless T is driven beyond the limit
 //! ```
 //!
-//! The motor's velocity is the difference of two encoder positions; what it has to have of it for
-//! the wind-up of the screw (v_wind) is taken off before the filter, so that the filter delays both
-//! alike. Anti-windup acts against the
-//! torque that is really commanded, after every limit: the integral stands still while the torque
-//! is at its limit and the error would push it further.
+//! The motor's velocity is the difference of two encoder positions. With a friction model it is
+//! known what it has to be (v_exp, that of the table and of the screw's wind-up): that is taken off
+//! before the filter instead of added to the setpoint, so that the filter delays both alike.
+//! Anti-windup acts against the torque that is really commanded, after every limit: the integral
+//! stands still while the torque is at its limit and the error would push it further.
 
 use fixed::FixedI64;
 use fixed::types::{I2F30, I20F12};
@@ -44,7 +44,7 @@ pub struct CascadeInput {
     pub error: PositionError,
     /// Velocity setpoint with everything that is added to it.
     pub velocity_setpoint: Velocity,
-    /// Velocity that the motor has to have beside that of the table, to wind the screw up.
+    /// Velocity that the motor is expected to have, where a model tells it; not in the setpoint.
     pub expected_velocity: Velocity,
     /// Acceleration of the setpoint.
     pub acceleration: Acceleration,

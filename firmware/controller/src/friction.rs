@@ -39,6 +39,7 @@ use path::Path;
 
 /// Elements of the model.
 pub const ELEMENTS: usize = 10;
+
 /// What the model says of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {

@@ -43,8 +43,14 @@ impl AtFeed {
     /// How much smaller the burst is, percent.
     #[must_use]
     pub fn reduction_percent(&self) -> f64 {
-        100.0 * (1.0 - self.burst_after_um / self.burst_before_um)
+        less_percent(self.burst_before_um, self.burst_after_um)
     }
+}
+
+/// How much less is left of something, percent.
+#[must_use]
+pub fn less_percent(before: f64, after: f64) -> f64 {
+    100.0 * (1.0 - after / before)
 }
 
 /// The circle that was run, and those at other feeds that the machine can do, by feed.

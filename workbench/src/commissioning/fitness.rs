@@ -217,30 +217,30 @@ impl Seen {
         // The first and the last quarter are the begin and the end of the motion.
         let rest = run.error_um.get(rows / 4..rows - rows / 4)?;
         let (first, second) = rest.split_at(rest.len() / 2);
-        let [before, after] = [first, second].map(amplitude);
-        let crossings = crossings(second);
-        if after < least_um || after < LASTING * before || crossings < LEAST_CROSSINGS {
-            return None;
-        }
-        Some(Self {
-            frequency_hz: crossings / (2.0 * period_s * second.len() as f64),
-            amplitude_um: after,
-            at_limit: is_at_limit(run, limit_n),
-        })
+        let seen = Self::in_part(second, run, period_s, limit_n)?;
+        let lasts = seen.amplitude_um >= LASTING * amplitude(first);
+        (seen.amplitude_um >= least_um && lasts).then_some(seen)
     }
 
     /// Of the last part of a run that broke off, where the drive stopped with a fault.
     fn at_the_end(run: &Run, period_s: f64, limit_n: f64) -> Option<Self> {
         let rows = ((LAST_S / period_s).round() as usize).min(run.error_um.len());
         let last = &run.error_um[run.error_um.len() - rows..];
-        let (amplitude_um, crossings) = (amplitude(last), crossings(last));
-        if amplitude_um < UNFIT_UM || crossings < LEAST_CROSSINGS {
-            return None;
-        }
-        Some(Self {
-            frequency_hz: crossings / (2.0 * period_s * rows as f64),
-            amplitude_um,
-            at_limit: is_at_limit(run, limit_n),
+        let seen = Self::in_part(last, run, period_s, limit_n)?;
+        (seen.amplitude_um >= UNFIT_UM).then_some(seen)
+    }
+
+    /// Of a part of a run; `None` where it crosses its mean too seldom.
+    fn in_part(error_um: &[f64], run: &Run, period_s: f64, limit_n: f64) -> Option<Self> {
+        let crossings = crossings(error_um);
+        let most_n = run
+            .force_n
+            .iter()
+            .fold(0.0_f64, |most, n| most.max(n.abs()));
+        (crossings >= LEAST_CROSSINGS).then(|| Self {
+            frequency_hz: crossings / (2.0 * period_s * error_um.len() as f64),
+            amplitude_um: amplitude(error_um),
+            at_limit: most_n > AT_LIMIT * limit_n,
         })
     }
 
@@ -253,14 +253,6 @@ impl Seen {
             at_force_limit: self.at_limit,
         }
     }
-}
-
-fn is_at_limit(run: &Run, limit_n: f64) -> bool {
-    let most_n = run
-        .force_n
-        .iter()
-        .fold(0.0_f64, |most, n| most.max(n.abs()));
-    most_n > AT_LIMIT * limit_n
 }
 
 /// What the loop does by itself, and whether at standstill.

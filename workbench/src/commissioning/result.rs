@@ -5,7 +5,7 @@ use std::path::Path;
 use identification::{Identification, Report, figures};
 use serde::Serialize;
 
-use super::feeds::AtFeed;
+use super::feeds::{AtFeed, less_percent};
 use super::fitness::Oscillation;
 use super::reversal_curves::six_curves;
 use super::reversal_run::reversal_rows;
@@ -68,7 +68,7 @@ pub struct Commissioned<'a> {
 /// How much smaller the largest burst has become, percent.
 #[must_use]
 pub fn burst_reduction_percent(before: &CircleReport, after: &CircleReport) -> f64 {
-    100.0 * (1.0 - after.figures.peak_max_um / before.figures.peak_max_um)
+    less_percent(before.figures.peak_max_um, after.figures.peak_max_um)
 }
 
 impl Commissioned<'_> {
