@@ -287,15 +287,21 @@ impl Reading<'_> {
         )
     }
 
-    /// share · I, per count and cycle²: over T². Below 2³¹ · 2²¹ · 2⁸ · 10¹², that is 2¹⁰⁰.
+    /// The inertia's share in the acceleration feedforward.
     fn acceleration_gain(&self) -> Result<i32, SetError> {
-        let (inertia, share) = (Parameter::Inertia, Parameter::AccelerationShare);
-        let numerator = [self.steps(inertia), self.steps(share), Q8, MICROS, MICROS];
-        let (i, s) = (inertia.unit().per_si, share.unit().per_si);
+        let share = Parameter::AccelerationShare;
+        let share = (self.steps(share), share.unit().per_si);
+        self.inertia_gain(Parameter::Inertia, share)
+    }
+
+    /// share · I, per count and cycle²: over T². Below 2³¹ · 2²¹ · 2⁸ · 10¹², that is 2¹⁰⁰.
+    fn inertia_gain(&self, inertia: Parameter, share: (u64, u64)) -> Result<i32, SetError> {
+        let numerator = [self.steps(inertia), share.0, Q8, MICROS, MICROS];
+        let i = inertia.unit().per_si;
         Self::held(
             inertia,
             &numerator,
-            &[i, s, TORQUE_PER_COUNT, self.period_us, self.period_us],
+            &[i, share.1, TORQUE_PER_COUNT, self.period_us, self.period_us],
         )
     }
 
@@ -355,7 +361,9 @@ impl Reading<'_> {
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
             compliance: self.compliance()?,
             windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
-            motor_inertia: AccelerationGain(I24F8::from_bits(self.motor_inertia()?)),
+            motor_inertia: AccelerationGain(I24F8::from_bits(
+                self.inertia_gain(Parameter::MotorInertia, (1, 1))?,
+            )),
         }))
     }
 
@@ -452,21 +460,6 @@ impl Reading<'_> {
             &[parameter.unit().per_si, MICROS],
         )?;
         Ok(I4F28::from_bits(bits))
-    }
-
-    /// As the gain of the acceleration feedforward, of the motor alone.
-    fn motor_inertia(&self) -> Result<i32, SetError> {
-        let inertia = Parameter::MotorInertia;
-        Self::held(
-            inertia,
-            &[self.steps(inertia), Q8, MICROS, MICROS],
-            &[
-                inertia.unit().per_si,
-                TORQUE_PER_COUNT,
-                self.period_us,
-                self.period_us,
-            ],
-        )
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {
