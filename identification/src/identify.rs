@@ -263,12 +263,15 @@ fn beside_the_load(
     let others = path(&dataset.validate, dataset.hold, &force);
     let both = [(motion, own), (other.motion, others)];
     let settled = difference::settled_on_both(difference, dataset, both);
-    Some(
-        match difference::elsewhere(&settled, dataset, other.motion, others) {
-            Some(elsewhere) => settled.beside(&elsewhere),
-            None => settled,
-        },
-    )
+    let Some(elsewhere) = difference::elsewhere(&settled, dataset, other.motion, others) else {
+        return Some(settled);
+    };
+    let mut settled = settled.beside(&elsewhere);
+    if search == Search::Whole && !effort.model.has(EffectName::Stribeck) {
+        let fall = settled.name_fall(&elsewhere, both);
+        effort.model.parts.extend(fall);
+    }
+    Some(settled)
 }
 
 /// What a record gives to motor − load.

@@ -51,7 +51,6 @@ pub(crate) fn identification(findings: &Findings<'_>, all: Option<&AllRows<'_>>)
     let residual = &findings.train.extended.residual;
     Identification {
         effects: effects::effects(&report, travel(dataset)),
-        fall_of_load: parameters::fall_of_load(findings),
         report,
         curves: Curves {
             effects: pictures::effects(findings),

@@ -19,6 +19,7 @@ mod carried;
 mod columns;
 mod edges;
 mod elsewhere;
+mod fall;
 mod flanks;
 mod intervals;
 mod known;

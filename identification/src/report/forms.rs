@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use axis_model::{Effect, Estimate, Stribeck};
+use axis_model::{Effect, Estimate};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -384,9 +384,6 @@ pub struct Identification {
     pub report: Report,
     /// The effects of the extended model with their parameters, as the vocabulary has them.
     pub effects: Vec<Effect<Estimate>>,
-    /// The Stribeck fall of the load's friction as the load's own motion tells it, also where the
-    /// effort does not show one and none is named: its excess lies above its interval.
-    pub fall_of_load: Option<Stribeck<Estimate>>,
     /// Curves.
     pub curves: Curves,
     /// Middle and half of the travel of the training record.

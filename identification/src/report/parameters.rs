@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use axis_model::EffectName::{self, TorqueRipple};
 use axis_model::vocabulary::{Backlash, Compliance, PitchError, Presliding};
-use axis_model::{Effect, Estimate, Stribeck};
+use axis_model::{Effect, Estimate};
 
 use crate::evidence::difference::{ByTheLoad, Difference, Known, More};
 use crate::evidence::findings::Findings;
@@ -188,30 +188,6 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     own.extend(asymmetry.map(|asymmetry| ("viscous_asymmetry", estimate(asymmetry, &damping))));
     own
 }
-
-/// The fall of the load's friction as its own motion tells it, where that is more than its interval
-/// and than a trifle of the level.
-pub(crate) fn fall_of_load(findings: &Findings<'_>) -> Option<Stribeck<Estimate>> {
-    let told = findings.stages.difference.as_ref()?.by_the_load.as_ref()?;
-    let Known { value, half_width } = told.excess;
-    let least = (WRONG_IN_FORM * half_width).max(SMALLEST_FALL * told.coulomb.value);
-    if value <= least {
-        return None;
-    }
-    let (effort, length) = (
-        findings.dataset.effort.unit(),
-        findings.dataset.kind.position_unit(),
-    );
-    Some(Stribeck {
-        excess: estimate(told.excess, effort),
-        velocity: estimate(told.velocity, &format!("{length}/s")),
-        exponent: told.exponent.map(|exponent| estimate(exponent, "")),
-        lag: told.lag.map(|lag| estimate(lag, "s")),
-    })
-}
-
-/// A fall of the load's friction by less than this share of its level is none.
-const SMALLEST_FALL: f64 = 0.02;
 
 fn estimate(known: Known, unit: &str) -> Estimate {
     about(known.value, known.half_width, unit.into())

@@ -2,10 +2,8 @@
 //!
 //! ```text
 //! presliding ─▶ elements     stribeck ─▶ factors, lag     compliance, masses ─▶ wind-up
+//! position_dependent_friction ─▶ levels along the travel
 //! ```
-//!
-//! A Stribeck fall is that which was named, else that which the load's own motion tells: noise of
-//! the effort may hide one from identification that a circle shows.
 //!
 //! Elements have ways from rest: after a reversal a spring goes twice as far until it slips the
 //! other way (Masing). Elements that were identified are taken as they are. A bristle (Dahl) comes
@@ -13,7 +11,10 @@
 //! `V(x) = F (1 − exp(−2 x / δ))`, and is cut into elements: those that slip between a and b carry
 //! `[V − x V']` from a to b and have the stiffness `V'(a) − V'(b)`.
 
-use axis_model::{Compliance, Coulomb, Effect, Estimate, Inertia, Presliding, Stribeck, Viscous};
+use axis_model::{
+    Compliance, Coulomb, Effect, Estimate, Inertia, PositionDependentFriction, Presliding,
+    Stribeck, Viscous,
+};
 use identification::Identification;
 
 use crate::compensation::{ELEMENTS, LEVELS, Model};
@@ -32,6 +33,7 @@ struct Found<'a> {
     stribeck: Option<&'a Stribeck<Estimate>>,
     presliding: Option<&'a Presliding<Estimate>>,
     compliance: Option<&'a Compliance<Estimate>>,
+    over_position: Option<&'a PositionDependentFriction<Estimate>>,
 }
 
 impl<'a> Found<'a> {
@@ -43,6 +45,7 @@ impl<'a> Found<'a> {
             stribeck: None,
             presliding: None,
             compliance: None,
+            over_position: None,
         };
         for effect in &result.effects {
             match effect {
@@ -52,10 +55,10 @@ impl<'a> Found<'a> {
                 Effect::Stribeck(own) => found.stribeck = Some(own),
                 Effect::Presliding(own) => found.presliding = Some(own),
                 Effect::Compliance(own) => found.compliance = Some(own),
+                Effect::PositionDependentFriction(own) => found.over_position = Some(own),
                 _ => {}
             }
         }
-        found.stribeck = found.stribeck.or(result.fall_of_load.as_ref());
         found
     }
 
@@ -119,6 +122,10 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
         give_bristle(&mut model, &found, bristle_m);
     }
     give_screw(&mut model, &found, known);
+    if let Some(own) = found.over_position {
+        model.slope_per_m = own.linear.value;
+        model.bend_per_m2 = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
+    }
     Some(model)
 }
 

@@ -80,6 +80,14 @@ fn falls() -> Vec<Stribeck> {
     of_kind(false).chain(of_kind(true)).collect()
 }
 
+/// The form that is nearest to an exponent and a lag, the same in both directions.
+pub(crate) fn nearest(exponent: f64, lag_s: f64) -> &'static dyn Effect {
+    let place = ((exponent - SMALLEST) / STEP).round();
+    let lag = 1.0 + ((lag_s / SHORTEST_LAG_S).ln() / LAG_RATIO.ln()).round();
+    let within = |place: f64, count: usize| place.clamp(0.0, (count - 1) as f64) as usize;
+    BY_LAG[within(lag, LAGS) * COUNT + within(place, COUNT)]
+}
+
 impl Stribeck {
     /// What is left of the excess at a velocity, without the lag.
     pub(crate) fn left(&self, v: f64, vs: f64) -> f64 {

@@ -1,0 +1,135 @@
+//! Whether the load's friction falls with the velocity, by the load's own motion.
+//!
+//! A fall that is slow or small is lost in the noise of an effort. Motor − load shows it through
+//! the wind-up: 60 N over 120 N/µm are 50 counts of 10 nm. What the fall is worth is what friction
+//! without one leaves more of it, with whatever law of presliding suits that best.
+
+use super::columns::{Apart, Path, Way};
+use super::load::Carried;
+use super::refined::stepped;
+use super::rubbing::LoadFriction;
+use super::{Difference, Known, slipping};
+use crate::evidence::selection::Scored;
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, WRONG_IN_FORM};
+use crate::fit::blocks::Gain;
+use crate::model::effects::stribeck::{self, GAUSS};
+use crate::model::inverse::Part;
+use crate::motion::kinematics::Kinematics;
+use axis_model::EffectName;
+
+/// A fall by less than this share of the level is none.
+const SMALLEST: f64 = 0.02;
+
+impl Difference {
+    /// The part of a fall of the load's friction that both records show, each by what was made of
+    /// it, where none is in the model yet. It is said among the candidates.
+    pub(crate) fn name_fall(
+        &mut self,
+        elsewhere: &Self,
+        [(motion, path), (other, there)]: [(&Kinematics, Path<'_>); 2],
+    ) -> Option<Part> {
+        if !(self.tells_a_fall() && elsewhere.tells_a_fall()) {
+            return None;
+        }
+        let own = self.worth_of_a_fall(motion, path)?;
+        let gain = own.smaller(&elsewhere.worth_of_a_fall(other, there)?);
+        let told = self.by_the_load.as_ref()?;
+        let velocity = told.velocity.value;
+        let accepted = is_enough(&gain);
+        self.scored.push(Scored {
+            effect: EffectName::Stribeck.into(),
+            parameter: velocity,
+            gain,
+            physical: true,
+            accepted,
+            round: 0,
+        });
+        let value = |known: Option<Known>, usual: f64| known.map_or(usual, |known| known.value);
+        let exponent = value(told.exponent, GAUSS);
+        let form = stribeck::nearest(exponent, value(told.lag, 0.0));
+        accepted.then(|| Part::found(form, velocity))
+    }
+
+    /// Whether the load's motion has a fall beyond its interval and a trifle of the level.
+    fn tells_a_fall(&self) -> bool {
+        self.by_the_load.as_ref().is_some_and(|told| {
+            let Known { value, half_width } = told.excess;
+            value > (WRONG_IN_FORM * half_width).max(SMALLEST * told.coulomb.value)
+        })
+    }
+
+    fn worth_of_a_fall(&self, motion: &Kinematics, path: Path<'_>) -> Option<Gain> {
+        let apart = Apart::on(motion, path)?;
+        let raw = apart.cleared(&self.extended);
+        worth(&apart.seen(&raw), &self.extended.ways())
+    }
+}
+
+/// What the fall of a wind-up's friction is worth on held-out blocks; `None` where there is none.
+fn worth(apart: &Apart<'_>, ways: &[Way]) -> Option<Gain> {
+    let mut level = ways.to_vec();
+    let is_carried = |way: &Way| matches!(way, Way::Carried(_));
+    let place = ways.iter().position(is_carried)?;
+    let Way::Carried(own) = ways[place] else {
+        return None;
+    };
+    if own.friction.rise <= 0.0 {
+        return None;
+    }
+    let friction = LoadFriction {
+        rise: 0.0,
+        ..own.friction
+    };
+    level[place] = Way::Carried(Carried { friction, ..own });
+    let level = stepped(apart, level, place);
+    let over = |level: &[Way]| {
+        let apart = apart.where_known(ways).where_known(level);
+        let [before, after] = [level, ways].map(|ways| apart.cross_validate(ways));
+        Gain::of(&before, &after)
+    };
+    let gain = over(&level);
+    if !is_enough(&gain) {
+        return Some(gain);
+    }
+    let slipping = slipping::by_another_law(apart, level, place);
+    Some(gain.smaller(&over(&slipping)))
+}
+
+/// Whether a fall is relevant to motor − load and more than chance.
+fn is_enough(gain: &Gain) -> bool {
+    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::difference::carried::instead;
+    use crate::evidence::difference::carried::tests::{FRICTION, UNIT, WAYS, apart, rubbed};
+
+    fn worth_of(friction: LoadFriction) -> Option<Gain> {
+        let axis = rubbed(friction, 0.0, |_| 0.0);
+        let apart = apart(&axis);
+        let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
+        worth(&apart, &ways)
+    }
+
+    #[test]
+    fn a_fall_is_worth_what_no_presliding_explains() {
+        let gain = worth_of(FRICTION).unwrap();
+        assert!(is_enough(&gain) && gain.share > 0.9, "{gain:?}");
+    }
+
+    #[test]
+    fn friction_without_a_fall_is_worth_none_whatever_its_presliding() {
+        let level = LoadFriction {
+            rise: 0.0,
+            ..FRICTION
+        };
+        let at = [4.0e-6, 20.0e-6, 60.0e-6];
+        let slips = level.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
+        for friction in [level, slips] {
+            let gain = worth_of(friction);
+            assert!(!gain.is_some_and(|gain| is_enough(&gain)), "{gain:?}");
+        }
+    }
+}
