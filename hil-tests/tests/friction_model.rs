@@ -1,6 +1,11 @@
 //! The model of friction in the drive, as identification found it: what it leaves of a burst at
 //! every feed, and that it does no harm where nothing is to be gained.
 
+#[path = "friction_model/harm.rs"]
+mod harm;
+#[path = "friction_model/self_tuning.rs"]
+mod self_tuning;
+
 use std::sync::OnceLock;
 
 use hil_tests::golden::{self, Measured, row};
@@ -89,130 +94,8 @@ fn one_model_from_records_alone_removes_the_burst_at_every_feed() {
     golden::check_some("friction-model", &rows.concat(), &names);
 }
 
-/// The largest error at the table and the largest change of the force within a cycle, from a time
-/// on, of the first axis along a path that begins at rest in its middle.
-fn harm(
-    machine: &Machine,
-    compensation: &[AxisCompensation],
-    duration_s: f64,
-    from_s: f64,
-    path_m: impl Fn(f64) -> f64,
-) -> [f64; 2] {
-    let mut session = Session::open(machine, &Place::InProcess, compensation, 0).unwrap();
-    session.go_to(&[path_m(0.0), 0.0]).unwrap();
-    let (mut error_um, mut force_n, mut before) = (0.0_f64, 0.0_f64, None);
-    session
-        .follow(
-            duration_s,
-            |time_s| vec![path_m(time_s), 0.0],
-            |time_s, axes| {
-                let truth = axes[0].truth.unwrap();
-                if time_s >= from_s {
-                    error_um = error_um.max(1.0e6 * (axes[0].reference_m - truth.table_m).abs());
-                    let change: f64 = before.map_or(0.0, |before: f64| axes[0].force_n - before);
-                    force_n = force_n.max(change.abs());
-                }
-                before = Some(axes[0].force_n);
-            },
-        )
-        .unwrap();
-    [error_um, force_n]
-}
-
-/// On 10 mm at 10 mm/s, a rest, and what comes then.
-fn after_a_way(then_m: impl Fn(f64) -> f64) -> impl Fn(f64) -> f64 {
-    const ON_S: f64 = 1.0;
-    const REST_S: f64 = 2.0;
-    move |time_s| {
-        let share = (time_s / ON_S).clamp(0.0, 1.0);
-        let on_m = 0.01 * (share - (std::f64::consts::TAU * share).sin() / std::f64::consts::TAU);
-        on_m + then_m(time_s - ON_S - REST_S)
-    }
-}
-
-/// A smooth step of a size within 50 ms.
-fn step_m(size_m: f64, time_s: f64) -> f64 {
-    let share = (time_s / 0.05).clamp(0.0, 1.0);
-    size_m * share * share * (3.0 - 2.0 * share)
-}
-
-/// The smallest setpoint: 10 nm / 256.
-const FINE_M: f64 = 1.0e-8 / 256.0;
-
 /// v² / r at R 100 mm, F 500 mm/min.
 const REVERSAL_M_PER_S2: f64 = 6.94e-4;
-
-type Path = Box<dyn Fn(f64) -> f64 + Sync>;
-
-/// Name, path, and where the largest error is looked for.
-fn harmless_paths() -> Vec<(&'static str, Path, f64)> {
-    let flip = |time_s: f64| {
-        let flips = (time_s / 0.1).max(0.0) as u32;
-        if time_s > 0.0 && flips.is_multiple_of(2) {
-            -FINE_M
-        } else {
-            0.0
-        }
-    };
-    vec![
-        (
-            "jog back by 0.04 nm after a dwell",
-            Box::new(after_a_way(
-                |time_s| if time_s > 0.0 { -FINE_M } else { 0.0 },
-            )),
-            3.0,
-        ),
-        (
-            "jog back by 1 µm after a dwell",
-            Box::new(after_a_way(|time_s| step_m(-1.0e-6, time_s))),
-            3.0,
-        ),
-        (
-            "standstill, setpoint flips one count every 100 cycles",
-            Box::new(after_a_way(flip)),
-            3.0,
-        ),
-        (
-            "back by 5 µm and on again, within presliding",
-            Box::new(after_a_way(|time_s| {
-                step_m(-5.0e-6, time_s) + step_m(5.0e-6, time_s - 0.1)
-            })),
-            3.0,
-        ),
-        (
-            "stop 2 ms after the reversal of R 100 F 500",
-            Box::new(|time_s| {
-                let since_s = (time_s - 1.5).min(0.002);
-                -0.5 * REVERSAL_M_PER_S2 * since_s * since_s
-            }),
-            1.4,
-        ),
-    ]
-}
-
-#[test]
-fn the_model_is_nowhere_worse_than_none_where_nothing_is_to_be_gained() {
-    let machine = Machine::reference();
-    let none = Stand::in_process(&machine).uncompensated();
-    let mut rows: Vec<Measured> = Vec::new();
-    for (name, path, from_s) in harmless_paths() {
-        let of =
-            |compensation: &[AxisCompensation]| harm(&machine, compensation, 4.5, from_s, &path);
-        let ([without_um, _], [with_um, step_n]) = (of(&none), of(model()));
-        assert!(
-            with_um <= without_um + 0.2,
-            "{name}: {with_um} µm, {without_um} without"
-        );
-        rows.push(row(format!("{name}, none"), without_um, "µm"));
-        rows.push(row(format!("{name}, model"), with_um, "µm"));
-        rows.push(row(
-            format!("{name}, model: largest step of the force"),
-            step_n,
-            "N",
-        ));
-    }
-    golden::check("friction-model-harm", &rows);
-}
 
 /// The largest error over a reversal at R 100 F 500, µm, of an axis that has come some way before.
 fn first_reversal_um(machine: &Machine, compensation: &[AxisCompensation], rests: bool) -> f64 {

@@ -29,6 +29,9 @@ pub struct CircleReport {
     pub bus_load_percent: f64,
     /// Cycles whose torque did not come in time.
     pub missed_cycles: u32,
+    /// What drives that refine themselves have made of the levels of friction: a factor on each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refined_levels: Option<Vec<f64>>,
     /// Figures.
     #[serde(flatten)]
     pub figures: CircleFigures,
@@ -56,8 +59,29 @@ pub fn run(
     compensation: &[AxisCompensation],
     log: Option<&Path>,
 ) -> Outcome<CircleRun> {
+    run_after(stand, circle, 0, compensation, log)
+}
+
+/// The same after so many turns, on which drives refine themselves that are told to.
+///
+/// # Errors
+/// Where it cannot be run.
+pub fn run_after(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    turns: u32,
+    compensation: &[AxisCompensation],
+    log: Option<&Path>,
+) -> Outcome<CircleRun> {
     let session = stand.connect(CIRCLE_RUN)?;
+    let refines = compensation.iter().any(refines);
     session.perform(compensation, log, |session| {
+        if turns > 0 {
+            progress::step(&format!(
+                "{turns} circles on which the drives refine themselves"
+            ));
+            session.circle(&Circle { turns, ..*circle })?;
+        }
         let (points, figures) = measured(session, stand.machine, circle)?;
         let report = CircleReport {
             machine: stand.machine.name.clone(),
@@ -71,10 +95,15 @@ pub fn run(
             },
             bus_load_percent: f64::from(stand.machine.bus_load_per_mille()) / 10.0,
             missed_cycles: session.missed(),
+            refined_levels: refines.then(|| session.refined_levels()).transpose()?,
             figures,
         };
         Ok(CircleRun { report, points })
     })
+}
+
+fn refines(axis: &AxisCompensation) -> bool {
+    matches!(&axis.reversal, Compensation::Model(model) if model.self_tuning > 0.0)
 }
 
 /// The turns that count, and the figures of both directions.

@@ -103,6 +103,9 @@ pub struct CircleArguments {
     /// Compensation file of `tune` or `commission`
     #[arg(long, value_name = "FILE")]
     pub compensation_file: Option<PathBuf>,
+    /// Let the drives refine the model's levels of friction on so many circles first, and go on
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=100))]
+    pub self_tune: u32,
     /// Write the figures as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,

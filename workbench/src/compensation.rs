@@ -52,7 +52,20 @@ pub struct Model {
     pub damping_s: f64,
     /// The wind-up of the screw is so far ahead of friction.
     pub windup_ahead_s: f64,
+    /// Levels change along the travel by this share of that at position zero, per way from there.
+    #[serde(default)]
+    pub slope_per_m: f64,
+    /// And by this per square of that way.
+    #[serde(default)]
+    pub bend_per_m2: f64,
+    /// Share of what each turn tells that the drive refines the levels by; zero: it does not.
+    #[serde(default)]
+    pub self_tuning: f64,
 }
+
+/// Share with which drives refine themselves: three quarters of what a level is off by are gone
+/// after five turns, and a turn that noise makes wrong by a percent makes the level so by a quarter.
+pub const SELF_TUNING: f64 = 0.25;
 
 impl Model {
     /// Level of sliding friction, N.
@@ -75,6 +88,9 @@ impl Model {
         ahead_s: 0.0,
         damping_s: 0.0,
         windup_ahead_s: 0.0,
+        slope_per_m: 0.0,
+        bend_per_m2: 0.0,
+        self_tuning: 0.0,
     };
 }
 
@@ -105,6 +121,29 @@ pub struct AxisCompensation {
     /// Gap to compensate on the setpoint, m; zero for none.
     #[serde(default)]
     pub backlash_m: f64,
+}
+
+impl AxisCompensation {
+    /// The same with a model that the drive refines; `None` where it has no model.
+    #[must_use]
+    pub fn self_tuning(&self) -> Option<Self> {
+        let Compensation::Model(model) = &self.reversal else {
+            return None;
+        };
+        let share = if model.self_tuning > 0.0 {
+            model.self_tuning
+        } else {
+            SELF_TUNING
+        };
+        let model = Model {
+            self_tuning: share,
+            ..**model
+        };
+        Some(Self {
+            reversal: Compensation::Model(Box::new(model)),
+            ..self.clone()
+        })
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -233,7 +272,13 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
     let damping = model.damping_s;
     each("damping_s", "0 to 0.1 s", &[damping], 0.0..=0.1)?;
     let ahead = model.windup_ahead_s;
-    each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)
+    each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)?;
+    let slope = model.slope_per_m;
+    each("slope_per_m", "-700 to 700 /m", &[slope], -700.0..=700.0)?;
+    let bend = model.bend_per_m2;
+    let steepest = -2000.0..=2000.0;
+    each("bend_per_m2", "-2000 to 2000 /m2", &[bend], steepest)?;
+    each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)
 }
 
 fn expect(holds: bool, otherwise: Wrong) -> Result<(), Wrong> {

@@ -32,6 +32,9 @@ pub fn print_circle(report: &CircleReport) {
     two("radial deviation Fmax/Fmin", [fmax_um, fmin_um]);
     two("step X / Y", figures.step_um);
     one("ellipse", figures.ellipse_um);
+    for level in report.refined_levels.iter().flatten() {
+        println!("  refined level of friction {level:>10.3}");
+    }
     let load = report.bus_load_percent;
     println!("  bus load, computed        {load:>10.1} %");
     if report.missed_cycles > 0 {

@@ -285,6 +285,17 @@ impl Set {
                 "model motor_inertia_kg",
                 model.motor_inertia_kg * per_newton,
             ),
+            (
+                Parameter::LevelSlope,
+                "model slope_per_m",
+                model.slope_per_m,
+            ),
+            (Parameter::LevelBend, "model bend_per_m2", model.bend_per_m2),
+            (
+                Parameter::LevelTuning,
+                "model self_tuning",
+                model.self_tuning,
+            ),
         ] {
             self.put(place, key, value)?;
         }

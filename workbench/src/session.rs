@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use plant_sim::Machine;
+use servo::objects;
 
 use crate::ballbar::Point;
 use crate::compensation::AxisCompensation;
@@ -253,6 +254,19 @@ impl<'a, L: Link> Session<'a, L> {
             },
         )?;
         Ok(points)
+    }
+
+    /// The factor on the levels of friction that each drive has refined.
+    ///
+    /// # Errors
+    /// Where a drive does not answer.
+    pub fn refined_levels(&mut self) -> Outcome<Vec<f64>> {
+        let axes = 0..self.machine.axes.len();
+        let read = |axis: usize| {
+            let own = self.master.upload(axis, objects::REFINED_LEVEL)?;
+            Ok(1.0e-6 * f64::from(own.to_i32()))
+        };
+        axes.map(read).collect()
     }
 
     /// Whether bursts are seen by an instrument at the machine, or by the load scale.

@@ -1,9 +1,12 @@
 //! Commanded direction and its changes.
 //!
-//! The reversal unit, Coulomb feedforward and backlash compensation all act on a change of
-//! *commanded* direction: the sign of the setpoint's velocity, held through standstill.
+//! Coulomb feedforward and backlash compensation act on the *commanded* direction: the sign of the
+//! setpoint's velocity, held through standstill. The reversal unit acts on reversals that count
+//! ([`Turns`]): those after a way of some length.
 
-use crate::units::Velocity;
+use core::cmp::Ordering;
+
+use crate::units::{Position, PositionError, Velocity};
 
 /// Direction of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,10 +30,20 @@ impl Direction {
     /// The direction of a velocity; `None` at standstill.
     #[must_use]
     pub fn of(velocity: Velocity) -> Option<Self> {
-        match velocity.0.cmp(&Velocity::ZERO.0) {
-            core::cmp::Ordering::Greater => Some(Self::Positive),
-            core::cmp::Ordering::Less => Some(Self::Negative),
-            core::cmp::Ordering::Equal => None,
+        Self::by(velocity.cmp(&Velocity::ZERO))
+    }
+
+    /// The direction of a way; `None` of none.
+    #[must_use]
+    pub fn of_way(way: PositionError) -> Option<Self> {
+        Self::by(way.cmp(&PositionError::ZERO))
+    }
+
+    const fn by(sign: Ordering) -> Option<Self> {
+        match sign {
+            Ordering::Greater => Some(Self::Positive),
+            Ordering::Less => Some(Self::Negative),
+            Ordering::Equal => None,
         }
     }
 }
@@ -40,41 +53,154 @@ impl Direction {
 pub struct DirectionMemory(Option<Direction>);
 
 impl DirectionMemory {
-    /// Takes the commanded velocity; gives the new direction where it has just reversed.
+    /// Takes the commanded velocity; gives the direction last commanded, `None` before the first
+    /// motion.
+    pub fn after(&mut self, commanded: Velocity) -> Option<Direction> {
+        self.0 = Direction::of(commanded).or(self.0);
+        self.0
+    }
+}
+
+/// Remembers where the setpoint comes from: which way, and how far.
+///
+/// A reversal counts after a way of some length. What goes to and fro within less is a jog or noise
+/// of the setpoint, and does not turn friction round.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Turns {
+    at: Option<Position>,
+    direction: Option<Direction>,
+    /// Way in that direction since the last turn, up to the one that counts.
+    gone: PositionError,
+    /// Cycles since it moved last.
+    stood: u8,
+}
+
+/// The setpoint has stopped when it has not moved for so many cycles: a slow one has its steps of
+/// 39 pm in every fourth cycle.
+const STOPPED_CYCLES: u8 = 4;
+
+impl Turns {
+    /// Takes the next position; gives the new direction at a reversal that counts.
     ///
     /// The first motion after a reset is no reversal: friction has no sign to change yet.
-    pub fn reversal(&mut self, commanded: Velocity) -> Option<Direction> {
-        let now = Direction::of(commanded)?;
-        let before = self.0.replace(now);
-        (before.is_some() && before != Some(now)).then_some(now)
+    pub fn reversal(&mut self, shortest: PositionError, to: Position) -> Option<Direction> {
+        let way = self.at.map_or(PositionError::ZERO, |at| to.error_from(at));
+        self.at = Some(to);
+        let Some(direction) = Direction::of_way(way) else {
+            self.stood = self.stood.saturating_add(1);
+            return None;
+        };
+        self.stood = 0;
+        let way = way.magnitude();
+        if self.direction.is_none_or(|own| own == direction) {
+            self.direction = Some(direction);
+            self.gone = self.gone.plus(way).min(shortest);
+            return None;
+        }
+        let counts = self.gone >= shortest;
+        let left = self.gone.minus(way);
+        if counts {
+            (self.direction, self.gone) = (Some(direction), way.min(shortest));
+        } else if left < PositionError::ZERO {
+            (self.direction, self.gone) = (Some(direction), left.magnitude().min(shortest));
+        } else {
+            self.gone = left;
+        }
+        counts.then_some(direction)
     }
 
-    /// The direction last commanded; `None` before the first motion.
+    /// Whether the setpoint has stopped.
     #[must_use]
-    pub const fn last(self) -> Option<Direction> {
-        self.0
+    pub const fn has_stopped(&self) -> bool {
+        self.stood >= STOPPED_CYCLES
+    }
+
+    /// One cycle of an axis that is moved by others: where it came from is known as long as it is
+    /// no farther from there than the way after which a reversal counts.
+    pub fn follow(&mut self, shortest: PositionError, measured: Position) {
+        let is_there = |at: Position| measured.error_from(at).magnitude() <= shortest;
+        if !self.at.is_some_and(is_there) {
+            *self = Self::default();
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fixed::types::I20F12;
+    use fixed::types::{I20F12, I24F8};
 
-    fn reversals(velocities: &[i32]) -> Vec<Option<Direction>> {
+    #[test]
+    fn the_direction_is_held_through_a_dwell() {
         let mut memory = DirectionMemory::default();
-        velocities
-            .iter()
-            .map(|v| memory.reversal(Velocity(I20F12::from_num(*v))))
-            .collect()
+        let held = [0, 1, 0, -1, 0].map(|v| memory.after(Velocity(I20F12::from_num(v))));
+        let [on, back] = [Direction::Positive, Direction::Negative].map(Some);
+        assert_eq!(held, [None, on, on, back, back]);
     }
+
+    /// The reversals that count along positions, after ways of 100 counts.
+    fn reversals(positions: &[i64]) -> Vec<Option<Direction>> {
+        let mut turns = Turns::default();
+        let each = positions
+            .iter()
+            .map(|at| turns.reversal(SHORTEST, Position::from_counts(*at)));
+        each.collect()
+    }
+
+    const SHORTEST: PositionError = PositionError(I24F8::const_from_int(100));
+    const BACK: Option<Direction> = Some(Direction::Negative);
+    const ON: Option<Direction> = Some(Direction::Positive);
 
     #[test]
     fn a_dwell_does_not_hide_a_reversal_and_makes_none() {
         assert_eq!(
-            reversals(&[1, 0, 0, -1, 0, -1]),
-            [None, None, None, Some(Direction::Negative), None, None]
+            reversals(&[0, 150, 150, 149, 149, 20, 40]),
+            [None, None, None, BACK, None, None, ON]
         );
-        assert_eq!(reversals(&[0, 1, 0, 1]), [None; 4]);
+        assert_eq!(reversals(&[0, 150, 150, 300]), [None; 4]);
+    }
+
+    #[test]
+    fn to_and_fro_within_less_than_the_way_counts_once() {
+        // After a way the first turn counts; what flips about it does not.
+        assert_eq!(
+            reversals(&[0, 150, 149, 151, 140, 160, 20, 300]),
+            [None, None, BACK, None, None, None, None, ON]
+        );
+        // On from rest, 60 back, 120 on: never 100 one way before a turn.
+        assert_eq!(
+            reversals(&[0, 60, 0, 120, 90]),
+            [None, None, None, None, BACK]
+        );
+    }
+
+    #[test]
+    fn a_way_back_that_was_too_short_to_count_is_a_way_all_the_same() {
+        // 50 on, then 250 back: no reversal that counted, but the next one does.
+        assert_eq!(reversals(&[0, 50, -200, -199]), [None, None, None, ON]);
+    }
+
+    #[test]
+    fn a_setpoint_has_stopped_when_it_has_not_moved_for_four_cycles() {
+        let mut turns = Turns::default();
+        let stops = [0, 5, 5, 5, 5, 5, 6].map(|at| {
+            turns.reversal(SHORTEST, Position::from_counts(at));
+            turns.has_stopped()
+        });
+        assert_eq!(stops, [false, false, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn an_axis_that_was_pushed_too_far_has_come_from_nowhere() {
+        let turned = |pushed: i64| {
+            let mut turns = Turns::default();
+            for at in [0, 150] {
+                turns.reversal(SHORTEST, Position::from_counts(at));
+            }
+            turns.follow(SHORTEST, Position::from_counts(pushed));
+            turns.reversal(SHORTEST, Position::from_counts(150));
+            turns.reversal(SHORTEST, Position::from_counts(140))
+        };
+        assert_eq!((turned(250), turned(251)), (BACK, None));
     }
 }

@@ -8,8 +8,9 @@
 //! **Elements.** Friction is the sum of Maxwell-slip elements (springs that slip at a level), as in
 //! Al-Bender, Lampaert, Swevers, "The generalized Maxwell-slip model", IEEE TAC 50 (2005) 1883. In
 //! presliding they follow Masing's rules by themselves; sliding, their levels follow the speed
-//! ([`LevelCurve`]). Their only input is the way of the reference. There is no event, so nothing
-//! chatters: a setpoint that flips one count moves a spring by one count.
+//! ([`LevelCurve`]), the place ([`LevelPlace`]) and what turns have told ([`LevelTuning`]). Their
+//! only input is the way of the reference. There is no event, so nothing chatters: a setpoint that
+//! flips one count moves a spring by one count.
 //!
 //! **Wind-up.** The screw transmits the friction of the table and is wound up by it, `F / K`. When
 //! friction changes sign the motor has to go that way in addition: its change belongs to the speed
@@ -29,13 +30,18 @@ use crate::units::{
 mod element;
 mod levels;
 mod path;
+mod place;
+mod tuning;
 
 pub use element::Element;
 use element::Strain;
-use levels::Factor;
+use levels::{Factor, times};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
+pub use place::LevelPlace;
+use tuning::Tuner;
+pub use tuning::{LevelTuning, Progress};
 
 /// Elements of the model.
 pub const ELEMENTS: usize = 10;
@@ -49,6 +55,10 @@ pub struct FrictionConfig {
     pub levels: LevelCurve,
     /// How they fall behind it.
     pub lag: LevelLag,
+    /// Levels along the travel.
+    pub place: LevelPlace,
+    /// How they are refined.
+    pub tuning: LevelTuning,
     /// Viscous torque per velocity.
     pub viscous: VelocityGain,
     /// From x(k+1) to when the torque acts.
@@ -79,6 +89,7 @@ pub struct FrictionState {
     /// Factor on the levels; `None`: that of the speed.
     factor: Option<Factor>,
     recent: Option<Recent>,
+    tuner: Tuner,
 }
 
 /// Friction of the last cycles.
@@ -113,10 +124,11 @@ impl FrictionState {
             .at
             .map_or(Velocity::ZERO, |before| next_position.step_from(before));
         let path = Path::between(begin, at_next, I8F24::ONE, way);
-        self.move_along(config, &path, next_position, at_next);
+        let scale = self.scale(config, next_position);
+        self.move_along(config, &path, next_position, (at_next, scale));
         let next = self.held().plus(config.viscous.times(at_next));
         let [acting, after] = [&config.torque, &config.torque_after]
-            .map(|ahead| self.ahead(config, ahead, velocity, acceleration));
+            .map(|ahead| self.ahead(config, ahead, (velocity, acceleration), scale));
         let before = self.recent.unwrap_or(Recent {
             before: next,
             present: next,
@@ -152,14 +164,44 @@ impl FrictionState {
         let velocity = self
             .at
             .map_or(Velocity::ZERO, |before| measured.step_from(before));
-        self.move_along(config, &Path::straight(velocity), measured, velocity);
-        self.recent = None;
+        let scale = self.scale(config, measured);
+        self.move_along(
+            config,
+            &Path::straight(velocity),
+            measured,
+            (velocity, scale),
+        );
+        (self.recent, self.tuner) = (None, self.tuner.at_rest());
     }
 
     /// Nobody knows any more where the axis is: the elements are unknown, and grow into their
-    /// levels as it moves.
+    /// levels as it moves. The level itself is what it was.
     pub fn forget(&mut self) {
-        *self = Self::default();
+        *self = Self {
+            tuner: self.tuner.at_rest(),
+            ..Self::default()
+        };
+    }
+
+    /// The model is another one: what was refined of the level is not known of it.
+    pub fn forget_level(&mut self) {
+        self.tuner = Tuner::default();
+    }
+
+    /// Refines the level by what the loop did.
+    pub fn refine(&mut self, config: &FrictionConfig, progress: &Progress) {
+        self.tuner.step(config.tuning, progress);
+    }
+
+    /// The refined factor on all levels.
+    #[must_use]
+    pub fn level(&self) -> I8F24 {
+        self.tuner.factor()
+    }
+
+    /// The factor on the levels at a position.
+    fn scale(&self, config: &FrictionConfig, position: Position) -> I8F24 {
+        times(config.place.at(position), self.tuner.factor())
     }
 
     fn move_along(
@@ -167,23 +209,24 @@ impl FrictionState {
         config: &FrictionConfig,
         path: &Path,
         to: Position,
-        velocity: Velocity,
+        pace: (Velocity, I8F24),
     ) {
-        let factor = self.factor_after(config, path.length(), velocity, I8F24::ONE);
+        let factor = self.factor_after(config, path.length(), pace, I8F24::ONE);
         self.strains = self.strained(config, path, factor);
         self.held = torque(config, &self.strains);
         (self.at, self.factor) = (Some(to), Some(factor));
     }
 
-    /// The factor on the levels a way and some cycles later, at a velocity there.
+    /// The factor on the levels a way and some cycles later, at a velocity there and with a factor
+    /// on those of that velocity.
     fn factor_after(
         &self,
         config: &FrictionConfig,
         way: Velocity,
-        velocity: Velocity,
+        (velocity, scale): (Velocity, I8F24),
         cycles: I8F24,
     ) -> Factor {
-        let aim = config.levels.at(velocity);
+        let aim = times(config.levels.at(velocity), scale);
         let before = self.factor.unwrap_or(Factor::at(aim));
         before.passed(config.lag, aim, way, cycles)
     }
@@ -216,8 +259,8 @@ impl FrictionState {
         &self,
         config: &FrictionConfig,
         ahead: &Ahead,
-        velocity: Velocity,
-        acceleration: Acceleration,
+        (velocity, acceleration): (Velocity, Acceleration),
+        scale: I8F24,
     ) -> Torque {
         let way = scaled(velocity.0, ahead.cycles)
             .saturating_add(scaled(acceleration.0, ahead.way_by_acceleration));
@@ -227,7 +270,7 @@ impl FrictionState {
         let there = Velocity(there);
         let begin = velocity.plus(half(acceleration));
         let path = Path::between(begin, there, ahead.cycles, Velocity(way));
-        let factor = self.factor_after(config, path.length(), there, ahead.cycles);
+        let factor = self.factor_after(config, path.length(), (there, scale), ahead.cycles);
         torque(config, &self.strained(config, &path, factor)).plus(config.viscous.times(there))
     }
 }

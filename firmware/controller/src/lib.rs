@@ -5,7 +5,7 @@
 //! and output are four types; physical units meet machine units on the host side only.
 //!
 //! ```text
-//!              ┌─ next velocity ─▶ direction ─▶ reversal ─▶ pulse ─┐
+//!              ┌─ next position ─▶ reversal that counts ─▶ pulse ──┐
 //!              ├─ velocity ────────────────────────────────────────┤
 //! [reference] ─┼─ acceleration ────────────────────────────────────┼▶ cascade ─▶ filter ─▶ torque
 //!              ├─ all of it ─▶ friction model ─▶ torque, wind-up ──┤
@@ -49,10 +49,11 @@ pub mod units;
 
 use backlash::{BacklashConfig, BacklashState};
 use cascade::{CascadeConfig, CascadeInput, CascadeState};
-use direction::{Direction, DirectionMemory};
+use direction::{Direction, DirectionMemory, Turns};
 use filter::{FilterConfig, FilterState};
-use friction::{Feedforward, FrictionConfig, FrictionState};
-use pulse::{PulseConfig, PulseState};
+use fixed::types::I8F24;
+use friction::{Feedforward, FrictionConfig, FrictionState, Progress};
+use pulse::{PulseConfig, PulseState, Setpoint};
 use reference::{Reference, ReferenceConfig};
 use units::{Position, PositionError, Torque, Velocity};
 
@@ -87,13 +88,20 @@ pub struct Config {
     pub filter: FilterConfig,
 }
 
+/// What is known of the axis itself: it stays when torque goes and comes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AxisMemory {
+    friction: FrictionState,
+    turns: Turns,
+}
+
 /// Everything that the law remembers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     direction: DirectionMemory,
     pulse: PulseState,
     backlash: BacklashState,
-    friction: FrictionState,
+    axis: AxisMemory,
     cascade: CascadeState,
     filter: FilterState,
     motor: Option<Position>,
@@ -122,47 +130,94 @@ impl State {
         }
     }
 
-    /// What is known of the friction.
+    /// What is known of the axis.
     #[must_use]
-    pub const fn friction(&self) -> FrictionState {
-        self.friction
+    pub const fn axis(&self) -> AxisMemory {
+        self.axis
     }
 
-    /// The same with what is known of the friction: it is a state of the axis, and stays when
-    /// torque goes and comes. The integral holds what the model does not.
+    /// The same with what is known of the axis. The integral holds what its model does not.
     #[must_use]
-    pub fn with_friction(self, friction: FrictionState) -> Self {
+    pub fn with_axis(self, axis: AxisMemory) -> Self {
         Self {
-            cascade: self.cascade.taking(friction.held().reversed()),
-            friction,
+            cascade: self.cascade.taking(axis.friction.held().reversed()),
+            axis,
             ..self
         }
     }
 
-    /// One cycle without torque: friction goes along with what is measured.
+    /// One cycle without torque: what is known goes along with what is measured.
     pub fn follow(&mut self, config: &Config, measured: Position) {
         match &config.friction {
-            Some(model) => self.friction.follow(model, measured),
-            None => self.friction.forget(),
+            Some(model) => self.axis.friction.follow(model, measured),
+            None => self.axis.friction.forget(),
         }
+        self.axis.turns.follow(config.pulse.shortest_way, measured);
     }
 
     /// What the friction model adds. Where it was switched off the integral takes over what the
     /// elements held.
     fn model(&mut self, config: &Config, reference: &Reference) -> Feedforward {
+        let friction = &mut self.axis.friction;
         if let Some(model) = &config.friction {
-            return self.friction.step(model, reference);
+            return friction.step(model, reference);
         }
-        if self.friction.is_known() {
-            self.cascade = self.cascade.taking(self.friction.held());
-            self.friction.forget();
+        if friction.is_known() {
+            self.cascade = self.cascade.taking(friction.held());
+            friction.forget();
         }
         Feedforward::default()
     }
 
+    /// What the setpoint does.
+    fn setpoint(&mut self, config: &PulseConfig, reference: &Reference) -> Setpoint {
+        let turns = &mut self.axis.turns;
+        let to = reference.position.after(reference.next_velocity);
+        match turns.reversal(config.shortest_way, to) {
+            Some(direction) => Setpoint::Turns(direction),
+            None if turns.has_stopped() => Setpoint::Stopped,
+            None => Setpoint::Moves,
+        }
+    }
+
+    /// Refines the model's level by what the loop did in a cycle.
+    fn refine(
+        &mut self,
+        config: &Config,
+        (setpoint, position): (Setpoint, Position),
+        limited: bool,
+    ) {
+        let Some(model) = &config.friction else {
+            return;
+        };
+        let turned = match setpoint {
+            Setpoint::Turns(direction) => Some(direction),
+            Setpoint::Moves | Setpoint::Stopped => None,
+        };
+        let progress = Progress {
+            turned,
+            position,
+            is_spoilt: limited || setpoint == Setpoint::Stopped,
+            integral: self.cascade.integral(),
+        };
+        self.axis.friction.refine(model, &progress);
+    }
+
+    /// The parameters are other ones: what was refined of the model's level is not known of them.
+    pub fn forget_level(&mut self) {
+        self.axis.friction.forget_level();
+    }
+
+    /// The refined factor on the levels of the friction model.
+    #[must_use]
+    pub fn level(&self) -> I8F24 {
+        self.axis.friction.level()
+    }
+
     /// Nobody knows any more where the axis is.
-    pub fn forget_friction(&mut self) {
-        self.friction.forget();
+    pub fn forget_axis(&mut self) {
+        self.axis.friction.forget();
+        self.axis.turns = Turns::default();
     }
 
     /// Where the backlash unit has the motor, beside the setpoint.
@@ -209,9 +264,9 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         .map_or(Velocity::ZERO, |before| input.motor.step_from(before));
     state.motor = Some(input.motor);
 
-    let reversal = state.direction.reversal(reference.next_velocity);
-    let direction = state.direction.last();
-    let pulse = state.pulse.step(&config.pulse, reversal);
+    let direction = state.direction.after(reference.next_velocity);
+    let setpoint = state.setpoint(&config.pulse, reference);
+    let pulse = state.pulse.step(&config.pulse, setpoint);
     let (offset, offset_velocity) =
         state
             .backlash
@@ -250,6 +305,7 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         .filter
         .step(&config.filter, proposal.torque.limited(limit), limit);
     let limited = state.cascade.settle(&config.cascade, &proposal, torque);
+    state.refine(config, (setpoint, reference.position), limited);
     Output {
         torque,
         following_error,

@@ -1,17 +1,19 @@
 //! The reversal unit: the compensation pulse of the paper.
 //!
 //! On a change of commanded direction, `Δn · exp(−t / T_comp)` is added to the speed setpoint, in
-//! the new direction, after an optional start delay. Source: "Influence of the gap and the friction
-//! on trajectory reproduction accuracy in a multiaxis machine with CNC", §4.2. The exponential is a
-//! geometric series: one multiplication a cycle by `decay = exp(−T_cycle / T_comp)`, computed on
-//! the host.
+//! the new direction, after an optional start delay. So that it does no harm it comes at reversals
+//! alone that [count](crate::direction::Turns), and ends where the setpoint stops.
+//!
+//! Source: "Influence of the gap and the friction on trajectory reproduction accuracy in a
+//! multiaxis machine with CNC", §4.2. The exponential is a geometric series: one multiplication a
+//! cycle by `decay = exp(−T_cycle / T_comp)`, computed on the host.
 
 use fixed::FixedI64;
 use fixed::types::extra::U42;
 use fixed::types::{I2F30, I20F12};
 
 use crate::direction::Direction;
-use crate::units::Velocity;
+use crate::units::{PositionError, Velocity};
 
 /// Parameters of the pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +24,19 @@ pub struct PulseConfig {
     pub decay: I2F30,
     /// Cycles from the reversal to the start of the pulse.
     pub start_delay_cycles: u16,
+    /// Way the other way after which a reversal counts.
+    pub shortest_way: PositionError,
+}
+
+/// What the setpoint does in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setpoint {
+    /// It goes on.
+    Moves,
+    /// It has just turned round.
+    Turns(Direction),
+    /// It has stopped.
+    Stopped,
 }
 
 /// Where the pulse stands.
@@ -49,12 +64,16 @@ pub enum PulseState {
 
 impl PulseState {
     /// Advances by one cycle; gives what is added to the speed setpoint.
-    pub fn step(&mut self, config: &PulseConfig, reversal: Option<Direction>) -> Velocity {
-        if let Some(direction) = reversal {
-            *self = Self::Waiting {
-                cycles: config.start_delay_cycles,
-                direction,
-            };
+    pub fn step(&mut self, config: &PulseConfig, setpoint: Setpoint) -> Velocity {
+        match setpoint {
+            Setpoint::Moves => {}
+            Setpoint::Turns(direction) => {
+                *self = Self::Waiting {
+                    cycles: config.start_delay_cycles,
+                    direction,
+                };
+            }
+            Setpoint::Stopped => *self = Self::Idle,
         }
         match *self {
             Self::Idle => Velocity::ZERO,
@@ -115,15 +134,19 @@ mod tests {
             amplitude: Velocity(I20F12::from_num(100)),
             decay,
             start_delay_cycles: delay,
+            shortest_way: PositionError::ZERO,
         }
     }
+
+    const BACK: Setpoint = Setpoint::Turns(Direction::Negative);
+    const ON: Setpoint = Setpoint::Turns(Direction::Positive);
 
     #[test]
     fn the_pulse_is_the_papers_exponential_within_a_thousandth() {
         let mut state = PulseState::default();
         for cycle in 0..100_u32 {
-            let reversal = (cycle == 0).then_some(Direction::Negative);
-            let got: f64 = state.step(&config(0), reversal).0.to_num();
+            let setpoint = if cycle == 0 { BACK } else { Setpoint::Moves };
+            let got: f64 = state.step(&config(0), setpoint).0.to_num();
             let wanted = -100.0 * (-f64::from(cycle) / 20.0).exp();
             assert!(
                 (got - wanted).abs() < 0.005,
@@ -137,10 +160,8 @@ mod tests {
         let mut state = PulseState::default();
         let heights: Vec<f64> = (0..5)
             .map(|cycle| {
-                state
-                    .step(&config(3), (cycle == 0).then_some(Direction::Positive))
-                    .0
-                    .to_num()
+                let setpoint = if cycle == 0 { ON } else { Setpoint::Moves };
+                state.step(&config(3), setpoint).0.to_num()
             })
             .collect();
         assert_eq!(&heights[..3], [0.0; 3]);
@@ -150,18 +171,31 @@ mod tests {
     #[test]
     fn a_second_reversal_starts_a_new_pulse() {
         let mut state = PulseState::default();
-        state.step(&config(0), Some(Direction::Positive));
-        let second: f64 = state.step(&config(0), Some(Direction::Negative)).0.to_num();
+        state.step(&config(0), ON);
+        let second: f64 = state.step(&config(0), BACK).0.to_num();
         assert!((second + 100.0).abs() < 1e-3);
     }
 
     #[test]
     fn the_pulse_ends() {
         let mut state = PulseState::default();
-        state.step(&config(0), Some(Direction::Negative));
+        state.step(&config(0), BACK);
         for _ in 0..4000 {
-            state.step(&config(0), None);
+            state.step(&config(0), Setpoint::Moves);
         }
         assert_eq!(state, PulseState::Idle);
+    }
+
+    #[test]
+    fn a_stop_ends_the_pulse_and_one_that_waits() {
+        for delay in [0, 9] {
+            let mut state = PulseState::default();
+            state.step(&config(delay), BACK);
+            assert_eq!(
+                state.step(&config(delay), Setpoint::Stopped),
+                Velocity::ZERO
+            );
+            assert_eq!(state, PulseState::Idle);
+        }
     }
 }

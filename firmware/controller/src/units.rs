@@ -105,6 +105,12 @@ impl PositionError {
         Self(self.0.saturating_add(other.0))
     }
 
+    /// Difference, saturated.
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+
     /// Magnitude, saturated.
     #[must_use]
     pub fn magnitude(self) -> Self {

@@ -9,7 +9,7 @@ use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::friction::{
     Ahead, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS, LevelCurve,
-    LevelLag,
+    LevelLag, LevelPlace, LevelTuning,
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
@@ -57,6 +57,8 @@ const PER_VELOCITY: f64 = 16.0 / 370.0;
 const VISCOUS: f64 = 31.8;
 const LAG_PER_WAY: f64 = 1.0 / 1300.0;
 const LAG_PER_CYCLE: f64 = 1.0 / 6.0;
+/// Level along the travel, per 2²⁴ counts: at most a tenth on these paths.
+const PLACE: [f64; 2] = [0.8, -0.3];
 const AHEAD: f64 = 1.0;
 const DAMPING: f64 = 0.75;
 const WINDUP_CYCLES: f64 = 0.58;
@@ -77,6 +79,11 @@ fn config() -> FrictionConfig {
             per_way: I8F24::from_num(LAG_PER_WAY),
             per_cycle: I8F24::from_num(LAG_PER_CYCLE),
         },
+        place: LevelPlace {
+            linear: I8F24::from_num(PLACE[0]),
+            quadratic: I8F24::from_num(PLACE[1]),
+        },
+        tuning: LevelTuning::default(),
         viscous: VelocityGain(I20F12::from_num(VISCOUS)),
         torque: ahead(AHEAD),
         torque_after: ahead(AHEAD + 1.0),
@@ -106,6 +113,7 @@ fn reference(at: impl Fn(f64) -> f64, cycle: u32) -> Reference {
 #[derive(Default)]
 struct Twin {
     at: Option<f64>,
+    place: f64,
     elements: [f64; ELEMENTS],
     /// Behind the speed by the time, and that by the way.
     factor: Option<[f64; 2]>,
@@ -114,9 +122,12 @@ struct Twin {
 
 impl Twin {
     fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 2] {
+        let x = self.place / f64::from(1 << 24);
+        let scale = 1.0 + x * (PLACE[0] + x * PLACE[1]);
         let place = (velocity.abs() * PER_VELOCITY).min(16.0);
         let (from, factors) = ((place.floor() as usize).min(15), factors());
         let aim = factors[from] + (factors[from + 1] - factors[from]) * (place - from as f64);
+        let aim = scale * aim;
         let [level, acting] = self.factor.unwrap_or([aim; 2]);
         let level = level + (aim - level) * (cycles * LAG_PER_CYCLE).min(1.0);
         let acting = acting + (level - acting) * (way * LAG_PER_WAY).min(1.0);
@@ -148,6 +159,7 @@ impl Twin {
         let v: f64 = reference.next_velocity.0.to_num();
         let a: f64 = reference.acceleration.0.to_num();
         let way = self.at.map_or(0.0, |at| position + v - at);
+        self.place = position + v;
         let (torques, factor) = self.passed(v - 0.5 * a, v + 0.5 * a, 1.0, way);
         (self.elements, self.factor, self.at) = (torques, Some(factor), Some(position + v));
         let next = torques.iter().sum::<f64>() + VISCOUS * (v + 0.5 * a);
@@ -204,8 +216,9 @@ proptest! {
         }
     }
 
-    /// Whatever comes: its torque is at most that of all levels at their highest factor and the
-    /// damping and inertia of their change from one side to the other.
+    /// Whatever comes: its torque is at most that of all levels at their highest factor (1.3 by the
+    /// speed, 1.33 within these 84 mm) and the damping and inertia of their change from one side to
+    /// the other.
     #[test]
     fn no_reference_makes_it_panic_or_lets_an_element_pass_its_level(
         cycles in proptest::collection::vec((any::<i32>(), any::<i32>(), any::<i32>()), 1..60),
@@ -218,7 +231,7 @@ proptest! {
                 acceleration: Acceleration(I20F12::from_bits(acceleration)),
                 ..Reference::default()
             });
-            prop_assert!(law.held().0.to_num::<f64>().abs() <= 1.3 * LEVEL + 20.0);
+            prop_assert!(law.held().0.to_num::<f64>().abs() <= 1.75 * LEVEL + 20.0);
         }
     }
 }

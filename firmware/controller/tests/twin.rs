@@ -11,7 +11,9 @@ use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
-use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
+use controller::units::{
+    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
+};
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8, I56F8};
 use proptest::prelude::*;
@@ -65,6 +67,7 @@ fn config(source: PositionSource) -> Config {
             amplitude: Velocity(I20F12::from_num(PULSE_HEIGHT)),
             decay: I2F30::from_num(PULSE_DECAY),
             start_delay_cycles: 0,
+            shortest_way: PositionError::ZERO,
         },
         backlash: BacklashConfig::default(),
         coulomb: Torque::from_micro_nm(COULOMB as i32),

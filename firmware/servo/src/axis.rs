@@ -13,6 +13,7 @@
 use controller::reference::{Mode, Reference, ReferenceInput, ReferenceState};
 use controller::units::{Position, PositionError, Torque, Velocity};
 use controller::{Input, Output, State};
+use fixed::types::I32F32;
 use heapless::Vec;
 use protocol::Fault;
 use protocol::message::{Feedback, Setpoint};
@@ -166,6 +167,18 @@ impl Axis {
             .is_none_or(|reference| reference.standing)
     }
 
+    /// Refined factor on the levels of the friction model, 1e-6.
+    #[must_use]
+    pub fn refined_level_millionths(&self) -> i32 {
+        let wide: I32F32 = self.law.level().into();
+        wide.saturating_mul_int(1_000_000).saturating_to_num()
+    }
+
+    /// Other parameters hold from now on.
+    pub(crate) fn begin_set(&mut self) {
+        self.law.forget_level();
+    }
+
     /// Whether halt is commanded.
     #[must_use]
     pub const fn is_halted(&self) -> bool {
@@ -193,7 +206,7 @@ impl Axis {
             // on it.
             Some(_) => {
                 self.encoders.forget();
-                self.law.forget_friction();
+                self.law.forget_axis();
             }
             None => {}
         }
@@ -314,7 +327,7 @@ impl Axis {
             .held
             .filter(|_| preset.from_last)
             .unwrap_or(preset.torque);
-        self.law = State::holding(torque).with_friction(self.law.friction());
+        self.law = State::holding(torque).with_axis(self.law.axis());
         let Some(at) = self.encoders.position() else {
             return;
         };
@@ -338,9 +351,9 @@ impl Axis {
         self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
 
-    /// No torque: the law and the reference start anew; friction is where it was.
+    /// No torque: the law and the reference start anew; the axis is where it was.
     fn rest(&mut self) {
-        self.law = State::default().with_friction(self.law.friction());
+        self.law = State::default().with_axis(self.law.axis());
         self.track = None;
         self.last.torque = Torque::ZERO;
         self.last.reference = None;

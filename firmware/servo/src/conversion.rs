@@ -18,7 +18,7 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
-    Ahead, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag,
+    Ahead, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig};
@@ -51,6 +51,9 @@ const Q12: u64 = 1 << 12;
 const Q24: u64 = 1 << 24;
 const Q28: u64 = 1 << 28;
 const Q32: u64 = 1 << 32;
+const Q40: u64 = 1 << 40;
+/// Counts in which the friction model has places along the travel.
+const PLACE: u64 = 1 << 24;
 const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
 /// The friction model looks so many cycles ahead at most, with 24 fractional bits.
 const LONGEST_AHEAD: i32 = 8 << 24;
@@ -306,27 +309,24 @@ impl Reading<'_> {
     }
 
     fn pulse(&self) -> Result<PulseConfig, SetError> {
-        let delay = Parameter::PulseStartDelay;
-        let cycles =
-            Fraction::new(&[self.steps(delay)], &[self.period_us]).and_then(Fraction::nearest);
         Ok(PulseConfig {
             amplitude: self.motion(Parameter::PulseHeight, 1)?,
             decay: self.decay(Parameter::PulseTime),
-            start_delay_cycles: cycles
-                .and_then(|cycles| u16::try_from(cycles).ok())
-                .ok_or(SetError::TooLarge(delay))?,
+            start_delay_cycles: self.whole_cycles(Parameter::PulseStartDelay)?,
+            shortest_way: self.length(Parameter::PulseShortestWay, 1)?,
         })
     }
 
+    /// A length over a number.
+    fn length(&self, way: Parameter, over: u64) -> Result<PositionError, SetError> {
+        let numerator = [self.steps(way), COUNTS_PER_M, Q8];
+        let held = Self::held(way, &numerator, &[way.unit().per_si, over])?;
+        Ok(PositionError(I24F8::from_bits(held)))
+    }
+
     fn backlash(&self) -> Result<BacklashConfig, SetError> {
-        let gap = Parameter::BacklashGap;
-        let half = Self::held(
-            gap,
-            &[self.steps(gap), COUNTS_PER_M, Q8],
-            &[gap.unit().per_si, 2],
-        )?;
         Ok(BacklashConfig {
-            half_gap: PositionError(I24F8::from_bits(half)),
+            half_gap: self.length(Parameter::BacklashGap, 2)?,
             velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
@@ -355,6 +355,8 @@ impl Reading<'_> {
             elements,
             levels: self.levels()?,
             lag: self.level_lag()?,
+            place: self.level_place(),
+            tuning: self.level_tuning()?,
             viscous: self.viscous()?,
             torque: ahead_by(torque),
             torque_after: ahead_by(torque.saturating_add(I8F24::ONE)),
@@ -428,6 +430,58 @@ impl Reading<'_> {
             self.per_way(way)?
         };
         Ok(LevelLag { per_cycle, per_way })
+    }
+
+    /// Per 2²⁴ counts and its square; their rows keep them below 128. Below 2³¹ · 2⁷².
+    fn level_place(&self) -> LevelPlace {
+        let of = |place: Parameter, numerator: &[u64], denominator: &[u64]| {
+            let bits = Fraction::new(numerator, denominator).and_then(Fraction::nearest);
+            let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+            let size = I8F24::from_bits(bits.unwrap_or(i32::MAX));
+            if self.raw(place) < 0 {
+                size.saturating_neg()
+            } else {
+                size
+            }
+        };
+        let (slope, bend) = (Parameter::LevelSlope, Parameter::LevelBend);
+        LevelPlace {
+            linear: of(
+                slope,
+                &[self.steps(slope), PLACE, Q24],
+                &[slope.unit().per_si, COUNTS_PER_M],
+            ),
+            quadratic: of(
+                bend,
+                &[self.steps(bend), PLACE, PLACE, Q24],
+                &[bend.unit().per_si, COUNTS_PER_M, COUNTS_PER_M],
+            ),
+        }
+    }
+
+    /// Share over twice the level, per µN·m with 40 fractional bits. Where the level is so low that
+    /// it does not fit, a turn tells less.
+    fn level_tuning(&self) -> Result<LevelTuning, SetError> {
+        let (share, settling) = (Parameter::LevelTuning, Parameter::LevelSettling);
+        let levels = Parameter::FRICTION_LEVELS.iter();
+        let level = levels.fold(0_u64, |sum, place| sum.saturating_add(self.steps(*place)));
+        let numerator = [self.steps(share), Q40];
+        let denominator = [share.unit().per_si, 2, level.max(1)];
+        let per = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
+        let per = per.and_then(|per| i32::try_from(per).ok());
+        Ok(LevelTuning {
+            per_micro_nm: per.unwrap_or(i32::MAX),
+            settling_cycles: self.whole_cycles(settling)?,
+            settling_way: self.length(Parameter::LevelSettlingWay, 1)?,
+        })
+    }
+
+    /// A time in whole cycles, to nearest.
+    fn whole_cycles(&self, time: Parameter) -> Result<u16, SetError> {
+        let cycles =
+            Fraction::new(&[self.steps(time)], &[self.period_us]).and_then(Fraction::nearest);
+        let cycles = cycles.and_then(|cycles| u16::try_from(cycles).ok());
+        cycles.ok_or(SetError::TooLarge(time))
     }
 
     /// Millionths as binary fractions; their rows keep them below 8.
@@ -781,6 +835,10 @@ mod tests {
                 Parameter::PulseStartDelay,
                 si(Parameter::PulseStartDelay) / t,
             ),
+            (
+                Parameter::PulseShortestWay,
+                si(Parameter::PulseShortestWay) * 1.0e8 * 256.0,
+            ),
         ]
     }
 
@@ -801,6 +859,7 @@ mod tests {
             i64::from(reference.step.0.to_bits()),
             (i64::from(settings.way.whole) << 32) + i64::from(settings.way.fraction),
             i64::from(settings.config.pulse.start_delay_cycles),
+            i64::from(settings.config.pulse.shortest_way.0.to_bits()),
         ]
     }
 
@@ -883,7 +942,7 @@ mod tests {
         (any::<i32>(), 0..31_u32).prop_map(move |(value, shift)| (value >> shift).clamp(min, max))
     }
 
-    const CONVERTED: [Parameter; 22] = [
+    const CONVERTED: [Parameter; 23] = [
         Parameter::PositionGain,
         Parameter::Inertia,
         Parameter::VelocityBandwidth,
@@ -898,6 +957,7 @@ mod tests {
         Parameter::PulseHeight,
         Parameter::PulseTime,
         Parameter::PulseStartDelay,
+        Parameter::PulseShortestWay,
         Parameter::BacklashGap,
         Parameter::VelocityLimit,
         Parameter::AccelerationLimit,

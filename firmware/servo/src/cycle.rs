@@ -143,6 +143,7 @@ impl Servo {
         if let Some(settings) = self.committed.take() {
             self.timing.set_period(settings.period_us);
             self.active = Some(settings);
+            self.axis.begin_set();
         }
     }
 

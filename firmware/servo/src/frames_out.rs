@@ -211,6 +211,7 @@ impl Servo {
             motor_position: at.motor.0.saturating_to_num(),
             load_position: at.load.0.saturating_to_num(),
             following_error: self.axis.last.following_error.0.to_num(),
+            refined_level: self.axis.refined_level_millionths(),
             counts: self.counts(),
         }
     }

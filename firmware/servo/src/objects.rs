@@ -39,6 +39,8 @@ const MICRO_NM: Unit = unit("uN m", 1_000_000);
 const MILLI_NM: Unit = unit("mN m", 1_000);
 const VISCOUS: Unit = unit("1e-6 N m/(m/s)", 1_000_000);
 const WINDUP: Unit = unit("0.01 nm/(N m)", 100_000_000_000);
+const MILLIONTH_PER_M: Unit = unit("1e-6 /m", 1_000_000);
+const MILLIONTH_PER_M2: Unit = unit("1e-6 /m^2", 1_000_000);
 const TENTH_NANOMETRE: Unit = unit("0.1 nm", 10_000_000_000);
 const NANOMETRE: Unit = unit("nm", 1_000_000_000);
 const COUNT: Unit = unit("10 nm", 100_000_000);
@@ -210,6 +212,8 @@ const WINDOW: (i32, i32) = (1, 8_000_000);
 const MISSES: (i32, i32) = (0, 100);
 /// A deceleration of zero would never stop.
 const DECELERATION: (i32, i32) = (1, i32::MAX);
+/// A slope of the level over the travel.
+const SLOPE: (i32, i32) = (-700_000_000, 700_000_000);
 /// Cycle times that the bus and the boards are made for, µs: 10 kHz to 50 Hz.
 pub const PERIOD_US: (i32, i32) = (100, 20_000);
 const BRAKE_US: (i32, i32) = (0, 2_000_000);
@@ -234,6 +238,7 @@ parameters! {
     PulseHeight = (0x2110, 1), "reversal pulse height", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
     PulseTime = (0x2110, 2), "reversal pulse time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
     PulseStartDelay = (0x2110, 3), "reversal pulse start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    PulseShortestWay = (0x2110, 4), "way after which a reversal has its pulse", TENTH_NANOMETRE, (0, 50_000_000), 200_000;
     BacklashGap = (0x2111, 0), "backlash to compensate, the whole gap", TENTH_NANOMETRE, (0, 100_000_000), 0;
     CoulombTorque = (0x2112, 0), "Coulomb feedforward", MICRO_NM, SIGNED_TORQUE, 0;
     FrictionLevel1 = (0x2150, 1), "friction element 1, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
@@ -282,6 +287,11 @@ parameters! {
     FrictionDamping = (0x2155, 3), "damping of presliding over its stiffness", MICROSECOND, (0, 100_000), 0;
     Windup = (0x2156, 1), "wind-up of the screw per torque of friction", WINDUP, POSITIVE, 0;
     MotorInertia = (0x2156, 2), "inertia of the motor alone, for the wind-up", INERTIA, POSITIVE, 0;
+    LevelSlope = (0x2158, 1), "friction levels change along the travel, per way from position zero", MILLIONTH_PER_M, SLOPE, 0;
+    LevelBend = (0x2158, 2), "and per square of that way", MILLIONTH_PER_M2, (-i32::MAX, i32::MAX), 0;
+    LevelTuning = (0x2159, 1), "share of what a turn tells that the friction level is refined by (0 off)", MILLIONTH, (0, 1_000_000), 0;
+    LevelSettling = (0x2159, 2), "time from a turn until it tells that", MICROSECOND, (0, 1_000_000), 120_000;
+    LevelSettlingWay = (0x2159, 3), "way from a turn until it tells that", TENTH_NANOMETRE, (0, 50_000_000), 1_000_000;
     VelocityLimit = (0x607F, 0), "velocity limit of the axis", MICROMETRE_PER_S, POSITIVE, 0;
     AccelerationLimit = (0x60C5, 0), "acceleration limit of the axis", MICROMETRE_PER_S2, POSITIVE, 0;
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;
@@ -361,11 +371,13 @@ pub const MOTOR_POSITION: Address = Address::new(0x2201, 1);
 pub const LOAD_POSITION: Address = Address::new(0x2201, 2);
 /// What else there is to know about the last fault: the four bytes of its EMCY after code, counter.
 pub const FAULT_DETAIL: Address = Address::new(0x2202, 0);
+/// Factor on the levels of friction that turns have refined, 1e-6.
+pub const REFINED_LEVEL: Address = Address::new(0x2159, 4);
 /// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
 
 /// Objects beside the parameters that can be read, with what they say.
-pub const READINGS: [(Address, &str); 26] = [
+pub const READINGS: [(Address, &str); 27] = [
     (DEVICE_TYPE, "device type"),
     (ERROR_REGISTER, "error register"),
     (HEARTBEAT_PERIOD, "heartbeat period, ms"),
@@ -394,6 +406,10 @@ pub const READINGS: [(Address, &str); 26] = [
     ),
     (LOAD_POSITION, "load scale, 10 nm"),
     (FAULT_DETAIL, "detail of the last fault"),
+    (
+        REFINED_LEVEL,
+        "factor on the friction levels that turns have refined, 1e-6; a commit sets it to one",
+    ),
     (
         COMMIT,
         "number of commits; writing \"cmit\" (0x74696D63) commits",

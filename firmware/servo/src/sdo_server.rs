@@ -40,6 +40,8 @@ pub struct Readings {
     pub load_position: i32,
     /// Following error, 10 nm.
     pub following_error: i32,
+    /// Refined factor on the levels of friction, 1e-6.
+    pub refined_level: i32,
     /// Counts since reset.
     pub counts: Counts,
 }
@@ -241,6 +243,7 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
         objects::MOTOR_POSITION => Expedited::i32(readings.motor_position),
         objects::LOAD_POSITION => Expedited::i32(readings.load_position),
         objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
+        objects::REFINED_LEVEL => Expedited::i32(readings.refined_level),
         Address {
             index: objects::DIAGNOSTICS_INDEX,
             subindex,

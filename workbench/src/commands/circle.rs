@@ -26,9 +26,10 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
         place,
         interrupt: interrupt.clone(),
     };
-    let compensation = compensation_of(arguments, &stand)?;
+    let compensation = self_tuning(arguments, compensation_of(arguments, &stand)?)?;
     let log = arguments.candump.as_deref();
-    let run = circle_test::run(&stand, &circle, &compensation, log)?;
+    let turns = arguments.self_tune;
+    let run = circle_test::run_after(&stand, &circle, turns, &compensation, log)?;
     console::print_circle(&run.report);
     if let Some(path) = &arguments.json {
         write(path, &json(&run.report)?)?;
@@ -69,6 +70,22 @@ fn compensation_of(
             }
         }
     }
+}
+
+/// The same, refined by the drives where that was asked for.
+fn self_tuning(
+    arguments: &cli::CircleArguments,
+    compensation: Vec<AxisCompensation>,
+) -> Outcome<Vec<AxisCompensation>> {
+    if arguments.self_tune == 0 {
+        return Ok(compensation);
+    }
+    let axes = compensation.iter().map(AxisCompensation::self_tuning);
+    axes.collect::<Option<_>>().ok_or_else(|| {
+        Failure::new(
+            "--self-tune: needs --compensation model; drives refine a model of friction alone",
+        )
+    })
 }
 
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {

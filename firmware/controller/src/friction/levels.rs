@@ -97,6 +97,11 @@ impl Factor {
     }
 }
 
+/// Product of two factors, saturated.
+pub(super) fn times(one: I8F24, other: I8F24) -> I8F24 {
+    I8F24::saturating_from_num(one.wide_mul(other))
+}
+
 /// Between two factors, at a share of the way, the whole of it at most.
 fn between(from: I8F24, to: I8F24, share: I8F24) -> I8F24 {
     let step = to.saturating_sub(from).wide_mul(share.min(I8F24::ONE));
