@@ -75,7 +75,7 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     let burst = |key: &str| summary[key]["peak_max_um"].as_f64().unwrap();
     let reduction = summary["burst_reduction_percent"].as_f64().unwrap();
     assert!(reduction >= 97.0, "{reduction} %");
-    assert_eq!(summary["method"], "model");
+    assert_eq!(summary["method"], "model + self-tuning");
     let tried = summary["tried"].as_array().unwrap();
     let pulse = &tried[0];
     assert_eq!(pulse["method"], "pulse");

@@ -61,7 +61,7 @@ fn parameters(reversal: &Compensation) -> String {
             1.0e3 * pulse.start_delay_s
         ),
         Compensation::Model(model) => format!(
-            "model of {:.0} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm",
+            "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm",
             model.level_n(),
             model.level_n() * model.factor[0],
             model.viscous_n_s_per_m,

@@ -5,10 +5,11 @@
 //! ```
 //!
 //! [`coulomb_force`] and [`friction_model`] are other ways to a compensation: one force per axis,
-//! or a model, from a record.
+//! or a model, from a record; [`self_tuning`] lets the drives refine that.
 
 pub mod coulomb_force;
 pub mod friction_model;
+pub mod self_tuning;
 mod start_values;
 mod tuning_circles;
 mod valley;

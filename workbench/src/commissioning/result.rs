@@ -9,7 +9,7 @@ use super::feeds::{AtFeed, less_percent};
 use super::fitness::Oscillation;
 use super::reversal_curves::six_curves;
 use super::reversal_run::reversal_rows;
-use super::trials::{TrialSummary, Trials};
+use super::trials::{SELF_TUNED, TrialSummary, Trials};
 use crate::ballbar::Point;
 use crate::circle_test::{CircleReport, CircleRun};
 use crate::compensation::AxisCompensation;
@@ -239,6 +239,7 @@ fn in_words(method: &str) -> &str {
     match method {
         "pulse" => "the tuned pulse",
         "model" => "the model of friction",
+        SELF_TUNED => "the model of friction, refined by the drives",
         _ => "no compensation, since none helps",
     }
 }

@@ -83,10 +83,16 @@ pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Ou
     }
     progress::step("the model of friction on a circle");
     if let Some(tuned) = tuning::model(stand, circle, results)? {
+        progress::step("the drives refine the model on circles at several feeds");
+        let refined = tuning::self_tuning::refined(stand, circle, &tuned)?;
         all.push(Trial {
             method: "model",
             tuned,
         });
+        all.extend(refined.map(|tuned| Trial {
+            method: SELF_TUNED,
+            tuned,
+        }));
     }
     for trial in &all {
         println!("{}:", trial.method);
@@ -95,16 +101,30 @@ pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Ou
     Ok(chosen(all, stand.uncompensated()))
 }
 
+/// The name of a model that the drives refine.
+pub const SELF_TUNED: &str = "model + self-tuning";
+
+/// A model that the drives refine follows slow change, and may leave so much more than the best, µm.
+const WORTH_UM: f64 = 0.2;
+
 /// What leaves more than this share of the burst does not help: noise alone does as much.
 const LEFT_AT_MOST: f64 = 0.9;
 
-/// The one that leaves the smallest burst, where there is one and it leaves less of it.
+/// The one that leaves the smallest burst, where there is one and it leaves less of it; a model that
+/// is refined may leave a little more.
 fn chosen(all: Vec<Trial>, nothing: Vec<AxisCompensation>) -> Trials {
     let helps = |trial: &&Trial| {
         let [before, after] = trial.tuned.largest_um();
         before >= LEAST_PEAK_UM && after < LEFT_AT_MOST * before
     };
-    let left = |trial: &&Trial| trial.tuned.largest_um()[1];
+    let left = |trial: &&Trial| {
+        let worth_um = if trial.method == SELF_TUNED {
+            WORTH_UM
+        } else {
+            0.0
+        };
+        trial.tuned.largest_um()[1] - worth_um
+    };
     let best = all
         .iter()
         .filter(helps)
@@ -143,6 +163,10 @@ mod tests {
         assert_eq!(trials.method, "model");
         assert_eq!(trials.taken, trials.all[1].tuned.compensation);
         assert_eq!(trials.circles(), 4);
+        for (refined_um, method) in [(3.1, SELF_TUNED), (3.3, "model")] {
+            let both = vec![trial("model", 1.0, 3.0), trial(SELF_TUNED, 2.0, refined_um)];
+            assert_eq!(chosen(both, Vec::new()).method, method);
+        }
         let worse = vec![trial("pulse", 1.0, 9.5), trial("model", 2.0, 30.0)];
         let nothing = vec![AxisCompensation::default()];
         let trials = chosen(worse, nothing.clone());

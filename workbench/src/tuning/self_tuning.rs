@@ -1,0 +1,104 @@
+//! A model whose levels of friction the drives have refined themselves, on circles at several
+//! feeds.
+//!
+//! A drive refines its level at every turn, by its own signals. Here it is only moved, and asked in
+//! the end what it made of the level; that goes into the model.
+
+use super::tuning_circles::TuningCircles;
+use super::{TUNING_RUN, Tuned};
+use crate::compensation::{AxisCompensation, Compensation, Model};
+use crate::error::Outcome;
+use crate::session::{Session, Stand};
+use crate::trajectory::Circle;
+use crate::trajectory::circle_limits::check_circle;
+
+/// Feeds as shares of that of the circle, and turns at each. The slowest comes last: fast turns
+/// leave the level up to a fortieth too low.
+const FEEDS: [(f64, u32); 3] = [(4.0, 3), (1.0, 3), (0.25, 2)];
+
+/// A tuned model, refined by the drives, which go on doing so; `None` where it is no model.
+///
+/// # Errors
+/// Where a circle cannot be run, or the operator interrupts.
+pub fn refined(stand: &Stand<'_>, circle: &Circle, model: &Tuned) -> Outcome<Option<Tuned>> {
+    let axes = model.compensation.iter();
+    let begin: Option<Vec<_>> = axes.map(AxisCompensation::self_tuning).collect();
+    let Some(begin) = begin else {
+        return Ok(None);
+    };
+    let session = stand.connect(TUNING_RUN)?;
+    session.perform(&begin, None, |session| {
+        let turns = move_along(stand, circle, session)?;
+        let levels = session.refined_levels()?;
+        let pairs = begin.iter().zip(levels);
+        let compensation: Vec<AxisCompensation> =
+            pairs.map(|(axis, level)| with_level(axis, level)).collect();
+        let mut circles = TuningCircles::on(session, circle);
+        let after_um = circles.run(&compensation)?.bursts_um;
+        Ok(Some(Tuned {
+            compensation,
+            before_um: model.before_um,
+            after_um,
+            circles: turns + circles.count,
+        }))
+    })
+}
+
+/// Circles at all feeds that the machine can do; gives the turns.
+fn move_along(stand: &Stand<'_>, circle: &Circle, session: &mut Session<'_>) -> Outcome<u32> {
+    let mut all = 0;
+    for (share, turns) in FEEDS {
+        let other = Circle {
+            feed_m_per_s: share * circle.feed_m_per_s,
+            turns,
+            ..*circle
+        };
+        if check_circle(stand.machine, &other).is_ok() {
+            session.circle(&other)?;
+            all += turns;
+        }
+    }
+    Ok(all)
+}
+
+/// The same with all levels of the model times a factor.
+fn with_level(axis: &AxisCompensation, factor: f64) -> AxisCompensation {
+    let Compensation::Model(model) = &axis.reversal else {
+        return axis.clone();
+    };
+    let model = Model {
+        level_n: model.level_n.map(|level_n| factor * level_n),
+        ..**model
+    };
+    AxisCompensation {
+        reversal: Compensation::Model(Box::new(model)),
+        ..axis.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_scaled_and_nothing_else() {
+        let model = Model {
+            level_n: [10.0; crate::compensation::ELEMENTS],
+            self_tuning: 0.25,
+            viscous_n_s_per_m: 7.0,
+            ..Model::OFF
+        };
+        let axis = AxisCompensation {
+            reversal: Compensation::Model(Box::new(model)),
+            backlash_m: 1.0e-6,
+        };
+        let scaled = with_level(&axis, 0.5);
+        let Compensation::Model(own) = &scaled.reversal else {
+            panic!("a model");
+        };
+        assert_eq!(own.level_n(), 50.0);
+        let level_n = model.level_n;
+        assert_eq!(Model { level_n, ..**own }, model);
+        assert_eq!(scaled.backlash_m, axis.backlash_m);
+    }
+}
