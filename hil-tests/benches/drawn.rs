@@ -3,14 +3,18 @@
 //!
 //! A machine is the reference machine with its masses, screw, friction, Stribeck fall, presliding
 //! and current lag each drawn between half and one and a half times; every third has Maxwell slip
-//! of 4 to 12 uneven elements for its bristle, and a
-//! Stribeck fall that lags. Its loop gains are in proportion to its own inertia.
-//! It is commissioned as a user would: loops first, records, identification, model. The table has
-//! the largest burst, µm, without → with at R 100 F 500, 2000 and 8000, what identification named,
-//! and what was told of the loops.
+//! of 4 to 12 uneven elements for its bristle, and a Stribeck fall that lags. Its loop gains are in
+//! proportion to its own inertia. Machines from 101 on have more at once: friction that differs by
+//! direction, a ripple of 30 N, and every third of them a gap of 3 to 8 µm inside the loop; of these
+//! one that oscillates is drawn again.
+//!
+//! It is commissioned as a user would: loops first, records, identification, model, and the model
+//! refined by the drives. The table has the largest burst, µm, without → with the model → refined
+//! at R 100 F 500, 2000 and 8000, what identification named, and what was told of the loops.
 
 use std::ops::RangeInclusive;
 
+use axis_model::TorqueRipple;
 use hil_tests::on_all_cores;
 use hil_tests::rig::circle;
 use plant_sim::Machine;
@@ -36,6 +40,17 @@ const OTHER_STRUCTURE: u64 = 3;
 const WAYS_M: (f64, f64) = (2.0e-6, 4.0e-5);
 /// Lag of the Stribeck fall beside them, s: without one elements chatter on it.
 const LAG_S: f64 = 3.0e-3;
+/// Machines from this seed on have more than friction, masses and screw.
+const WITH_MORE: u64 = 101;
+/// Of those every so many have a gap, of so many metres.
+const WITH_GAP: u64 = 3;
+const GAP_M: RangeInclusive<f64> = 3.0e-6..=8.0e-6;
+/// Friction differs by direction by so much at most.
+const ASYMMETRY: RangeInclusive<f64> = -0.15..=0.15;
+const RIPPLE_N: f64 = 30.0;
+/// From one draw of a machine to the next.
+const REDRAWN: u64 = 10_000;
+
 /// Radius of the circles, mm.
 const RADIUS_MM: f64 = 100.0;
 /// Their feeds, mm/min.
@@ -48,10 +63,10 @@ fn main() {
         text.and_then(|text| text.parse().ok()).unwrap_or(usual)
     };
     let (machines, first) = (number(MACHINES), number(1));
-    let seeds: Vec<u64> = (first..first + machines).collect();
+    let numbers: Vec<u64> = (first..first + machines).collect();
     println!("| machine | friction | F 500 | F 2000 | F 8000 | named | loops |");
     println!("|---|---|---|---|---|---|---|");
-    for line in on_all_cores(&seeds, |seed| of_seed(*seed)) {
+    for line in on_all_cores(&numbers, |number| of_number(*number)) {
         println!("{line}");
     }
 }
@@ -70,15 +85,23 @@ impl Draw {
     }
 }
 
-fn drawn(seed: u64) -> Machine {
+/// The machine of a number, `draw` draws later.
+fn drawn(number: u64, draw: u64) -> Machine {
+    let seed = number + REDRAWN * draw;
     let mut machine = Machine::reference();
     machine.seed = seed;
     let mut axis = machine.axes[0].clone();
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     spread(&mut axis, &mut draw);
-    if seed.is_multiple_of(OTHER_STRUCTURE) {
+    if number.is_multiple_of(OTHER_STRUCTURE) {
         axis.actual.law = slip(axis.actual.sliding.coulomb_n, &mut draw);
         axis.actual.sliding.stribeck_lag_s = LAG_S * draw.between(SPREAD);
+    }
+    if number >= WITH_MORE {
+        add_more(&mut axis, &mut draw);
+        if number % WITH_GAP == 1 {
+            axis.actual.mechanics.backlash_m = draw.between(GAP_M);
+        }
     }
     for (place, name) in ["X", "Y"].into_iter().enumerate() {
         machine.axes[place] = MachineAxis {
@@ -87,6 +110,20 @@ fn drawn(seed: u64) -> Machine {
         };
     }
     machine
+}
+
+/// Friction that differs by direction, and a ripple of the torque.
+fn add_more(axis: &mut MachineAxis, draw: &mut Draw) {
+    axis.actual.sliding.coulomb_asymmetry = draw.between(ASYMMETRY);
+    axis.actual.sliding.viscous_asymmetry = draw.between(ASYMMETRY);
+    let ripple = TorqueRipple {
+        amplitude: RIPPLE_N,
+        order: Some(draw.between(1.0..=8.99).floor()),
+        period: None,
+        phase: Some(draw.between(0.0..=6.0)),
+    };
+    let added = axis.actual.effects.add(ripple);
+    added.expect("the plant has a ripple");
 }
 
 fn spread(axis: &mut MachineAxis, draw: &mut Draw) {
@@ -134,61 +171,87 @@ fn slip(level_n: f64, draw: &mut Draw) -> Law {
     }
 }
 
-fn of_seed(seed: u64) -> String {
-    let machine = drawn(seed);
-    let law = match &machine.axes[0].actual.law {
+fn of_number(number: u64) -> String {
+    let mut draw = 0;
+    loop {
+        let machine = drawn(number, draw);
+        let stand = Stand::in_process(&machine);
+        let loops = fitness::oscillations(&stand);
+        let is_unfit = match &loops {
+            Ok(found) => found.iter().any(fitness::Oscillation::is_unfit),
+            Err(_) => true,
+        };
+        if is_unfit && number >= WITH_MORE {
+            draw += 1;
+            continue;
+        }
+        let called = called(&machine.axes[0], draw);
+        let told = match &loops {
+            Ok(found) => told(found),
+            Err(failure) => failure.to_string(),
+        };
+        if is_unfit {
+            return format!("| {number} | {called} | not commissioned | | | | {told} |");
+        }
+        let (named, models) = commissioned(&stand);
+        let [slow, usual, fast] = FEEDS.map(|feed| cell(&stand, feed, &models));
+        return format!("| {number} | {called} | {slow} | {usual} | {fast} | {named} | {told} |");
+    }
+}
+
+/// What a machine has.
+fn called(axis: &MachineAxis, draw: u64) -> String {
+    let mut words = match &axis.actual.law {
         Law::MaxwellSlip { share, .. } => format!("Maxwell slip, {} elements", share.len()),
         _ => "LuGre".into(),
     };
-    let stand = Stand::in_process(&machine);
-    let loops = match fitness::oscillations(&stand) {
-        Ok(found) => found,
-        Err(failure) => return format!("| {seed} | {law} | {failure} | | | | |"),
-    };
-    let told: Vec<String> = loops
-        .iter()
-        .map(|own| {
-            format!(
-                "{}: {:.0} Hz, {:.1} µm",
-                own.axis, own.frequency_hz, own.amplitude_um
-            )
-        })
-        .collect();
-    let told = told.join("; ");
-    if loops.iter().any(fitness::Oscillation::is_unfit) {
-        return format!("| {seed} | {law} | not commissioned | | | | {told} |");
+    let gap_um = 1.0e6 * axis.actual.mechanics.backlash_m;
+    if gap_um > 0.0 {
+        words += &format!(", gap {gap_um:.1} µm");
     }
-    let (named, model) = commissioned(&stand);
-    let cells = FEEDS.map(|feed| cell(&stand, feed, model.as_deref()));
-    format!(
-        "| {seed} | {law} | {} | {} | {} | {named} | {told} |",
-        cells[0], cells[1], cells[2]
-    )
+    if draw > 0 {
+        words += &format!(", draw {}", draw + 1);
+    }
+    words
 }
 
-/// What was named on the first axis, and the model of both; `None` where there is none.
-fn commissioned(stand: &Stand<'_>) -> (String, Option<Vec<AxisCompensation>>) {
+fn told(loops: &[fitness::Oscillation]) -> String {
+    let each = loops.iter().map(|own| {
+        let (hz, um) = (own.frequency_hz, own.amplitude_um);
+        format!("{}: {hz:.0} Hz, {um:.1} µm", own.axis)
+    });
+    each.collect::<Vec<_>>().join("; ")
+}
+
+/// What was named on the first axis, and the models of both: of the records, and refined.
+fn commissioned(stand: &Stand<'_>) -> (String, Vec<Vec<AxisCompensation>>) {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     identified_axes::record(stand, folder.path()).expect("the axes can be recorded");
     let results = identified_axes::identify(stand, folder.path()).expect("records can be fitted");
     let report = &results[0].report;
     let named = format!("{} ({})", report.found.join(", "), report.verdict);
-    let model = tuning::model(stand, &circle(RADIUS_MM, FEEDS[1]), &results)
-        .expect("the circle can be run");
-    (named, model.map(|tuned| tuned.compensation))
+    let usual = circle(RADIUS_MM, FEEDS[1]);
+    let model = tuning::model(stand, &usual, &results).expect("the circle can be run");
+    let refined = model.as_ref().and_then(|model| {
+        let refined = tuning::self_tuning::refined(stand, &usual, model);
+        refined.expect("the circles can be run")
+    });
+    let models = model.into_iter().chain(refined);
+    (named, models.map(|tuned| tuned.compensation).collect())
 }
 
-fn cell(stand: &Stand<'_>, feed: f64, model: Option<&[AxisCompensation]>) -> String {
+fn cell(stand: &Stand<'_>, feed: f64, models: &[Vec<AxisCompensation>]) -> String {
     let burst_um = |compensation: &[AxisCompensation]| {
         let run = circle_test::run(stand, &circle(RADIUS_MM, feed), compensation, None);
         run.map(|run| run.report.figures.peak_max_um)
     };
-    let with = model.map_or_else(|| burst_um(&stand.uncompensated()), burst_um);
-    match (burst_um(&stand.uncompensated()), with) {
-        (Ok(before), Ok(after)) => format!(
-            "{before:.1} → {after:.2} ({:.1} %)",
-            100.0 * (1.0 - after / before)
-        ),
-        (Err(failure), _) | (_, Err(failure)) => failure.to_string(),
-    }
+    let none = match burst_um(&stand.uncompensated()) {
+        Ok(none_um) => none_um,
+        Err(failure) => return failure.to_string(),
+    };
+    let with = models.iter().map(|model| match burst_um(model) {
+        Ok(um) => format!(" → {um:.2} ({:.1} %)", 100.0 * (1.0 - um / none)),
+        Err(failure) => format!(" → {failure}"),
+    });
+    format!("{none:.1}{}", with.collect::<String>())
 }

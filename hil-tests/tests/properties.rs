@@ -3,9 +3,9 @@
 //!
 //! The real servo is closed with the real plant node, and with a point mass that answers SYNC.
 //! Random masters send control words, NMT commands, parameters and commits (limits lowered in
-//! motion), setpoints that jump, SYNCs that stay away or come with another counter; the ports lose,
-//! double, delay and corrupt. A witness inside the servo's port sees every frame that the servo
-//! sees and looks at it after each event.
+//! motion, another compensation in motion), setpoints that jump, SYNCs that stay away or come with
+//! another counter; the ports lose, double, delay and corrupt. A witness inside the servo's port
+//! sees every frame that the servo sees and looks at it after each event.
 //!
 //! | asserted in every cycle | bound |
 //! |---|---|
@@ -94,6 +94,10 @@ struct Seen {
     overruns: u64,
     sets: u64,
     offsets: u64,
+    /// Cycles with a friction model.
+    modelled: u64,
+    /// Of them those with a refined level.
+    refined: u64,
     faults: [u32; 32],
 }
 
@@ -224,6 +228,10 @@ impl Witness {
         let drive = *self.servo.drive();
         self.seen.cycles += cycles;
         self.seen.bridged += u64::from(self.servo.bridged() != (0, 0));
+        let settings = self.servo.settings();
+        let has_model = settings.is_some_and(|settings| settings.config.friction.is_some());
+        self.seen.modelled += u64::from(has_model);
+        self.seen.refined += u64::from(self.servo.refined_level_millionths() != 1_000_000);
         if drive == Drive::OperationEnabled {
             assert!(
                 self.stage_says_enabled,
@@ -651,7 +659,8 @@ impl Chaos {
     }
 
     fn change_parameters(&mut self) {
-        match self.dice.below(10) {
+        match self.dice.below(14) {
+            10.. => self.change_compensation(),
             0 => self.write_within(Parameter::VelocityLimit, 20_000.0, 500_000.0),
             1 | 2 => {
                 let limit = self.dice.within(1.0e6, 8.0e6) as i32;
@@ -689,6 +698,54 @@ impl Chaos {
             }
         }
         self.commit();
+    }
+
+    /// Another method, or another size of one, in whatever motion.
+    fn change_compensation(&mut self) {
+        match self.dice.below(5) {
+            0 => {
+                self.write_within(Parameter::PulseHeight, -5.0e7, 5.0e7);
+                self.write_within(Parameter::PulseTime, 0.0, 2.0e8);
+                self.write_within(Parameter::PulseStartDelay, 0.0, 5.0e4);
+                self.write_within(Parameter::PulseShortestWay, 0.0, 1.0e6);
+            }
+            1 => self.write_within(Parameter::CoulombTorque, -2.0e6, 2.0e6),
+            2 => {
+                for level in Parameter::FRICTION_LEVELS {
+                    self.write(level, 0);
+                }
+            }
+            _ => self.change_model(),
+        }
+    }
+
+    fn change_model(&mut self) {
+        for _ in 0..3 {
+            let element = self.dice.below(10) as usize;
+            self.write_within(Parameter::FRICTION_LEVELS[element], 0.0, 1.0e6);
+            self.write_within(Parameter::FRICTION_WAYS[element], 1.0e3, 1.0e6);
+        }
+        let place = self.dice.below(17) as usize;
+        self.write_within(Parameter::LEVEL_FACTORS[place], 0.0, 3.9e6);
+        for (parameter, low, high) in [
+            (Parameter::LevelSpan, 0.0, 1.0e5),
+            (Parameter::LevelLagWay, 0.0, 1.0e6),
+            (Parameter::LevelLagTime, 0.0, 2.0e4),
+            (Parameter::ViscousTorque, 0.0, 1.0e7),
+            (Parameter::FrictionAhead, 0.0, 5.0e3),
+            (Parameter::WindupAhead, -5.0e3, 5.0e3),
+            (Parameter::FrictionDamping, 0.0, 5.0e3),
+            (Parameter::Windup, 0.0, 1.0e6),
+            (Parameter::MotorInertia, 0.0, 1.0e7),
+            (Parameter::LevelSlope, -7.0e6, 7.0e6),
+            (Parameter::LevelBend, -4.0e7, 4.0e7),
+            (Parameter::LevelTuning, 0.0, 1.0e6),
+            (Parameter::LevelSettling, 0.0, 1.0e5),
+        ] {
+            if self.dice.once_in(3) {
+                self.write_within(parameter, low, high);
+            }
+        }
     }
 
     fn write_within(&mut self, parameter: Parameter, low: f64, high: f64) {
@@ -748,6 +805,7 @@ fn expect_all(seen: &Seen, ticks: u64) {
         "hardly ever enabled or moving: {seen:?}"
     );
     assert!(seen.sets > ticks / 2000 && seen.bridged > 0, "{seen:?}");
+    assert!(seen.modelled > ticks / 10, "{seen:?}");
     // A gap that is compensated, and a limit that is lowered while the axis is beyond it, are rare.
     let overrun = seen.offsets > 0
         && seen.overruns > 0
@@ -759,11 +817,11 @@ fn expect_all(seen: &Seen, ticks: u64) {
 }
 
 /// Ticks in which everything happens at least once.
-const RARE: u64 = 40_000;
+const RARE: u64 = 120_000;
 
 /// Seed and ticks of each run.
 fn runs() -> Vec<(u64, u64)> {
-    let ticks = Scope::now().pick(10_000, 40_000, 1_000_000);
+    let ticks = Scope::now().pick(10_000, 120_000, 1_000_000);
     let seeds = Scope::now().rows("seeds", &[2, 1, 3, 4, 5], 1, 1);
     seeds.iter().map(|seed| (*seed, ticks)).collect()
 }

@@ -125,6 +125,10 @@ impl Servo {
     fn open(&mut self, counter: SyncCounter, in_sync: bool) {
         if self.inbox.is_open() {
             self.close(true);
+            if self.timing.began_us().is_none() {
+                // A command of NMT waited for the end of that cycle: this one is not the node's.
+                return;
+            }
         }
         let cycles = self
             .inbox

@@ -153,6 +153,12 @@ impl Servo {
         self.axis.backlash_offset()
     }
 
+    /// Refined factor on the levels of the friction model, 1e-6.
+    #[must_use]
+    pub fn refined_level_millionths(&self) -> i32 {
+        self.axis.refined_level_millionths()
+    }
+
     /// Setpoints and feedbacks in a row that the present torque had to do without.
     #[must_use]
     pub const fn bridged(&self) -> (u16, u16) {

@@ -954,3 +954,42 @@ fn an_axis_that_moves_is_taken_over_as_it_moves_and_ramps_from_there() {
         (DriveState::OperationEnabled, None)
     );
 }
+
+/// SYNC comes before the deadline of a cycle whose frames do not come: that cycle closes because
+/// the next one begins. A command of NMT that waited for its end leaves no cycle open behind it.
+#[test]
+fn a_node_that_leaves_with_an_early_sync_goes_on_beating() {
+    let leaving = [
+        (NmtCommand::StopRemoteNode, NmtState::Stopped),
+        (NmtCommand::EnterPreOperational, NmtState::PreOperational),
+        (NmtCommand::ResetNode, NmtState::PreOperational),
+    ];
+    for (command, state) in leaving {
+        let mut bench = Bench::enabled(&[]);
+        bench.nmt(command);
+        let is_left = |bench: &Bench| bench.servo.reference().is_none();
+        for _ in 0..5000 {
+            bench.now_us += DEADLINE_US - 100;
+            bench.give(Message::Sync(bench.counter));
+            bench.counter = bench.counter.next();
+            if is_left(&bench) {
+                break;
+            }
+        }
+        assert!(is_left(&bench), "{command:?}: still under torque");
+        for _ in 0..20 {
+            let due = bench.servo.wake_at_us().unwrap();
+            bench.now_us = due;
+            let frames = bench.servo.on_time(due).to_vec();
+            bench.keep(frames);
+            let next = bench.servo.wake_at_us().unwrap();
+            assert!(next > due, "{command:?}: due again and again");
+        }
+        let mut said = bench.sent.iter().rev();
+        let beat = said.find_map(|(_, message)| match message {
+            Message::ServoHeartbeat(state) => Some(*state),
+            _ => None,
+        });
+        assert_eq!(beat, Some(state), "{command:?}");
+    }
+}
