@@ -61,6 +61,42 @@ pub struct Model {
     /// Share of what each turn tells that the drive refines the levels by; zero: it does not.
     #[serde(default)]
     pub self_tuning: f64,
+    /// How much more viscous friction there is forward than backward, halved.
+    #[serde(default)]
+    pub viscous_asymmetry_n_s_per_m: f64,
+    /// Ripple of the force.
+    #[serde(default)]
+    pub ripple: [Ripple; RIPPLES],
+}
+
+/// Waves of the force over the position that the drive has.
+pub const RIPPLES: usize = Parameter::RIPPLES.len();
+
+/// `A sin(2π x / period + phase)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ripple {
+    /// Amplitude; zero: none.
+    pub amplitude_n: f64,
+    /// Way from one period to the next.
+    pub period_m: f64,
+    /// Phase at position zero, of a turn.
+    pub phase_turns: f64,
+}
+
+impl Ripple {
+    /// None.
+    pub const NONE: Self = Self {
+        amplitude_n: 0.0,
+        period_m: 0.010,
+        phase_turns: 0.0,
+    };
+}
+
+impl Default for Ripple {
+    fn default() -> Self {
+        Self::NONE
+    }
 }
 
 /// Share with which drives refine themselves: three quarters of what a level is off by are gone
@@ -91,6 +127,8 @@ impl Model {
         slope_per_m: 0.0,
         bend_per_m2: 0.0,
         self_tuning: 0.0,
+        viscous_asymmetry_n_s_per_m: 0.0,
+        ripple: [Ripple::NONE; RIPPLES],
     };
 }
 
@@ -278,7 +316,22 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
     let bend = model.bend_per_m2;
     let steepest = -2000.0..=2000.0;
     each("bend_per_m2", "-2000 to 2000 /m2", &[bend], steepest)?;
-    each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)
+    each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)?;
+    let asymmetry = model.viscous_asymmetry_n_s_per_m;
+    each(
+        "viscous_asymmetry_n_s_per_m",
+        "-1e7 to 1e7 N s/m",
+        &[asymmetry],
+        -1.0e7..=1.0e7,
+    )?;
+    let [amplitudes, periods, phases] = [
+        model.ripple.map(|own| own.amplitude_n),
+        model.ripple.map(|own| own.period_m),
+        model.ripple.map(|own| own.phase_turns),
+    ];
+    each("amplitude_n", "0 to 1e6 N", &amplitudes, 0.0..=1.0e6)?;
+    each("period_m", "1e-6 to 0.2 m", &periods, 1.0e-6..=0.2)?;
+    each("phase_turns", "-1 to 1", &phases, -1.0..=1.0)
 }
 
 fn expect(holds: bool, otherwise: Wrong) -> Result<(), Wrong> {

@@ -14,6 +14,7 @@ use servo::parameters::ParameterSet;
 
 use crate::compensation::{AxisCompensation, Compensation, Model};
 use crate::error::{Failure, Outcome};
+use crate::model_file::relation_m;
 
 /// 10 nm, the position count of drive and bus.
 pub const COUNT_M: f64 = 1.0e-8;
@@ -244,16 +245,8 @@ impl Set {
     }
 
     fn model(&mut self, model: &Model) -> Outcome<()> {
+        self.elements(model)?;
         let per_newton = self.torque_per_newton;
-        for (place, level_n) in Parameter::FRICTION_LEVELS.into_iter().zip(model.level_n) {
-            self.put(place, "model level_n", level_n * per_newton)?;
-        }
-        for (place, slip_m) in Parameter::FRICTION_WAYS.into_iter().zip(model.slip_m) {
-            self.put(place, "model slip_m", slip_m)?;
-        }
-        for (place, factor) in Parameter::LEVEL_FACTORS.into_iter().zip(model.factor) {
-            self.put(place, "model factor", factor)?;
-        }
         let windup = 1.0 / model.stiffness_n_per_m / per_newton;
         for (place, key, value) in [
             (
@@ -296,18 +289,41 @@ impl Set {
                 "model self_tuning",
                 model.self_tuning,
             ),
+            (
+                Parameter::ViscousAsymmetry,
+                "model viscous_asymmetry_n_s_per_m",
+                model.viscous_asymmetry_n_s_per_m * per_newton,
+            ),
         ] {
             self.put(place, key, value)?;
         }
+        self.ripple(model)
+    }
+
+    /// Elements and the levels over the speed.
+    fn elements(&mut self, model: &Model) -> Outcome<()> {
+        let per_newton = self.torque_per_newton;
+        for (place, level_n) in Parameter::FRICTION_LEVELS.into_iter().zip(model.level_n) {
+            self.put(place, "model level_n", level_n * per_newton)?;
+        }
+        for (place, slip_m) in Parameter::FRICTION_WAYS.into_iter().zip(model.slip_m) {
+            self.put(place, "model slip_m", slip_m)?;
+        }
+        for (place, factor) in Parameter::LEVEL_FACTORS.into_iter().zip(model.factor) {
+            self.put(place, "model factor", factor)?;
+        }
         Ok(())
     }
-}
 
-/// Where the load scale stands when the motor encoder is zero, m; what a user reads off both at
-/// power-up.
-#[must_use]
-pub fn relation_m(axis: &MachineAxis) -> f64 {
-    axis.actual.mounting.motor_zero_m - axis.actual.mounting.load_zero_m
+    fn ripple(&mut self, model: &Model) -> Outcome<()> {
+        for ([torque, period, phase], own) in Parameter::RIPPLES.into_iter().zip(model.ripple) {
+            let torque_nm = own.amplitude_n * self.torque_per_newton;
+            self.put(torque, "ripple amplitude_n", torque_nm)?;
+            self.put(period, "ripple period_m", own.period_m)?;
+            self.put(phase, "ripple phase_turns", own.phase_turns)?;
+        }
+        Ok(())
+    }
 }
 
 /// An encoder may jump by this without being implausible: it leaves room for a gap that closes.
@@ -419,6 +435,52 @@ mod tests {
             "torque limit",
             cascade.torque_limit.0.to_num::<f64>() * newton_per_micro_nm,
             9000.0,
+        );
+    }
+
+    #[test]
+    fn a_model_with_ripple_asymmetry_and_places_survives_fixed_point() {
+        let ripple = crate::compensation::Ripple {
+            amplitude_n: 30.0,
+            period_m: 0.002,
+            phase_turns: -0.25,
+        };
+        let model = Model {
+            level_n: [40.0; crate::compensation::ELEMENTS],
+            viscous_asymmetry_n_s_per_m: -500.0,
+            slope_per_m: -0.8,
+            bend_per_m2: 2.5,
+            self_tuning: 0.25,
+            ripple: [crate::compensation::Ripple::NONE, ripple],
+            ..Model::OFF
+        };
+        let compensation = AxisCompensation {
+            reversal: Compensation::Model(Box::new(model)),
+            ..AxisCompensation::default()
+        };
+        let config = settings(&Machine::reference(), &compensation).config;
+        let newton = TAU / 0.010 / 1.0e6;
+        let [none, wave] = config.ripple.waves;
+        assert_eq!(none.amplitude_micro_nm, 0);
+        let amplitude_n = newton * f64::from(wave.amplitude_micro_nm);
+        assert!((amplitude_n - 30.0).abs() < newton, "{amplitude_n}");
+        let counts = 2.0_f64.powi(48) / wave.per_position as f64;
+        assert_same("period", counts * COUNT_M, 0.002);
+        assert_eq!(wave.phase, -(1 << 30));
+        let friction = config.friction.unwrap();
+        let per_velocity = newton * 1.0e-3 / COUNT_M;
+        let asymmetry = friction.viscous_asymmetry.0.to_num::<f64>() * per_velocity;
+        assert!((asymmetry + 500.0).abs() < 0.02, "{asymmetry}");
+        let unit_m = COUNT_M * 2.0_f64.powi(24);
+        let linear = friction.place.linear.to_num::<f64>() / unit_m;
+        let quadratic = friction.place.quadratic.to_num::<f64>() / unit_m / unit_m;
+        assert_same("slope", linear, -0.8);
+        assert!((quadratic - 2.5).abs() < 1.0e-5, "{quadratic}");
+        // A quarter over twice 400 N.
+        let share = f64::from(friction.tuning.per_micro_nm) / 2.0_f64.powi(40);
+        assert!(
+            (share * 800.0 / newton / 0.25 - 1.0).abs() < 1.0e-4,
+            "{share}"
         );
     }
 

@@ -15,7 +15,7 @@ use serde::Serialize;
 mod known;
 mod stated;
 
-pub use known::Known;
+pub use known::{Known, relation_m};
 
 /// The file.
 #[derive(Serialize)]
@@ -221,6 +221,7 @@ mod tests {
         let machine = Machine::reference();
         let known = Known {
             hold_s: 0.5e-3,
+            origin_m: 0.0,
             ..Known::of_machine(&machine.axes[0], machine.period_s)
         };
         let text = text("test", &[("X".into(), known, result)]);

@@ -61,6 +61,8 @@ pub struct FrictionConfig {
     pub tuning: LevelTuning,
     /// Viscous torque per velocity.
     pub viscous: VelocityGain,
+    /// How much more of it there is forward than backward, halved.
+    pub viscous_asymmetry: VelocityGain,
     /// From x(k+1) to when the torque acts.
     pub torque: Ahead,
     /// The same one cycle later.
@@ -74,6 +76,14 @@ pub struct FrictionConfig {
     pub windup_cycles: I8F24,
     /// Torque per acceleration of the motor alone.
     pub motor_inertia: AccelerationGain,
+}
+
+impl FrictionConfig {
+    fn viscous_torque(&self, velocity: Velocity) -> Torque {
+        let speed = Velocity(velocity.0.saturating_abs());
+        let alike = self.viscous.times(velocity);
+        alike.plus(self.viscous_asymmetry.times(speed))
+    }
 }
 
 type Strains = [Strain; ELEMENTS];
@@ -126,7 +136,7 @@ impl FrictionState {
         let path = Path::between(begin, at_next, I8F24::ONE, way);
         let scale = self.scale(config, next_position);
         self.move_along(config, &path, next_position, (at_next, scale));
-        let next = self.held().plus(config.viscous.times(at_next));
+        let next = self.held().plus(config.viscous_torque(at_next));
         let [acting, after] = [&config.torque, &config.torque_after]
             .map(|ahead| self.ahead(config, ahead, (velocity, acceleration), scale));
         let before = self.recent.unwrap_or(Recent {
@@ -262,16 +272,15 @@ impl FrictionState {
         (velocity, acceleration): (Velocity, Acceleration),
         scale: I8F24,
     ) -> Torque {
-        let way = scaled(velocity.0, ahead.cycles)
-            .saturating_add(scaled(acceleration.0, ahead.way_by_acceleration));
+        let way = ahead.way(velocity, acceleration);
         let there = velocity
             .0
             .saturating_add(scaled(acceleration.0, ahead.velocity_by_acceleration));
         let there = Velocity(there);
         let begin = velocity.plus(half(acceleration));
-        let path = Path::between(begin, there, ahead.cycles, Velocity(way));
+        let path = Path::between(begin, there, ahead.cycles, way);
         let factor = self.factor_after(config, path.length(), (there, scale), ahead.cycles);
-        torque(config, &self.strained(config, &path, factor)).plus(config.viscous.times(there))
+        torque(config, &self.strained(config, &path, factor)).plus(config.viscous_torque(there))
     }
 }
 

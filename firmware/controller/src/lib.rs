@@ -9,6 +9,7 @@
 //!              ├─ velocity ────────────────────────────────────────┤
 //! [reference] ─┼─ acceleration ────────────────────────────────────┼▶ cascade ─▶ filter ─▶ torque
 //!              ├─ all of it ─▶ friction model ─▶ torque, wind-up ──┤
+//!              ├─ next position ─▶ ripple ─▶ torque ───────────────┤
 //!              └─ position + backlash offset − measurement ─▶ error ┘
 //! ```
 //!
@@ -44,6 +45,7 @@ pub mod filter;
 pub mod friction;
 pub mod pulse;
 pub mod reference;
+pub mod ripple;
 mod root;
 pub mod units;
 
@@ -55,6 +57,7 @@ use fixed::types::I8F24;
 use friction::{Feedforward, FrictionConfig, FrictionState, Progress};
 use pulse::{PulseConfig, PulseState, Setpoint};
 use reference::{Reference, ReferenceConfig};
+use ripple::RippleConfig;
 use units::{Position, PositionError, Torque, Velocity};
 
 /// Which encoder closes the position loop.
@@ -84,6 +87,8 @@ pub struct Config {
     pub coulomb: Torque,
     /// Friction model: what it says is fed forward.
     pub friction: Option<FrictionConfig>,
+    /// Ripple of the torque over the position.
+    pub ripple: RippleConfig,
     /// Torque filter.
     pub filter: FilterConfig,
 }
@@ -297,7 +302,9 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
             expected_velocity: expected,
             acceleration: reference.acceleration,
             motor_velocity,
-            friction: coulomb(config.coulomb, direction).plus(model.torque),
+            friction: coulomb(config.coulomb, direction)
+                .plus(model.torque)
+                .plus(config.ripple.torque(reference)),
         },
     );
     let limit = config.cascade.torque_limit;

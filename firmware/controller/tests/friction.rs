@@ -13,6 +13,7 @@ use controller::friction::{
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
+use controller::ripple::RippleConfig;
 use controller::units::{
     Acceleration, AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain,
 };
@@ -55,6 +56,7 @@ fn factors() -> [f64; LEVELS] {
 
 const PER_VELOCITY: f64 = 16.0 / 370.0;
 const VISCOUS: f64 = 31.8;
+const ASYMMETRY: f64 = -4.8;
 const LAG_PER_WAY: f64 = 1.0 / 1300.0;
 const LAG_PER_CYCLE: f64 = 1.0 / 6.0;
 /// Level along the travel, per 2²⁴ counts: at most a tenth on these paths.
@@ -85,6 +87,7 @@ fn config() -> FrictionConfig {
         },
         tuning: LevelTuning::default(),
         viscous: VelocityGain(I20F12::from_num(VISCOUS)),
+        viscous_asymmetry: VelocityGain(I20F12::from_num(ASYMMETRY)),
         torque: ahead(AHEAD),
         torque_after: ahead(AHEAD + 1.0),
         damping_cycles: I8F24::from_num(DAMPING),
@@ -162,12 +165,13 @@ impl Twin {
         self.place = position + v;
         let (torques, factor) = self.passed(v - 0.5 * a, v + 0.5 * a, 1.0, way);
         (self.elements, self.factor, self.at) = (torques, Some(factor), Some(position + v));
-        let next = torques.iter().sum::<f64>() + VISCOUS * (v + 0.5 * a);
+        let viscous = |v: f64| VISCOUS * v + ASYMMETRY * v.abs();
+        let next = torques.iter().sum::<f64>() + viscous(v + 0.5 * a);
         let acting = |cycles: f64| {
             let way = v * cycles + 0.5 * a * cycles * (cycles + 1.0);
             let there = v + a * (cycles + 0.5);
             let (torques, _) = self.passed(v + 0.5 * a, there, cycles, way);
-            torques.iter().sum::<f64>() + VISCOUS * there
+            torques.iter().sum::<f64>() + viscous(there)
         };
         let (now, after) = (acting(AHEAD), acting(AHEAD + 1.0));
         let [before, present, last, acted] = self.recent.unwrap_or([next, next, next, now]);
@@ -253,6 +257,7 @@ fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
         damping_cycles: I8F24::ZERO,
         compliance: I4F28::ZERO,
         viscous: VelocityGain::default(),
+        viscous_asymmetry: VelocityGain::default(),
         ..config()
     };
     let mut law = FrictionState::default();
@@ -337,6 +342,7 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
     // Beyond the factors and the viscous part, which go with the speed, nothing changes.
     let model = FrictionConfig {
         viscous: VelocityGain::default(),
+        viscous_asymmetry: VelocityGain::default(),
         ..config()
     };
     let law = |friction: Option<FrictionConfig>| Config {
@@ -389,6 +395,7 @@ fn plain() -> Config {
         backlash: BacklashConfig::default(),
         coulomb: Torque::ZERO,
         friction: None,
+        ripple: RippleConfig::default(),
         filter: FilterConfig::OFF,
     }
 }

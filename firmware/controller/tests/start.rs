@@ -6,6 +6,7 @@ use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
+use controller::ripple::RippleConfig;
 use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8};
@@ -45,6 +46,7 @@ fn config() -> Config {
         backlash: BacklashConfig::default(),
         coulomb: Torque::ZERO,
         friction: None,
+        ripple: RippleConfig::default(),
         filter: FilterConfig::new([1 << 27, 0, 0, 3 << 27, 0]).unwrap(),
     }
 }

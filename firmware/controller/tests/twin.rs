@@ -11,6 +11,7 @@ use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
+use controller::ripple::RippleConfig;
 use controller::units::{
     AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
 };
@@ -72,6 +73,7 @@ fn config(source: PositionSource) -> Config {
         backlash: BacklashConfig::default(),
         coulomb: Torque::from_micro_nm(COULOMB as i32),
         friction: None,
+        ripple: RippleConfig::default(),
         filter: FilterConfig::OFF,
     }
 }

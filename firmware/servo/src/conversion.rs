@@ -22,6 +22,7 @@ use controller::friction::{
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig};
+use controller::ripple::{RippleConfig, Wave};
 use controller::units::{
     AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
     WayPerIncrement,
@@ -52,6 +53,7 @@ const Q24: u64 = 1 << 24;
 const Q28: u64 = 1 << 28;
 const Q32: u64 = 1 << 32;
 const Q40: u64 = 1 << 40;
+const Q48: u64 = 1 << 48;
 /// Counts in which the friction model has places along the travel.
 const PLACE: u64 = 1 << 24;
 const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
@@ -210,6 +212,7 @@ impl Reading<'_> {
             backlash: self.backlash()?,
             coulomb: self.torque(Parameter::CoulombTorque),
             friction: self.friction()?,
+            ripple: self.ripple()?,
             filter: self.filter()?,
             reference: self.reference()?,
         })
@@ -357,7 +360,8 @@ impl Reading<'_> {
             lag: self.level_lag()?,
             place: self.level_place(),
             tuning: self.level_tuning()?,
-            viscous: self.viscous()?,
+            viscous: self.viscous(Parameter::ViscousTorque)?,
+            viscous_asymmetry: self.viscous(Parameter::ViscousAsymmetry)?,
             torque: ahead_by(torque),
             torque_after: ahead_by(torque.saturating_add(I8F24::ONE)),
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
@@ -495,14 +499,53 @@ impl Reading<'_> {
     }
 
     /// Torque per velocity, per count and cycle: over T.
-    fn viscous(&self) -> Result<VelocityGain, SetError> {
-        let parameter = Parameter::ViscousTorque;
+    fn viscous(&self, parameter: Parameter) -> Result<VelocityGain, SetError> {
         let bits = Self::held(
             parameter,
             &[self.steps(parameter), Q12, MICROS],
             &[parameter.unit().per_si, TORQUE_PER_COUNT, self.period_us],
         )?;
-        Ok(VelocityGain(I20F12::from_bits(bits)))
+        let size = VelocityGain(I20F12::from_bits(bits));
+        Ok(if self.raw(parameter) < 0 {
+            VelocityGain(size.0.saturating_neg())
+        } else {
+            size
+        })
+    }
+
+    fn ripple(&self) -> Result<RippleConfig, SetError> {
+        let ahead = self.cycles(Parameter::FrictionAhead)?;
+        Ok(RippleConfig {
+            waves: Parameter::RIPPLES.map(|[torque, period, phase]| Wave {
+                amplitude_micro_nm: self.raw(torque),
+                per_position: self.turns_per_position(period),
+                phase: self.angle(phase),
+            }),
+            ahead: ahead_by(ahead.saturating_add(HALF_A_CYCLE)),
+        })
+    }
+
+    /// Turns per 2⁻⁸ of 10 nm, 2⁻⁵⁶: 2⁴⁸ over the period in counts, whose row keeps it above 100.
+    fn turns_per_position(&self, period: Parameter) -> i64 {
+        let numerator = [period.unit().per_si, Q48];
+        let denominator = [self.steps(period), COUNTS_PER_M];
+        let turns = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
+        turns
+            .and_then(|turns| i64::try_from(turns).ok())
+            .unwrap_or(i64::MAX)
+    }
+
+    /// An angle in 2⁻³² turns; whole turns fall out.
+    fn angle(&self, phase: Parameter) -> i32 {
+        let turns = Fraction::new(&[self.steps(phase), Q32], &[phase.unit().per_si]);
+        let turns = turns.and_then(Fraction::nearest).unwrap_or(0);
+        let [a, b, c, d, ..] = turns.to_le_bytes();
+        let angle = i32::from_le_bytes([a, b, c, d]);
+        if self.raw(phase) < 0 {
+            angle.wrapping_neg()
+        } else {
+            angle
+        }
     }
 
     /// Counts of 10 nm per µN·m. Below 2³¹ · 10⁸ · 2²⁸.

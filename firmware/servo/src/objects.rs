@@ -147,6 +147,12 @@ macro_rules! parameters {
                 Self::FrictionWay10,
             ];
 
+            /// Amplitude, period and phase of each ripple.
+            pub const RIPPLES: [[Self; 3]; 2] = [
+                [Self::RippleTorque1, Self::RipplePeriod1, Self::RipplePhase1],
+                [Self::RippleTorque2, Self::RipplePeriod2, Self::RipplePhase2],
+            ];
+
             /// Factors on the friction levels over the speed.
             pub const LEVEL_FACTORS: [Self; 17] = [
                 Self::LevelFactor0,
@@ -212,6 +218,8 @@ const WINDOW: (i32, i32) = (1, 8_000_000);
 const MISSES: (i32, i32) = (0, 100);
 /// A deceleration of zero would never stop.
 const DECELERATION: (i32, i32) = (1, i32::MAX);
+/// A turn either way.
+const TURN: (i32, i32) = (-1_000_000, 1_000_000);
 /// A slope of the level over the travel.
 const SLOPE: (i32, i32) = (-700_000_000, 700_000_000);
 /// Cycle times that the bus and the boards are made for, µs: 10 kHz to 50 Hz.
@@ -292,6 +300,13 @@ parameters! {
     LevelTuning = (0x2159, 1), "share of what a turn tells that the friction level is refined by (0 off)", MILLIONTH, (0, 1_000_000), 0;
     LevelSettling = (0x2159, 2), "time from a turn until it tells that", MICROSECOND, (0, 1_000_000), 120_000;
     LevelSettlingWay = (0x2159, 3), "way from a turn until it tells that", TENTH_NANOMETRE, (0, 50_000_000), 1_000_000;
+    RippleTorque1 = (0x215A, 1), "ripple 1, amplitude", MICRO_NM, (0, TORQUE), 0;
+    RipplePeriod1 = (0x215A, 2), "ripple 1, way from one period to the next", TENTH_NANOMETRE, (10_000, i32::MAX), 100_000_000;
+    RipplePhase1 = (0x215A, 3), "ripple 1, phase at position zero, of a turn", MILLIONTH, TURN, 0;
+    RippleTorque2 = (0x215A, 4), "ripple 2, amplitude", MICRO_NM, (0, TORQUE), 0;
+    RipplePeriod2 = (0x215A, 5), "ripple 2, way from one period to the next", TENTH_NANOMETRE, (10_000, i32::MAX), 100_000_000;
+    RipplePhase2 = (0x215A, 6), "ripple 2, phase at position zero, of a turn", MILLIONTH, TURN, 0;
+    ViscousAsymmetry = (0x215B, 0), "viscous feedforward, how much more forward than backward, halved", VISCOUS, (-i32::MAX, i32::MAX), 0;
     VelocityLimit = (0x607F, 0), "velocity limit of the axis", MICROMETRE_PER_S, POSITIVE, 0;
     AccelerationLimit = (0x60C5, 0), "acceleration limit of the axis", MICROMETRE_PER_S2, POSITIVE, 0;
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;

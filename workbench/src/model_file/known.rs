@@ -32,6 +32,8 @@ pub struct Known {
     pub period_s: f64,
     /// Delay that the record sees because the effort is held while its rows say it acts at once, s.
     pub hold_s: f64,
+    /// Where the encoder that closes the loop stands when that of the motor is zero, m.
+    pub origin_m: f64,
 }
 
 impl Known {
@@ -50,6 +52,10 @@ impl Known {
             gains: axis.gains,
             period_s,
             hold_s: 0.0,
+            origin_m: match axis.gains.position_sensor {
+                PositionSensor::Motor => 0.0,
+                PositionSensor::Load => relation_m(axis),
+            },
         }
     }
 
@@ -98,6 +104,7 @@ impl Known {
             } else {
                 0.0
             },
+            origin_m: 0.0,
         })
     }
 }
@@ -133,4 +140,11 @@ impl Shown {
 
 fn most(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// Where the load scale stands when the motor encoder is zero, m; what a user reads off both at
+/// power-up.
+#[must_use]
+pub fn relation_m(axis: &MachineAxis) -> f64 {
+    axis.actual.mounting.motor_zero_m - axis.actual.mounting.load_zero_m
 }

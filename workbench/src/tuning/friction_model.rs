@@ -11,13 +11,15 @@
 //! `V(x) = F (1 − exp(−2 x / δ))`, and is cut into elements: those that slip between a and b carry
 //! `[V − x V']` from a to b and have the stiffness `V'(a) − V'(b)`.
 
+use std::f64::consts::TAU;
+
 use axis_model::{
     Compliance, Coulomb, Effect, Estimate, Inertia, PositionDependentFriction, Presliding,
-    Stribeck, Viscous,
+    Stribeck, TorqueRipple, Viscous,
 };
 use identification::Identification;
 
-use crate::compensation::{ELEMENTS, LEVELS, Model};
+use crate::compensation::{ELEMENTS, LEVELS, Model, RIPPLES, Ripple};
 use crate::model_file::Known;
 
 /// Friction that no reversal shows to give way slips within this, m.
@@ -34,6 +36,8 @@ struct Found<'a> {
     presliding: Option<&'a Presliding<Estimate>>,
     compliance: Option<&'a Compliance<Estimate>>,
     over_position: Option<&'a PositionDependentFriction<Estimate>>,
+    asymmetry: f64,
+    ripples: Vec<&'a TorqueRipple<Estimate>>,
 }
 
 impl<'a> Found<'a> {
@@ -46,6 +50,8 @@ impl<'a> Found<'a> {
             presliding: None,
             compliance: None,
             over_position: None,
+            asymmetry: 0.0,
+            ripples: Vec::new(),
         };
         for effect in &result.effects {
             match effect {
@@ -56,6 +62,8 @@ impl<'a> Found<'a> {
                 Effect::Presliding(own) => found.presliding = Some(own),
                 Effect::Compliance(own) => found.compliance = Some(own),
                 Effect::PositionDependentFriction(own) => found.over_position = Some(own),
+                Effect::ViscousAsymmetry(own) => found.asymmetry = own.viscous_asymmetry.value,
+                Effect::TorqueRipple(own) => found.ripples.push(own),
                 _ => {}
             }
         }
@@ -122,11 +130,48 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
         give_bristle(&mut model, &found, bristle_m);
     }
     give_screw(&mut model, &found, known);
-    if let Some(own) = found.over_position {
-        model.slope_per_m = own.linear.value;
-        model.bend_per_m2 = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
-    }
+    model.viscous_asymmetry_n_s_per_m = found.viscous * found.asymmetry;
+    give_places(&mut model, &found, known);
     Some(model)
+}
+
+/// What goes with the position: levels along the travel and ripple. Records have the position of the
+/// motor, the drive goes by that of its loop.
+fn give_places(model: &mut Model, found: &Found<'_>, known: &Known) {
+    if let Some(own) = found.over_position {
+        let bend = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
+        let slope = own.linear.value;
+        let origin_m = known.origin_m;
+        let there = 1.0 - slope * origin_m + bend * origin_m * origin_m;
+        if there > 0.0 {
+            model.level_n = model.level_n.map(|level_n| there * level_n);
+            model.slope_per_m = (slope - 2.0 * bend * origin_m) / there;
+            model.bend_per_m2 = bend / there;
+        }
+    }
+    let mut ripples: Vec<Ripple> = found
+        .ripples
+        .iter()
+        .filter_map(|own| ripple(own, known))
+        .collect();
+    ripples.sort_by(|one, other| other.amplitude_n.total_cmp(&one.amplitude_n));
+    for (place, own) in ripples.into_iter().enumerate().take(RIPPLES) {
+        model.ripple[place] = own;
+    }
+}
+
+/// A ripple as the drive has it; `None` without a phase, or without a period.
+fn ripple(own: &TorqueRipple<Estimate>, known: &Known) -> Option<Ripple> {
+    let phase_rad = own.phase.as_ref()?.value;
+    let of_order = || Some(known.lead_m / own.order.as_ref()?.value);
+    let period_m = own.period.as_ref().map(|period| period.value);
+    let period_m = period_m.or_else(of_order)?;
+    let turns = phase_rad / TAU - known.origin_m / period_m;
+    Some(Ripple {
+        amplitude_n: own.amplitude.value,
+        period_m,
+        phase_turns: turns - turns.floor(),
+    })
 }
 
 fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {

@@ -3,7 +3,7 @@
 use fixed::types::{I8F24, I20F12};
 
 use super::scaled;
-use crate::units::Velocity;
+use crate::units::{Acceleration, Velocity};
 
 /// How far the look ahead goes from x(k+1), in cycles τ: `v τ + a τ (τ + 1) / 2` farther, and there
 /// the reference has the velocity `v + a (τ + 1/2)`, where v is the way of the last cycle.
@@ -15,6 +15,14 @@ pub struct Ahead {
     pub way_by_acceleration: I8F24,
     /// τ + 1/2.
     pub velocity_by_acceleration: I8F24,
+}
+
+impl Ahead {
+    /// How far it is at such a velocity and acceleration.
+    pub(crate) fn way(&self, velocity: Velocity, acceleration: Acceleration) -> Velocity {
+        let constant = scaled(velocity.0, self.cycles);
+        Velocity(constant.saturating_add(scaled(acceleration.0, self.way_by_acceleration)))
+    }
 }
 
 /// A way within which the axis may turn round: so far on, and so far back.

@@ -12,8 +12,9 @@ use protocol::states::DriveState;
 use protocol::weight::{LoadIncrements24, SetpointFine};
 use protocol::{Fault, Message, SyncCounter};
 
-use crate::drive_parameters::{self, COUNT_M, FINE_PER_COUNT};
+use crate::drive_parameters::{COUNT_M, FINE_PER_COUNT};
 use crate::error::{Failure, Outcome};
+use crate::model_file;
 use crate::network::link::{Link, axis_ids};
 
 /// Cycles without a torque frame after which a servo counts as silent: as many as the nodes bridge
@@ -96,7 +97,7 @@ impl AxisLink {
             way_m,
             newton_per_micro_nm: axis.actual.newton_per_micro_nm(),
             load: None,
-            relation_counts: (drive_parameters::relation_m(axis) / COUNT_M).round() as i64,
+            relation_counts: (model_file::relation_m(axis) / COUNT_M).round() as i64,
             torque_n: 0.0,
             torque_seen: false,
             silent_cycles: 0,
