@@ -93,6 +93,18 @@ pub struct Config {
     pub filter: FilterConfig,
 }
 
+impl Config {
+    /// The model of friction whose level is refined at turns.
+    fn refined(&self) -> Option<&FrictionConfig> {
+        let model = self.friction.as_ref();
+        model.filter(|model| model.tuning.per_micro_nm != 0)
+    }
+
+    fn asks_for_turns(&self) -> bool {
+        self.pulse.amplitude != Velocity::ZERO || self.refined().is_some()
+    }
+}
+
 /// What is known of the axis itself: it stays when torque goes and comes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AxisMemory {
@@ -174,9 +186,14 @@ impl State {
         Feedforward::default()
     }
 
-    /// What the setpoint does.
-    fn setpoint(&mut self, config: &PulseConfig, reference: &Reference) -> Setpoint {
+    /// What the setpoint does, as far as somebody asks for its turns.
+    fn setpoint(&mut self, config: &Config, reference: &Reference) -> Setpoint {
         let turns = &mut self.axis.turns;
+        if !config.asks_for_turns() {
+            *turns = Turns::default();
+            return Setpoint::Moves;
+        }
+        let config = &config.pulse;
         let to = reference.position.after(reference.next_velocity);
         match turns.reversal(config.shortest_way, to) {
             Some(direction) => Setpoint::Turns(direction),
@@ -192,7 +209,7 @@ impl State {
         (setpoint, position): (Setpoint, Position),
         limited: bool,
     ) {
-        let Some(model) = &config.friction else {
+        let Some(model) = config.refined() else {
             return;
         };
         let turned = match setpoint {
@@ -270,7 +287,7 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     state.motor = Some(input.motor);
 
     let direction = state.direction.after(reference.next_velocity);
-    let setpoint = state.setpoint(&config.pulse, reference);
+    let setpoint = state.setpoint(config, reference);
     let pulse = state.pulse.step(&config.pulse, setpoint);
     let (offset, offset_velocity) =
         state
