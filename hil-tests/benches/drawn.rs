@@ -5,8 +5,8 @@
 //! and current lag each drawn between half and one and a half times; every third has Maxwell slip
 //! of 4 to 12 uneven elements for its bristle, and a Stribeck fall that lags. Its loop gains are in
 //! proportion to its own inertia. Machines from 101 on have more at once: friction that differs by
-//! direction, a ripple of 30 N, and every third of them a gap of 3 to 8 µm inside the loop; of these
-//! one that oscillates is drawn again.
+//! direction, a ripple of 30 N, and every third of them a gap of 3 to 8 µm inside the loop; of
+//! these one that oscillates is drawn again.
 //!
 //! It is commissioned as a user would: loops first, records, identification, model, and the model
 //! refined by the drives. The table has the largest burst, µm, without → with the model → refined

@@ -100,7 +100,8 @@ impl Default for Ripple {
 }
 
 /// Share with which drives refine themselves: three quarters of what a level is off by are gone
-/// after five turns, and a turn that noise makes wrong by a percent makes the level so by a quarter.
+/// after five turns, and a turn that noise makes wrong by a percent makes the level so by a
+/// quarter.
 pub const SELF_TUNING: f64 = 0.25;
 
 impl Model {

@@ -4,8 +4,8 @@
 //! T = Σ A sin(2π x / period + φ)     x where the reference is when the torque acts
 //! ```
 //!
-//! The angle is a 32-bit fraction of a turn that wraps round, so it is as exact at the end of a long
-//! travel as at its middle.
+//! The angle is a 32-bit fraction of a turn that wraps round, so it is as exact at the end of a
+//! long travel as at its middle.
 
 use crate::friction::Ahead;
 use crate::reference::Reference;

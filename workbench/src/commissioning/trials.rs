@@ -104,14 +104,15 @@ pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Ou
 /// The name of a model that the drives refine.
 pub const SELF_TUNED: &str = "model + self-tuning";
 
-/// A model that the drives refine follows slow change, and may leave so much more than the best, µm.
+/// A model that the drives refine follows slow change, and may leave so much more than the best,
+/// µm.
 const WORTH_UM: f64 = 0.2;
 
 /// What leaves more than this share of the burst does not help: noise alone does as much.
 const LEFT_AT_MOST: f64 = 0.9;
 
-/// The one that leaves the smallest burst, where there is one and it leaves less of it; a model that
-/// is refined may leave a little more.
+/// The one that leaves the smallest burst, where there is one and it leaves less of it; a model
+/// that is refined may leave a little more.
 fn chosen(all: Vec<Trial>, nothing: Vec<AxisCompensation>) -> Trials {
     let helps = |trial: &&Trial| {
         let [before, after] = trial.tuned.largest_um();

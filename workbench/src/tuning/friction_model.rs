@@ -135,8 +135,8 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
     Some(model)
 }
 
-/// What goes with the position: levels along the travel and ripple. Records have the position of the
-/// motor, the drive goes by that of its loop.
+/// What goes with the position: levels along the travel and ripple. Records have the position of
+/// the motor, the drive goes by that of its loop.
 fn give_places(model: &mut Model, found: &Found<'_>, known: &Known) {
     if let Some(own) = found.over_position {
         let bend = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
