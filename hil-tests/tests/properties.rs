@@ -741,6 +741,11 @@ impl Chaos {
             (Parameter::LevelBend, -4.0e7, 4.0e7),
             (Parameter::LevelTuning, 0.0, 1.0e6),
             (Parameter::LevelSettling, 0.0, 1.0e5),
+            (Parameter::LevelSettlingWay, 0.0, 2.0e6),
+            (Parameter::ViscousAsymmetry, -1.0e7, 1.0e7),
+            (Parameter::RippleTorque1, 0.0, 5.0e5),
+            (Parameter::RipplePeriod1, 1.0e4, 2.0e9),
+            (Parameter::RipplePhase1, -1.0e6, 1.0e6),
         ] {
             if self.dice.once_in(3) {
                 self.write_within(parameter, low, high);
@@ -806,6 +811,7 @@ fn expect_all(seen: &Seen, ticks: u64) {
     );
     assert!(seen.sets > ticks / 2000 && seen.bridged > 0, "{seen:?}");
     assert!(seen.modelled > ticks / 10, "{seen:?}");
+    assert!(seen.refined > 0 || ticks < RARE, "{seen:?}");
     // A gap that is compensated, and a limit that is lowered while the axis is beyond it, are rare.
     let overrun = seen.offsets > 0
         && seen.overruns > 0

@@ -1,5 +1,6 @@
 //! Compensation files: what `tune` and `commission` write and `circle` and the drive read.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,16 @@ use crate::error::{Failure, Outcome};
 pub const ELEMENTS: usize = Parameter::FRICTION_LEVELS.len();
 /// Speeds at which the drive has a factor on the levels.
 pub const LEVELS: usize = Parameter::LEVEL_FACTORS.len();
+
+/// What the drive can hold of a slope of the level, per m.
+pub const SLOPES_PER_M: RangeInclusive<f64> = -700.0..=700.0;
+/// And of its bend, per m².
+pub const BENDS_PER_M2: RangeInclusive<f64> = -2000.0..=2000.0;
+/// And of the period of a ripple, m.
+pub const PERIODS_M: RangeInclusive<f64> = 1.0e-6..=0.2;
+/// Ways after which an element may slip, m.
+const SHORTEST_SLIP_M: f64 = 1.0e-9;
+const LONGEST_SLIP_M: f64 = 1.0e-3;
 
 /// The paper's pulse in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -111,6 +122,17 @@ impl Model {
         self.level_n.iter().sum()
     }
 
+    /// The same with all levels times a factor, and springs as stiff as before.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let slip_m = |slip_m: f64| (factor * slip_m).clamp(SHORTEST_SLIP_M, LONGEST_SLIP_M);
+        Self {
+            level_n: self.level_n.map(|level_n| factor * level_n),
+            slip_m: self.slip_m.map(slip_m),
+            ..*self
+        }
+    }
+
     /// A model that says nothing.
     pub const OFF: Self = Self {
         level_n: [0.0; ELEMENTS],
@@ -162,12 +184,19 @@ pub struct AxisCompensation {
     pub backlash_m: f64,
 }
 
+/// The same with models that the drives refine; `None` where no axis has a model.
+#[must_use]
+pub fn self_tuning(axes: &[AxisCompensation]) -> Option<Vec<AxisCompensation>> {
+    let is_model = |axis: &AxisCompensation| matches!(axis.reversal, Compensation::Model(_));
+    let refining = axes.iter().map(AxisCompensation::self_tuning);
+    axes.iter().any(is_model).then(|| refining.collect())
+}
+
 impl AxisCompensation {
-    /// The same with a model that the drive refines; `None` where it has no model.
-    #[must_use]
-    pub fn self_tuning(&self) -> Option<Self> {
+    /// The same, its model refined by the drive.
+    fn self_tuning(&self) -> Self {
         let Compensation::Model(model) = &self.reversal else {
-            return None;
+            return self.clone();
         };
         let share = if model.self_tuning > 0.0 {
             model.self_tuning
@@ -178,10 +207,10 @@ impl AxisCompensation {
             self_tuning: share,
             ..**model
         };
-        Some(Self {
+        Self {
             reversal: Compensation::Model(Box::new(model)),
             ..self.clone()
-        })
+        }
     }
 }
 
@@ -288,7 +317,8 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
         wrong.map_or(Ok(()), |value| Err(Wrong(key, wanted, *value)))
     };
     each("level_n", "0 to 1e6 N", &model.level_n, 0.0..=1.0e6)?;
-    each("slip_m", "1e-9 to 1e-3 m", &model.slip_m, 1.0e-9..=1.0e-3)?;
+    let slips_m = SHORTEST_SLIP_M..=LONGEST_SLIP_M;
+    each("slip_m", "1e-9 to 1e-3 m", &model.slip_m, slips_m)?;
     each("factor", "0 to 3.9", &model.factor, 0.0..=3.9)?;
     let [span, viscous] = [model.span_m_per_s, model.viscous_n_s_per_m];
     each("span_m_per_s", "0 to 10 m/s", &[span], 0.0..=10.0)?;
@@ -313,10 +343,9 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
     let ahead = model.windup_ahead_s;
     each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)?;
     let slope = model.slope_per_m;
-    each("slope_per_m", "-700 to 700 /m", &[slope], -700.0..=700.0)?;
+    each("slope_per_m", "-700 to 700 /m", &[slope], SLOPES_PER_M)?;
     let bend = model.bend_per_m2;
-    let steepest = -2000.0..=2000.0;
-    each("bend_per_m2", "-2000 to 2000 /m2", &[bend], steepest)?;
+    each("bend_per_m2", "-2000 to 2000 /m2", &[bend], BENDS_PER_M2)?;
     each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)?;
     let asymmetry = model.viscous_asymmetry_n_s_per_m;
     each(
@@ -331,7 +360,7 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
         model.ripple.map(|own| own.phase_turns),
     ];
     each("amplitude_n", "0 to 1e6 N", &amplitudes, 0.0..=1.0e6)?;
-    each("period_m", "1e-6 to 0.2 m", &periods, 1.0e-6..=0.2)?;
+    each("period_m", "1e-6 to 0.2 m", &periods, PERIODS_M)?;
     each("phase_turns", "-1 to 1", &phases, -1.0..=1.0)
 }
 

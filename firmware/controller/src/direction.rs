@@ -72,12 +72,8 @@ pub struct Turns {
     /// Way in that direction since the last turn, up to the one that counts.
     gone: PositionError,
     /// Cycles since it moved last.
-    stood: u8,
+    stood: u16,
 }
-
-/// The setpoint has stopped when it has not moved for so many cycles: a slow one has its steps of
-/// 39 pm in every fourth cycle.
-const STOPPED_CYCLES: u8 = 4;
 
 impl Turns {
     /// Takes the next position; gives the new direction at a reversal that counts.
@@ -109,10 +105,15 @@ impl Turns {
         counts.then_some(direction)
     }
 
-    /// Whether the setpoint has stopped.
+    /// Whether the setpoint has not moved for so many cycles.
     #[must_use]
-    pub const fn has_stopped(&self) -> bool {
-        self.stood >= STOPPED_CYCLES
+    pub const fn has_stood(&self, cycles: u16) -> bool {
+        self.stood >= cycles
+    }
+
+    /// A setpoint begins where the axis is: what lies between that and the one before is no way.
+    pub const fn begin_at(&mut self, at: Position) {
+        self.at = Some(at);
     }
 
     /// One cycle of an axis that is moved by others: where it came from is known as long as it is
@@ -181,13 +182,24 @@ mod tests {
     }
 
     #[test]
-    fn a_setpoint_has_stopped_when_it_has_not_moved_for_four_cycles() {
+    fn a_setpoint_has_stood_for_the_cycles_in_which_it_did_not_move() {
         let mut turns = Turns::default();
         let stops = [0, 5, 5, 5, 5, 5, 6].map(|at| {
             turns.reversal(SHORTEST, Position::from_counts(at));
-            turns.has_stopped()
+            turns.has_stood(4)
         });
         assert_eq!(stops, [false, false, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn a_setpoint_that_begins_elsewhere_has_not_turned() {
+        let mut turns = Turns::default();
+        for at in [0, 150] {
+            turns.reversal(SHORTEST, Position::from_counts(at));
+        }
+        turns.begin_at(Position::from_counts(149));
+        let then = [149, 148].map(|at| turns.reversal(SHORTEST, Position::from_counts(at)));
+        assert_eq!(then, [None, BACK]);
     }
 
     #[test]

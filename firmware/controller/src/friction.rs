@@ -198,6 +198,11 @@ impl FrictionState {
         self.tuner = Tuner::default();
     }
 
+    /// What a turn before this would tell is not known.
+    pub fn break_off(&mut self) {
+        self.tuner = self.tuner.at_rest();
+    }
+
     /// Refines the level by what the loop did.
     pub fn refine(&mut self, config: &FrictionConfig, progress: &Progress) {
         self.tuner.step(config.tuning, progress);

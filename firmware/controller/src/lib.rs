@@ -197,7 +197,7 @@ impl State {
         let to = reference.position.after(reference.next_velocity);
         match turns.reversal(config.shortest_way, to) {
             Some(direction) => Setpoint::Turns(direction),
-            None if turns.has_stopped() => Setpoint::Stopped,
+            None if turns.has_stood(config.stop_cycles) => Setpoint::Stopped,
             None => Setpoint::Moves,
         }
     }
@@ -234,6 +234,13 @@ impl State {
     #[must_use]
     pub fn level(&self) -> I8F24 {
         self.axis.friction.level()
+    }
+
+    /// A setpoint begins where the axis is: what lies between that and the one before is no way,
+    /// and nothing that a turn before it would tell.
+    pub fn begin_at(&mut self, at: Position) {
+        self.axis.turns.begin_at(at);
+        self.axis.friction.break_off();
     }
 
     /// Nobody knows any more where the axis is.

@@ -26,6 +26,8 @@ pub struct PulseConfig {
     pub start_delay_cycles: u16,
     /// Way the other way after which a reversal counts.
     pub shortest_way: PositionError,
+    /// The setpoint has stopped when it has not moved for so many cycles.
+    pub stop_cycles: u16,
 }
 
 /// What the setpoint does in a cycle.
@@ -65,6 +67,10 @@ pub enum PulseState {
 impl PulseState {
     /// Advances by one cycle; gives what is added to the speed setpoint.
     pub fn step(&mut self, config: &PulseConfig, setpoint: Setpoint) -> Velocity {
+        if config.amplitude == Velocity::ZERO {
+            *self = Self::Idle;
+            return Velocity::ZERO;
+        }
         match setpoint {
             Setpoint::Moves => {}
             Setpoint::Turns(direction) => {
@@ -135,6 +141,7 @@ mod tests {
             decay,
             start_delay_cycles: delay,
             shortest_way: PositionError::ZERO,
+            stop_cycles: 10,
         }
     }
 
@@ -184,6 +191,18 @@ mod tests {
             state.step(&config(0), Setpoint::Moves);
         }
         assert_eq!(state, PulseState::Idle);
+    }
+
+    #[test]
+    fn a_pulse_that_is_switched_off_does_not_come_back() {
+        let mut state = PulseState::default();
+        state.step(&config(0), BACK);
+        let off = PulseConfig {
+            amplitude: Velocity::ZERO,
+            ..config(0)
+        };
+        assert_eq!(state.step(&off, Setpoint::Moves), Velocity::ZERO);
+        assert_eq!(state.step(&config(0), Setpoint::Moves), Velocity::ZERO);
     }
 
     #[test]

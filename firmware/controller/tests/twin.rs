@@ -69,6 +69,7 @@ fn config(source: PositionSource) -> Config {
             decay: I2F30::from_num(PULSE_DECAY),
             start_delay_cycles: 0,
             shortest_way: PositionError::ZERO,
+            stop_cycles: u16::MAX,
         },
         backlash: BacklashConfig::default(),
         coulomb: Torque::from_micro_nm(COULOMB as i32),

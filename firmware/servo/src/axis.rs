@@ -174,9 +174,12 @@ impl Axis {
         wide.saturating_mul_int(1_000_000).saturating_to_num()
     }
 
-    /// Other parameters hold from now on.
-    pub(crate) fn begin_set(&mut self) {
-        self.law.forget_level();
+    /// Other parameters hold from now on; what was refined is of the model before.
+    pub(crate) fn begin_set(&mut self, before: Option<&Settings>, now: &Settings) {
+        let same = before.is_some_and(|before| before.config.friction == now.config.friction);
+        if !same {
+            self.law.forget_level();
+        }
     }
 
     /// Whether halt is commanded.
@@ -348,6 +351,7 @@ impl Axis {
                 self.encoders.velocity(controller::PositionSource::Motor),
             );
         }
+        self.law.begin_at(at.of(source));
         self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
 
@@ -465,6 +469,7 @@ impl Axis {
             // follow.
             let source = settings.config.position_source;
             let (position, velocity) = (measured.of(source), self.encoders.velocity(source));
+            self.law.begin_at(position);
             self.track = self
                 .track
                 .as_ref()

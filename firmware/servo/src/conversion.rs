@@ -317,6 +317,7 @@ impl Reading<'_> {
             decay: self.decay(Parameter::PulseTime),
             start_delay_cycles: self.whole_cycles(Parameter::PulseStartDelay)?,
             shortest_way: self.length(Parameter::PulseShortestWay, 1)?,
+            stop_cycles: self.whole_cycles(Parameter::PulseStop)?.max(1),
         })
     }
 
@@ -463,18 +464,26 @@ impl Reading<'_> {
         }
     }
 
-    /// Share over twice the level, per µN·m with 40 fractional bits. Where the level is so low that
-    /// it does not fit, a turn tells less.
+    /// Share over twice the level, per µN·m with 40 fractional bits; none where there is no level.
+    /// Where the level is so low that it does not fit, a turn tells less.
     fn level_tuning(&self) -> Result<LevelTuning, SetError> {
         let (share, settling) = (Parameter::LevelTuning, Parameter::LevelSettling);
         let levels = Parameter::FRICTION_LEVELS.iter();
         let level = levels.fold(0_u64, |sum, place| sum.saturating_add(self.steps(*place)));
-        let numerator = [self.steps(share), Q40];
-        let denominator = [share.unit().per_si, 2, level.max(1)];
-        let per = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
-        let per = per.and_then(|per| i32::try_from(per).ok());
+        let per_micro_nm = if level == 0 {
+            0
+        } else {
+            let numerator = [self.steps(share), Q40];
+            let denominator = [share.unit().per_si, 2, level];
+            let per = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
+            let per = per.and_then(|per| i32::try_from(per).ok());
+            per.unwrap_or(i32::MAX)
+        };
+        if per_micro_nm == 0 && level > 0 && self.steps(share) > 0 {
+            return Err(SetError::TooSmall(share));
+        }
         Ok(LevelTuning {
-            per_micro_nm: per.unwrap_or(i32::MAX),
+            per_micro_nm,
             settling_cycles: self.whole_cycles(settling)?,
             settling_way: self.length(Parameter::LevelSettlingWay, 1)?,
         })

@@ -146,8 +146,8 @@ impl Servo {
     pub(crate) fn activate(&mut self) {
         if let Some(settings) = self.committed.take() {
             self.timing.set_period(settings.period_us);
+            self.axis.begin_set(self.active.as_ref(), &settings);
             self.active = Some(settings);
-            self.axis.begin_set();
         }
     }
 

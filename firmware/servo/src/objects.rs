@@ -247,6 +247,7 @@ parameters! {
     PulseTime = (0x2110, 2), "reversal pulse time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
     PulseStartDelay = (0x2110, 3), "reversal pulse start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
     PulseShortestWay = (0x2110, 4), "way after which a reversal has its pulse", TENTH_NANOMETRE, (0, 50_000_000), 200_000;
+    PulseStop = (0x2110, 5), "time without motion after which a setpoint has stopped", MICROSECOND, (1, 1_000_000), 10_000;
     BacklashGap = (0x2111, 0), "backlash to compensate, the whole gap", TENTH_NANOMETRE, (0, 100_000_000), 0;
     CoulombTorque = (0x2112, 0), "Coulomb feedforward", MICRO_NM, SIGNED_TORQUE, 0;
     FrictionLevel1 = (0x2150, 1), "friction element 1, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
@@ -423,7 +424,7 @@ pub const READINGS: [(Address, &str); 27] = [
     (FAULT_DETAIL, "detail of the last fault"),
     (
         REFINED_LEVEL,
-        "factor on the friction levels that turns have refined, 1e-6; a commit sets it to one",
+        "factor on the friction levels that turns have refined, 1e-6; another model sets it to one",
     ),
     (
         COMMIT,

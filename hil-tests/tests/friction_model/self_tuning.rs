@@ -4,7 +4,7 @@
 use super::*;
 
 use axis_model::FrictionDrift;
-use workbench::circle_test;
+use workbench::{circle_test, compensation};
 
 /// Turns on which the drives refine themselves.
 const TURNS: u32 = 5;
@@ -51,8 +51,7 @@ fn without_friction() -> Machine {
 }
 
 fn self_tuning() -> Vec<AxisCompensation> {
-    let axes = model().iter().map(AxisCompensation::self_tuning);
-    axes.collect::<Option<_>>().unwrap()
+    compensation::self_tuning(model()).unwrap()
 }
 
 /// The largest burst without compensation, with the model, and refined, µm; and the first axis'

@@ -26,6 +26,11 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
         place,
         interrupt: interrupt.clone(),
     };
+    if arguments.self_tune > 0 && arguments.compensation != Method::Model {
+        return Err(Failure::new(
+            "--self-tune: needs --compensation model; drives refine a model of friction alone",
+        ));
+    }
     let compensation = self_tuning(arguments, compensation_of(arguments, &stand)?)?;
     let log = arguments.candump.as_deref();
     let turns = arguments.self_tune;
@@ -80,12 +85,8 @@ fn self_tuning(
     if arguments.self_tune == 0 {
         return Ok(compensation);
     }
-    let axes = compensation.iter().map(AxisCompensation::self_tuning);
-    axes.collect::<Option<_>>().ok_or_else(|| {
-        Failure::new(
-            "--self-tune: needs --compensation model; drives refine a model of friction alone",
-        )
-    })
+    compensation::self_tuning(&compensation)
+        .ok_or_else(|| Failure::new("--self-tune: the compensation file has a model of no axis"))
 }
 
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {

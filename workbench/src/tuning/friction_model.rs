@@ -19,7 +19,9 @@ use axis_model::{
 };
 use identification::Identification;
 
-use crate::compensation::{ELEMENTS, LEVELS, Model, RIPPLES, Ripple};
+use crate::compensation::{
+    BENDS_PER_M2, ELEMENTS, LEVELS, Model, PERIODS_M, RIPPLES, Ripple, SLOPES_PER_M,
+};
 use crate::model_file::Known;
 
 /// Friction that no reversal shows to give way slips within this, m.
@@ -139,15 +141,7 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
 /// the motor, the drive goes by that of its loop.
 fn give_places(model: &mut Model, found: &Found<'_>, known: &Known) {
     if let Some(own) = found.over_position {
-        let bend = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
-        let slope = own.linear.value;
-        let origin_m = known.origin_m;
-        let there = 1.0 - slope * origin_m + bend * origin_m * origin_m;
-        if there > 0.0 {
-            model.level_n = model.level_n.map(|level_n| there * level_n);
-            model.slope_per_m = (slope - 2.0 * bend * origin_m) / there;
-            model.bend_per_m2 = bend / there;
-        }
+        give_slope(model, own, known.origin_m);
     }
     let mut ripples: Vec<Ripple> = found
         .ripples
@@ -160,12 +154,31 @@ fn give_places(model: &mut Model, found: &Found<'_>, known: &Known) {
     }
 }
 
-/// A ripple as the drive has it; `None` without a phase, or without a period.
+/// Levels along the travel, as far as the drive can hold them: friction at position zero of the
+/// motor is not that at position zero of the loop.
+fn give_slope(model: &mut Model, own: &PositionDependentFriction<Estimate>, origin_m: f64) {
+    let slope = own.linear.value;
+    let bend = own.quadratic.as_ref().map_or(0.0, |bend| bend.value);
+    let there = 1.0 - slope * origin_m + bend * origin_m * origin_m;
+    let (slope, bend) = ((slope - 2.0 * bend * origin_m) / there, bend / there);
+    if there > 0.0 && SLOPES_PER_M.contains(&slope) && BENDS_PER_M2.contains(&bend) {
+        *model = Model {
+            slope_per_m: slope,
+            bend_per_m2: bend,
+            ..model.times(there)
+        };
+    }
+}
+
+/// A ripple as the drive has it; `None` without a phase, or without a period that it can hold.
 fn ripple(own: &TorqueRipple<Estimate>, known: &Known) -> Option<Ripple> {
     let phase_rad = own.phase.as_ref()?.value;
     let of_order = || Some(known.lead_m / own.order.as_ref()?.value);
     let period_m = own.period.as_ref().map(|period| period.value);
     let period_m = period_m.or_else(of_order)?;
+    if !PERIODS_M.contains(&period_m) {
+        return None;
+    }
     let turns = phase_rad / TAU - known.origin_m / period_m;
     Some(Ripple {
         amplitude_n: own.amplitude.value,
@@ -269,5 +282,39 @@ mod tests {
         let stiffness = |elements: &[(f64, f64)]| force(elements, 1.0e-9);
         assert!((force(&fewer, 1.0) - force(&many, 1.0)).abs() < 1.0e-9);
         assert!((stiffness(&fewer) / stiffness(&many) - 1.0).abs() < 1.0e-9);
+    }
+
+    fn about(value: f64) -> Estimate {
+        Estimate::about(value, 0.0, "")
+    }
+
+    #[test]
+    fn levels_along_the_travel_are_the_same_function_from_another_zero() {
+        let own = PositionDependentFriction {
+            linear: about(-0.8),
+            quadratic: Some(about(2.5)),
+        };
+        let begin = Model {
+            level_n: [40.0; ELEMENTS],
+            ..Model::OFF
+        };
+        let mut model = begin;
+        give_slope(&mut model, &own, 0.1);
+        for motor_m in [-0.2, 0.0, 0.15] {
+            let level_n = 400.0 * (1.0 - 0.8 * motor_m + 2.5 * motor_m * motor_m);
+            let loop_m = motor_m + 0.1;
+            let along = model.slope_per_m * loop_m + model.bend_per_m2 * loop_m * loop_m;
+            assert!((model.level_n() * (1.0 + along) - level_n).abs() < 1.0e-9);
+        }
+        let stiffness = |model: &Model| model.level_n[0] / model.slip_m[0];
+        assert!((stiffness(&model) / stiffness(&begin) - 1.0).abs() < 1.0e-9);
+        // What the drive cannot hold is left out.
+        let mut steep = begin;
+        let own = PositionDependentFriction {
+            linear: about(-0.8),
+            quadratic: Some(about(3000.0)),
+        };
+        give_slope(&mut steep, &own, 0.0);
+        assert_eq!(steep, begin);
     }
 }

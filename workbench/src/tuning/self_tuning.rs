@@ -6,7 +6,7 @@
 
 use super::tuning_circles::TuningCircles;
 use super::{TUNING_RUN, Tuned};
-use crate::compensation::{AxisCompensation, Compensation, Model};
+use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::session::{Session, Stand};
 use crate::trajectory::Circle;
@@ -21,9 +21,7 @@ const FEEDS: [(f64, u32); 3] = [(4.0, 3), (1.0, 3), (0.25, 2)];
 /// # Errors
 /// Where a circle cannot be run, or the operator interrupts.
 pub fn refined(stand: &Stand<'_>, circle: &Circle, model: &Tuned) -> Outcome<Option<Tuned>> {
-    let axes = model.compensation.iter();
-    let begin: Option<Vec<_>> = axes.map(AxisCompensation::self_tuning).collect();
-    let Some(begin) = begin else {
+    let Some(begin) = compensation::self_tuning(&model.compensation) else {
         return Ok(None);
     };
     let session = stand.connect(TUNING_RUN)?;
@@ -61,15 +59,16 @@ fn move_along(stand: &Stand<'_>, circle: &Circle, session: &mut Session<'_>) -> 
     Ok(all)
 }
 
-/// The same with all levels of the model times a factor.
+/// A level that is refined to less than this share is kept there: from nothing no turn brings it
+/// back.
+const SMALLEST: f64 = 0.05;
+
+/// The same with all levels of the model times a factor, as the drive has it: as stiff as before.
 fn with_level(axis: &AxisCompensation, factor: f64) -> AxisCompensation {
     let Compensation::Model(model) = &axis.reversal else {
         return axis.clone();
     };
-    let model = Model {
-        level_n: model.level_n.map(|level_n| factor * level_n),
-        ..**model
-    };
+    let model = model.times(factor.max(SMALLEST));
     AxisCompensation {
         reversal: Compensation::Model(Box::new(model)),
         ..axis.clone()
@@ -79,9 +78,10 @@ fn with_level(axis: &AxisCompensation, factor: f64) -> AxisCompensation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compensation::Model;
 
     #[test]
-    fn levels_are_scaled_and_nothing_else() {
+    fn levels_are_scaled_and_springs_stay_as_stiff() {
         let model = Model {
             level_n: [10.0; crate::compensation::ELEMENTS],
             self_tuning: 0.25,
@@ -92,13 +92,25 @@ mod tests {
             reversal: Compensation::Model(Box::new(model)),
             backlash_m: 1.0e-6,
         };
-        let scaled = with_level(&axis, 0.5);
-        let Compensation::Model(own) = &scaled.reversal else {
-            panic!("a model");
-        };
-        assert_eq!(own.level_n(), 50.0);
-        let level_n = model.level_n;
-        assert_eq!(Model { level_n, ..**own }, model);
-        assert_eq!(scaled.backlash_m, axis.backlash_m);
+        for (factor, level_n) in [(0.5, 50.0), (0.0, 5.0)] {
+            let scaled = with_level(&axis, factor);
+            let Compensation::Model(own) = &scaled.reversal else {
+                panic!("a model");
+            };
+            assert!((own.level_n() - level_n).abs() < 1.0e-9);
+            let stiffness = own.level_n[3] / own.slip_m[3];
+            assert!(
+                (stiffness - 10.0 / model.slip_m[3]).abs() < 1.0e-3,
+                "{stiffness}"
+            );
+            let (level_n, slip_m) = (model.level_n, model.slip_m);
+            let rest = Model {
+                level_n,
+                slip_m,
+                ..**own
+            };
+            assert_eq!(rest, model);
+            assert_eq!(scaled.backlash_m, axis.backlash_m);
+        }
     }
 }
