@@ -823,11 +823,11 @@ fn expect_all(seen: &Seen, ticks: u64) {
 }
 
 /// Ticks in which everything happens at least once.
-const RARE: u64 = 120_000;
+const RARE: u64 = 400_000;
 
 /// Seed and ticks of each run.
 fn runs() -> Vec<(u64, u64)> {
-    let ticks = Scope::now().pick(10_000, 120_000, 1_000_000);
+    let ticks = Scope::now().pick(10_000, 400_000, 1_000_000);
     let seeds = Scope::now().rows("seeds", &[1, 2, 3, 4, 5], 1, 1);
     seeds.iter().map(|seed| (*seed, ticks)).collect()
 }

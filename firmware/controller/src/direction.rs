@@ -110,20 +110,6 @@ impl Turns {
     pub const fn has_stood(&self, cycles: u16) -> bool {
         self.stood >= cycles
     }
-
-    /// A setpoint begins where the axis is: what lies between that and the one before is no way.
-    pub const fn begin_at(&mut self, at: Position) {
-        self.at = Some(at);
-    }
-
-    /// One cycle of an axis that is moved by others: where it came from is known as long as it is
-    /// no farther from there than the way after which a reversal counts.
-    pub fn follow(&mut self, shortest: PositionError, measured: Position) {
-        let is_there = |at: Position| measured.error_from(at).magnitude() <= shortest;
-        if !self.at.is_some_and(is_there) {
-            *self = Self::default();
-        }
-    }
 }
 
 #[cfg(test)]
@@ -189,30 +175,5 @@ mod tests {
             turns.has_stood(4)
         });
         assert_eq!(stops, [false, false, false, false, false, true, false]);
-    }
-
-    #[test]
-    fn a_setpoint_that_begins_elsewhere_has_not_turned() {
-        let mut turns = Turns::default();
-        for at in [0, 150] {
-            turns.reversal(SHORTEST, Position::from_counts(at));
-        }
-        turns.begin_at(Position::from_counts(149));
-        let then = [149, 148].map(|at| turns.reversal(SHORTEST, Position::from_counts(at)));
-        assert_eq!(then, [None, BACK]);
-    }
-
-    #[test]
-    fn an_axis_that_was_pushed_too_far_has_come_from_nowhere() {
-        let turned = |pushed: i64| {
-            let mut turns = Turns::default();
-            for at in [0, 150] {
-                turns.reversal(SHORTEST, Position::from_counts(at));
-            }
-            turns.follow(SHORTEST, Position::from_counts(pushed));
-            turns.reversal(SHORTEST, Position::from_counts(150));
-            turns.reversal(SHORTEST, Position::from_counts(140))
-        };
-        assert_eq!((turned(250), turned(251)), (BACK, None));
     }
 }

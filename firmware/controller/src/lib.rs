@@ -105,20 +105,14 @@ impl Config {
     }
 }
 
-/// What is known of the axis itself: it stays when torque goes and comes.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AxisMemory {
-    friction: FrictionState,
-    turns: Turns,
-}
-
 /// Everything that the law remembers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     direction: DirectionMemory,
+    turns: Turns,
     pulse: PulseState,
     backlash: BacklashState,
-    axis: AxisMemory,
+    friction: FrictionState,
     cascade: CascadeState,
     filter: FilterState,
     motor: Option<Position>,
@@ -147,35 +141,35 @@ impl State {
         }
     }
 
-    /// What is known of the axis.
+    /// What is known of the friction.
     #[must_use]
-    pub const fn axis(&self) -> AxisMemory {
-        self.axis
+    pub const fn friction(&self) -> FrictionState {
+        self.friction
     }
 
-    /// The same with what is known of the axis. The integral holds what its model does not.
+    /// The same with what is known of the friction: it is a state of the axis, and stays when
+    /// torque goes and comes. The integral holds what the model does not.
     #[must_use]
-    pub fn with_axis(self, axis: AxisMemory) -> Self {
+    pub fn with_friction(self, friction: FrictionState) -> Self {
         Self {
-            cascade: self.cascade.taking(axis.friction.held().reversed()),
-            axis,
+            cascade: self.cascade.taking(friction.held().reversed()),
+            friction,
             ..self
         }
     }
 
-    /// One cycle without torque: what is known goes along with what is measured.
+    /// One cycle without torque: friction goes along with what is measured.
     pub fn follow(&mut self, config: &Config, measured: Position) {
         match &config.friction {
-            Some(model) => self.axis.friction.follow(model, measured),
-            None => self.axis.friction.forget(),
+            Some(model) => self.friction.follow(model, measured),
+            None => self.friction.forget(),
         }
-        self.axis.turns.follow(config.pulse.shortest_way, measured);
     }
 
     /// What the friction model adds. Where it was switched off the integral takes over what the
     /// elements held.
     fn model(&mut self, config: &Config, reference: &Reference) -> Feedforward {
-        let friction = &mut self.axis.friction;
+        let friction = &mut self.friction;
         if let Some(model) = &config.friction {
             return friction.step(model, reference);
         }
@@ -188,7 +182,7 @@ impl State {
 
     /// What the setpoint does, as far as somebody asks for its turns.
     fn setpoint(&mut self, config: &Config, reference: &Reference) -> Setpoint {
-        let turns = &mut self.axis.turns;
+        let turns = &mut self.turns;
         if !config.asks_for_turns() {
             *turns = Turns::default();
             return Setpoint::Moves;
@@ -222,31 +216,30 @@ impl State {
             is_spoilt: limited || setpoint == Setpoint::Stopped,
             integral: self.cascade.integral(),
         };
-        self.axis.friction.refine(model, &progress);
+        self.friction.refine(model, &progress);
     }
 
     /// The parameters are other ones: what was refined of the model's level is not known of them.
     pub fn forget_level(&mut self) {
-        self.axis.friction.forget_level();
+        self.friction.forget_level();
     }
 
     /// The refined factor on the levels of the friction model.
     #[must_use]
     pub fn level(&self) -> I8F24 {
-        self.axis.friction.level()
+        self.friction.level()
     }
 
-    /// A setpoint begins where the axis is: what lies between that and the one before is no way,
-    /// and nothing that a turn before it would tell.
-    pub fn begin_at(&mut self, at: Position) {
-        self.axis.turns.begin_at(at);
-        self.axis.friction.break_off();
+    /// The reference begins anew, where the axis is: it has not come from anywhere, and no turn
+    /// before this tells anything.
+    pub fn begin_anew(&mut self) {
+        self.turns = Turns::default();
+        self.friction.break_off();
     }
 
     /// Nobody knows any more where the axis is.
-    pub fn forget_axis(&mut self) {
-        self.axis.friction.forget();
-        self.axis.turns = Turns::default();
+    pub fn forget_friction(&mut self) {
+        self.friction.forget();
     }
 
     /// Where the backlash unit has the motor, beside the setpoint.

@@ -209,7 +209,7 @@ impl Axis {
             // on it.
             Some(_) => {
                 self.encoders.forget();
-                self.law.forget_axis();
+                self.law.forget_friction();
             }
             None => {}
         }
@@ -330,7 +330,7 @@ impl Axis {
             .held
             .filter(|_| preset.from_last)
             .unwrap_or(preset.torque);
-        self.law = State::holding(torque).with_axis(self.law.axis());
+        self.law = State::holding(torque).with_friction(self.law.friction());
         let Some(at) = self.encoders.position() else {
             return;
         };
@@ -351,13 +351,12 @@ impl Axis {
                 self.encoders.velocity(controller::PositionSource::Motor),
             );
         }
-        self.law.begin_at(at.of(source));
         self.track = Some(ReferenceState::at(at.of(source), velocity));
     }
 
-    /// No torque: the law and the reference start anew; the axis is where it was.
+    /// No torque: the law and the reference start anew; friction is where it was.
     fn rest(&mut self) {
-        self.law = State::default().with_axis(self.law.axis());
+        self.law = State::default().with_friction(self.law.friction());
         self.track = None;
         self.last.torque = Torque::ZERO;
         self.last.reference = None;
@@ -469,7 +468,7 @@ impl Axis {
             // follow.
             let source = settings.config.position_source;
             let (position, velocity) = (measured.of(source), self.encoders.velocity(source));
-            self.law.begin_at(position);
+            self.law.begin_anew();
             self.track = self
                 .track
                 .as_ref()
