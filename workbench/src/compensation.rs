@@ -110,10 +110,9 @@ impl Default for Ripple {
     }
 }
 
-/// Share with which drives refine themselves: three quarters of what a level is off by are gone
-/// after five turns, and a turn that noise makes wrong by a percent makes the level so by a
-/// quarter.
-pub const SELF_TUNING: f64 = 0.25;
+/// Share with which drives refine themselves: five sixths of what a level is off by are gone after
+/// five turns, and a turn that noise makes wrong by a percent makes the level so by a third of it.
+pub const SELF_TUNING: f64 = 0.3;
 
 impl Model {
     /// Level of sliding friction, N.

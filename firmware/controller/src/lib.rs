@@ -213,7 +213,8 @@ impl State {
         let progress = Progress {
             turned,
             position,
-            is_spoilt: limited || setpoint == Setpoint::Stopped,
+            has_stopped: setpoint == Setpoint::Stopped,
+            is_limited: limited,
             integral: self.cascade.integral(),
         };
         self.friction.refine(model, &progress);

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! What is the same both ways (weight, an offset of the drive) falls out. A turn that does not
-//! count, a stop, or torque at its limit tells nothing.
+//! count or comes out of rest, a stop, or torque at its limit tells nothing.
 
 use fixed::types::I8F24;
 
@@ -36,8 +36,10 @@ pub struct Progress {
     pub turned: Option<Direction>,
     /// Where it is.
     pub position: Position,
-    /// Nothing is told until the next turn.
-    pub is_spoilt: bool,
+    /// It has stopped.
+    pub has_stopped: bool,
+    /// Torque is at its limit: nothing is told until the next turn.
+    pub is_limited: bool,
     /// Integral of the velocity loop.
     pub integral: Torque,
 }
@@ -48,6 +50,9 @@ pub(super) struct Tuner {
     /// Factor − 1.
     off: I8F24,
     since: Option<Turn>,
+    /// It has stopped since the last turn: the next one comes out of rest, where friction is less
+    /// than where it slides.
+    rested: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,21 +77,25 @@ impl Tuner {
         Self {
             off: self.off,
             since: None,
+            rested: true,
         }
     }
 
     /// Advances by one cycle.
     pub(super) fn step(&mut self, config: LevelTuning, progress: &Progress) {
-        if progress.is_spoilt {
+        self.rested |= progress.has_stopped;
+        if progress.has_stopped || progress.is_limited {
             self.since = None;
         }
         if let Some(direction) = progress.turned {
-            self.since = Some(Turn {
+            let turn = Turn {
                 direction,
                 position: progress.position,
                 integral: progress.integral,
                 cycles: 0,
-            });
+            };
+            self.since = Some(turn).filter(|_| !self.rested);
+            self.rested = false;
             return;
         }
         let Some(turn) = &mut self.since else {
@@ -133,7 +142,8 @@ mod tests {
         Progress {
             turned: None,
             position: Position::from_counts(counts),
-            is_spoilt: false,
+            has_stopped: false,
+            is_limited: false,
             integral: Torque::from_micro_nm(integral),
         }
     }
@@ -176,13 +186,27 @@ mod tests {
         let mut tuner = Tuner::default();
         turn(&mut tuner, Direction::Positive, 0);
         (0..1000).for_each(|_| tuner.step(CONFIG, &progress(999, 500_000)));
-        let spoilt = Progress {
-            is_spoilt: true,
+        let limited = Progress {
+            is_limited: true,
             ..progress(999, 500_000)
         };
-        tuner.step(CONFIG, &spoilt);
+        tuner.step(CONFIG, &limited);
         (0..1000).for_each(|_| tuner.step(CONFIG, &progress(5000, 500_000)));
         assert_eq!(tuner.factor(), I8F24::ONE);
+    }
+
+    #[test]
+    fn a_turn_out_of_rest_tells_nothing_and_the_next_one_does() {
+        let mut tuner = Tuner::default();
+        let stopped = Progress {
+            has_stopped: true,
+            ..progress(0, 0)
+        };
+        tuner.step(CONFIG, &stopped);
+        reversal(&mut tuner, Direction::Positive, [0, 500_000]);
+        assert_eq!(tuner.factor(), I8F24::ONE);
+        reversal(&mut tuner, Direction::Negative, [0, -500_000]);
+        assert!(tuner.factor() > I8F24::ONE);
     }
 
     #[test]
