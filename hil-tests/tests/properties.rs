@@ -79,6 +79,8 @@ struct Witness {
     limits_before: (i64, i64),
     /// Position and velocity from which the present limits have to be kept, bits.
     begun: (i64, i64),
+    /// No cycle has come since the present limits became active.
+    is_first: bool,
     offset_before: i64,
     fault_before: Option<Fault>,
     seen: Seen,
@@ -136,6 +138,7 @@ impl Witness {
             limits: None,
             limits_before: (0, 0),
             begun: (0, 0),
+            is_first: false,
             offset_before: 0,
             fault_before: None,
             seen: Seen::default(),
@@ -199,6 +202,7 @@ impl Witness {
     fn begin_anew(&mut self) {
         if let Some(reference) = &self.before {
             self.begun = begun(reference);
+            self.is_first = true;
         }
     }
 
@@ -288,6 +292,11 @@ impl Witness {
             "no fault with velocity {is}: {}",
             context()
         );
+        // x(k) was commanded before the limits became active. Where it was extrapolated and turned
+        // round, only this cycle shows with which velocity (`Reference::next_velocity`).
+        if core::mem::take(&mut self.is_first) {
+            self.begun.1 = self.begun.1.max(is.abs());
+        }
         self.look_at_position(limits, now, &context());
         self.limits_before = (velocity, acceleration);
         self.seen.moving += u64::from(is != 0);
