@@ -137,6 +137,15 @@ impl Reading<'_> {
         }
     }
 
+    /// A size with the sign of its parameter.
+    fn signed(&self, parameter: Parameter, size: i32) -> i32 {
+        if self.raw(parameter) < 0 {
+            size.wrapping_neg()
+        } else {
+            size
+        }
+    }
+
     /// A velocity (order 1), acceleration (2) or jerk (3): raw / steps per SI unit · T^order, in
     /// counts of 10 nm with 12 fractional bits.
     ///
@@ -149,11 +158,7 @@ impl Reading<'_> {
             &numerator,
             &[parameter.unit().per_si, MICROS.saturating_pow(order)],
         )?;
-        Ok(Velocity(I20F12::from_bits(if self.raw(parameter) < 0 {
-            bits.saturating_neg()
-        } else {
-            bits
-        })))
+        Ok(Velocity(I20F12::from_bits(self.signed(parameter, bits))))
     }
 
     /// A limit of the reference stage, which counts 2⁻⁸ of 10 nm: what is less there would be none.
@@ -395,11 +400,7 @@ impl Reading<'_> {
 
     fn signed_cycles(&self, parameter: Parameter) -> Result<I8F24, SetError> {
         let cycles = self.cycles(parameter)?;
-        Ok(if self.raw(parameter) < 0 {
-            cycles.saturating_neg()
-        } else {
-            cycles
-        })
+        Ok(I8F24::from_bits(self.signed(parameter, cycles.to_bits())))
     }
 
     /// 16 intervals over the span, per count and cycle.
@@ -442,12 +443,7 @@ impl Reading<'_> {
         let of = |place: Parameter, numerator: &[u64], denominator: &[u64]| {
             let bits = Fraction::new(numerator, denominator).and_then(Fraction::nearest);
             let bits = bits.and_then(|bits| i32::try_from(bits).ok());
-            let size = I8F24::from_bits(bits.unwrap_or(i32::MAX));
-            if self.raw(place) < 0 {
-                size.saturating_neg()
-            } else {
-                size
-            }
+            I8F24::from_bits(self.signed(place, bits.unwrap_or(i32::MAX)))
         };
         let (slope, bend) = (Parameter::LevelSlope, Parameter::LevelBend);
         LevelPlace {
@@ -514,12 +510,9 @@ impl Reading<'_> {
             &[self.steps(parameter), Q12, MICROS],
             &[parameter.unit().per_si, TORQUE_PER_COUNT, self.period_us],
         )?;
-        let size = VelocityGain(I20F12::from_bits(bits));
-        Ok(if self.raw(parameter) < 0 {
-            VelocityGain(size.0.saturating_neg())
-        } else {
-            size
-        })
+        Ok(VelocityGain(I20F12::from_bits(
+            self.signed(parameter, bits),
+        )))
     }
 
     fn ripple(&self) -> Result<RippleConfig, SetError> {
@@ -549,12 +542,7 @@ impl Reading<'_> {
         let turns = Fraction::new(&[self.steps(phase), Q32], &[phase.unit().per_si]);
         let turns = turns.and_then(Fraction::nearest).unwrap_or(0);
         let [a, b, c, d, ..] = turns.to_le_bytes();
-        let angle = i32::from_le_bytes([a, b, c, d]);
-        if self.raw(phase) < 0 {
-            angle.wrapping_neg()
-        } else {
-            angle
-        }
+        self.signed(phase, i32::from_le_bytes([a, b, c, d]))
     }
 
     /// Counts of 10 nm per µN·m. Below 2³¹ · 10⁸ · 2²⁸.

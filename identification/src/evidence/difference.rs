@@ -393,8 +393,7 @@ impl<'a> MotorLoad<'a> {
         };
         let helps = |apart: &Apart<'_>, [from, to]: [Way; 2]| {
             let [before, after] = [from, to].map(|way| apart.cross_validate(&with(way)));
-            let gain = Gain::of(&before, &after);
-            gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+            is_clear(&Gain::of(&before, &after))
         };
         let apart = &self.apart;
         if can_be(apart, rubbed) && helps(apart, [plain, rubbed]) {
@@ -490,7 +489,7 @@ impl<'a> MotorLoad<'a> {
 
     /// Whether a gain is relevant, certain, and more than the counts.
     fn is_worth_it(&self, gain: &Gain) -> bool {
-        gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T && self.is_beyond_counts(gain)
+        is_clear(gain) && self.is_beyond_counts(gain)
     }
 
     fn is_beyond_counts(&self, gain: &Gain) -> bool {
@@ -656,6 +655,11 @@ const fn most_of(name: EffectName) -> usize {
 /// Whether ways have an effect.
 fn has(ways: &[Way], name: EffectName) -> bool {
     ways.iter().any(|way| way.called() == name)
+}
+
+/// Whether a gain is relevant to motor − load and more than chance.
+fn is_clear(gain: &Gain) -> bool {
+    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
 }
 
 /// Whether the force speaks for a gap between springy flanks.

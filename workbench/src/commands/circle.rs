@@ -31,9 +31,11 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
             "--self-tune: needs --compensation model; drives refine a model of friction alone",
         ));
     }
-    let compensation = self_tuning(arguments, compensation_of(arguments, &stand)?)?;
-    let log = arguments.candump.as_deref();
     let turns = arguments.self_tune;
+    let asked = compensation_of(arguments, &stand)?;
+    let refining = compensation::self_tuning(&asked).filter(|_| turns > 0);
+    let compensation = refining.unwrap_or(asked);
+    let log = arguments.candump.as_deref();
     let run = circle_test::run_after(&stand, &circle, turns, &compensation, log)?;
     console::print_circle(&run.report);
     if let Some(path) = &arguments.json {
@@ -75,18 +77,6 @@ fn compensation_of(
             }
         }
     }
-}
-
-/// The same, refined by the drives where that was asked for.
-fn self_tuning(
-    arguments: &cli::CircleArguments,
-    compensation: Vec<AxisCompensation>,
-) -> Outcome<Vec<AxisCompensation>> {
-    if arguments.self_tune == 0 {
-        return Ok(compensation);
-    }
-    compensation::self_tuning(&compensation)
-        .ok_or_else(|| Failure::new("--self-tune: the compensation file has a model of no axis"))
 }
 
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {

@@ -8,7 +8,7 @@ use crate::compensation::AxisCompensation;
 use crate::error::Outcome;
 use crate::session::Stand;
 use crate::trajectory::Circle;
-use crate::trajectory::circle_limits::check_circle;
+use crate::trajectory::circle_limits::at_share_of_feed;
 
 /// Feeds beside that of the circle, as shares of it.
 const OTHERS: [f64; 2] = [0.25, 4.0];
@@ -64,14 +64,8 @@ pub fn run(
     compensation: &[AxisCompensation],
 ) -> Outcome<Vec<AtFeed>> {
     let mut feeds = vec![AtFeed::of(known)];
-    for share in OTHERS {
-        let other = Circle {
-            feed_m_per_s: share * circle.feed_m_per_s,
-            ..*circle
-        };
-        if check_circle(stand.machine, &other).is_err() {
-            continue;
-        }
+    let others = OTHERS.into_iter();
+    for other in others.filter_map(|share| at_share_of_feed(stand.machine, circle, share)) {
         let before = circle_test::run(stand, &other, &stand.uncompensated(), None)?;
         let after = circle_test::run(stand, &other, compensation, None)?;
         feeds.push(AtFeed::of([&before, &after]));

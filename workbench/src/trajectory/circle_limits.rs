@@ -45,6 +45,16 @@ impl Slowest {
     }
 }
 
+/// The same circle at a share of its feed; `None` where the machine cannot run it.
+#[must_use]
+pub fn at_share_of_feed(machine: &Machine, circle: &Circle, share: f64) -> Option<Circle> {
+    let other = Circle {
+        feed_m_per_s: share * circle.feed_m_per_s,
+        ..*circle
+    };
+    check_circle(machine, &other).is_ok().then_some(other)
+}
+
 /// The usual circle, or a smaller and slower one where the axes are short or slow.
 #[must_use]
 pub fn fitting_circle(machine: &Machine) -> Circle {

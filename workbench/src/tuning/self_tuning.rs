@@ -10,7 +10,7 @@ use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::session::{Session, Stand};
 use crate::trajectory::Circle;
-use crate::trajectory::circle_limits::check_circle;
+use crate::trajectory::circle_limits::at_share_of_feed;
 
 /// Feeds as shares of that of the circle, and turns at each. The slowest comes last: fast turns
 /// leave the level up to a fortieth too low.
@@ -46,13 +46,8 @@ pub fn refined(stand: &Stand<'_>, circle: &Circle, model: &Tuned) -> Outcome<Opt
 fn move_along(stand: &Stand<'_>, circle: &Circle, session: &mut Session<'_>) -> Outcome<u32> {
     let mut all = 0;
     for (share, turns) in FEEDS {
-        let other = Circle {
-            feed_m_per_s: share * circle.feed_m_per_s,
-            turns,
-            ..*circle
-        };
-        if check_circle(stand.machine, &other).is_ok() {
-            session.circle(&other)?;
+        if let Some(other) = at_share_of_feed(stand.machine, circle, share) {
+            session.circle(&Circle { turns, ..other })?;
             all += turns;
         }
     }

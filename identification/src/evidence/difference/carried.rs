@@ -12,11 +12,11 @@
 
 use super::columns::{Apart, Way};
 use super::flanks::Balance;
+use super::is_clear;
 use super::load::{Carried, LoadMotion, More};
 use super::refined::{between_refined_flanks, stepped};
 use super::rubbing::{Law, LoadFriction};
 use super::slipping::by_another_law;
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::descend;
@@ -136,8 +136,7 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64, enough: f64) -
         changed
     };
     let gain = Gain::of(&apart.cross_validate(ways), &apart.cross_validate(&changed));
-    let is_better = gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T;
-    (is_better && is_in_effort(apart, &changed, place)).then_some(changed)
+    (is_clear(&gain) && is_in_effort(apart, &changed, place)).then_some(changed)
 }
 
 /// Whether the effort has a wind-up in it: as well as each of its parts were it free.

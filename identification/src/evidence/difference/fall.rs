@@ -8,9 +8,9 @@ use super::columns::{Apart, Path, Way};
 use super::load::Carried;
 use super::refined::stepped;
 use super::rubbing::LoadFriction;
-use super::{Difference, Known, slipping};
+use super::{Difference, Known, is_clear, slipping};
 use crate::evidence::selection::Scored;
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, WRONG_IN_FORM};
+use crate::evidence::thresholds::WRONG_IN_FORM;
 use crate::fit::blocks::Gain;
 use crate::model::effects::stribeck::{self, GAUSS};
 use crate::model::inverse::Part;
@@ -35,7 +35,7 @@ impl Difference {
         let gain = own.smaller(&elsewhere.worth_of_a_fall(other, there)?);
         let told = self.by_the_load.as_ref()?;
         let velocity = told.velocity.value;
-        let accepted = is_enough(&gain);
+        let accepted = is_clear(&gain);
         self.scored.push(Scored {
             effect: EffectName::Stribeck.into(),
             parameter: velocity,
@@ -82,22 +82,12 @@ fn worth(apart: &Apart<'_>, ways: &[Way]) -> Option<Gain> {
     };
     level[place] = Way::Carried(Carried { friction, ..own });
     let level = stepped(apart, level, place);
-    let over = |level: &[Way]| {
-        let apart = apart.where_known(ways).where_known(level);
-        let [before, after] = [level, ways].map(|ways| apart.cross_validate(ways));
-        Gain::of(&before, &after)
-    };
-    let gain = over(&level);
-    if !is_enough(&gain) {
+    let gain = slipping::gain(apart, &level, ways);
+    if !is_clear(&gain) {
         return Some(gain);
     }
-    let slipping = slipping::by_another_law(apart, level, place);
-    Some(gain.smaller(&over(&slipping)))
-}
-
-/// Whether a fall is relevant to motor − load and more than chance.
-fn is_enough(gain: &Gain) -> bool {
-    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+    let slips = slipping::by_another_law(apart, level, place);
+    Some(gain.smaller(&slipping::gain(apart, &slips, ways)))
 }
 
 #[cfg(test)]
@@ -116,7 +106,7 @@ mod tests {
     #[test]
     fn a_fall_is_worth_what_no_presliding_explains() {
         let gain = worth_of(FRICTION).unwrap();
-        assert!(is_enough(&gain) && gain.share > 0.9, "{gain:?}");
+        assert!(is_clear(&gain) && gain.share > 0.9, "{gain:?}");
     }
 
     #[test]
@@ -129,7 +119,7 @@ mod tests {
         let slips = level.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
         for friction in [level, slips] {
             let gain = worth_of(friction);
-            assert!(!gain.is_some_and(|gain| is_enough(&gain)), "{gain:?}");
+            assert!(!gain.is_some_and(|gain| is_clear(&gain)), "{gain:?}");
         }
     }
 }

@@ -5,12 +5,12 @@
 //! the grid becomes finer about the elements that have a share.
 
 use super::columns::{Apart, Way};
+use super::is_clear;
 use super::linearised::Linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
 use super::rubbing::LoadFriction;
 use crate::evidence::reversal::slip::{Elements, grid_about};
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::model::effects::geometric;
 use crate::model::effects::stribeck::GAUSS;
@@ -122,11 +122,14 @@ fn with_elements_and_more(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Ve
     stepped(apart, ways, place)
 }
 
-/// Whether ways leave less than others on held-out blocks, where the states of both are known.
-fn is_better(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> bool {
+/// What ways gain over others on held-out blocks, where the states of both are known.
+pub(super) fn gain(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> Gain {
     let apart = apart.where_known(before).where_known(after);
-    let gain = Gain::of(&apart.cross_validate(before), &apart.cross_validate(after));
-    gain.share >= DIFFERENCE_SHARE && gain.t >= DIFFERENCE_T
+    Gain::of(&apart.cross_validate(before), &apart.cross_validate(after))
+}
+
+fn is_better(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> bool {
+    is_clear(&gain(apart, before, after))
 }
 
 /// The same ways with what else the load's friction goes with, one thing after the other.
