@@ -31,7 +31,7 @@ use protocol::{CanFrame, Station};
 use serde::Deserialize;
 use servo::Servo;
 use servo::objects::{self, Parameter};
-use workbench::compensation::{AxisCompensation, Compensation, ELEMENTS, Model, Pulse};
+use workbench::compensation::{Adaptive, AxisCompensation, Compensation, ELEMENTS, Model, POINTS};
 use workbench::drive_parameters;
 use workbench::error::Outcome;
 use workbench::network::in_process::InProcess;
@@ -259,16 +259,21 @@ fn with_length(events: &[u8]) -> Vec<u8> {
 /// Above the velocity loop's 30 Hz, so that the loop stays calm; the instructions do not depend on
 /// it.
 const LOW_PASS_HZ: f64 = 250.0;
-/// Near what `tune` finds for the reference machine. A gap that the machine does not have shifts
-/// its path and harms nothing else.
-const EVERYTHING: AxisCompensation = AxisCompensation {
-    reversal: Compensation::Pulse(Pulse {
-        height_m_per_s: 1.0e-3,
-        time_constant_s: 0.02,
-        start_delay_s: 0.002,
-    }),
-    backlash_m: 20.0e-6,
-};
+/// Pulses near what `tune --method adaptive` finds for the reference machine. A gap that the
+/// machine does not have shifts its path and harms nothing else.
+fn everything() -> AxisCompensation {
+    let adaptive = Adaptive {
+        forward_m_per_s: [2.0e-3; POINTS],
+        backward_m_per_s: [2.0e-3; POINTS],
+        time_constant_s: [0.02; POINTS],
+        start_delay_s: [0.002; POINTS],
+        ..Adaptive::OFF
+    };
+    AxisCompensation {
+        reversal: Compensation::Adaptive(Box::new(adaptive)),
+        backlash_m: 20.0e-6,
+    }
+}
 
 /// Near what `tune --method model` finds for the reference machine.
 fn model() -> AxisCompensation {
@@ -300,14 +305,14 @@ fn configure(master: &mut Master<InProcess>, machine: &Machine, drive: Drive) ->
     match drive {
         Drive::Plain => master.configure(machine, &[AxisCompensation::default()]),
         Drive::Everything => {
-            master.configure(machine, &[EVERYTHING])?;
+            master.configure(machine, &[everything()])?;
             add_coulomb(master, &machine.axes[0], machine.period_s)
         }
         Drive::Model => master.configure(machine, &[model()]),
     }
 }
 
-/// A compensation file holds a pulse or a Coulomb feedforward; the drive can do both at once.
+/// A compensation file holds pulses or a Coulomb feedforward; the drive can do both at once.
 fn add_coulomb(master: &mut Master<InProcess>, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
     let reversal = Compensation::Coulomb { force_n: 200.0 };
     let set = drive_parameters::parameters(

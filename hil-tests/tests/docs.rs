@@ -58,7 +58,7 @@ fn parameter_rows() -> String {
         text += &format!(
             "| {} | {index:04X}h:{subindex} | {} | {} | {} | {} | {} |\n",
             place + 1,
-            entry.name,
+            entry.name(),
             entry.unit.text,
             entry.min,
             entry.max,

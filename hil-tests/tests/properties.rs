@@ -711,7 +711,8 @@ impl Chaos {
 
     /// Another method, or another size of one, in whatever motion.
     fn change_compensation(&mut self) {
-        match self.dice.below(5) {
+        match self.dice.below(6) {
+            5 => self.change_schedule(),
             0 => {
                 self.write_within(Parameter::PulseHeight, -5.0e7, 5.0e7);
                 self.write_within(Parameter::PulseTime, 0.0, 2.0e8);
@@ -725,6 +726,22 @@ impl Chaos {
                 }
             }
             _ => self.change_model(),
+        }
+    }
+
+    /// Pulses over the acceleration, at some of its points.
+    fn change_schedule(&mut self) {
+        self.write_within(Parameter::AdaptiveFirst, 1.0, 1.0e6);
+        for _ in 0..3 {
+            let place = self.dice.below(9) as usize;
+            let height = self.dice.of(&[
+                Parameter::ADAPTIVE_FORWARD[place],
+                Parameter::ADAPTIVE_BACKWARD[place],
+            ]);
+            let most = self.dice.of(&[0.0, 5.0e7]);
+            self.write_within(height, -most, most);
+            self.write_within(Parameter::ADAPTIVE_TIME[place], 0.0, 2.0e8);
+            self.write_within(Parameter::ADAPTIVE_DELAY[place], 0.0, 5.0e4);
         }
     }
 

@@ -146,5 +146,6 @@ fn name(compensation: &[AxisCompensation]) -> &'static str {
         Some(Compensation::Coulomb { .. }) => "coulomb",
         Some(Compensation::Model(_)) => "model",
         Some(Compensation::Pulse(_)) => "pulse",
+        Some(Compensation::Adaptive(_)) => "adaptive",
     }
 }

@@ -81,6 +81,8 @@ pub enum Method {
     Coulomb,
     /// The paper's pulse on the speed setpoint
     Pulse,
+    /// That pulse over the acceleration at the reversal
+    Adaptive,
     /// A model of friction and of the screw's wind-up, fed forward
     Model,
 }
@@ -122,6 +124,8 @@ pub struct CircleArguments {
 pub enum TuneMethod {
     /// The paper's pulse on the speed setpoint
     Pulse,
+    /// That pulse over the acceleration at the reversal, from circles at many feeds
+    Adaptive,
     /// A model of friction and of the screw's wind-up, from records of the axes
     Model,
 }

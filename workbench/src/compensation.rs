@@ -1,5 +1,7 @@
 //! Compensation files: what `tune` and `commission` write and `circle` and the drive read.
 
+mod adaptive;
+
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -7,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use servo::objects::Parameter;
 
 use crate::error::{Failure, Outcome};
+pub use adaptive::{Adaptive, POINTS};
 
 /// Elements of the drive's friction model.
 pub const ELEMENTS: usize = Parameter::FRICTION_LEVELS.len();
@@ -33,6 +36,15 @@ pub struct Pulse {
     pub time_constant_s: f64,
     /// Time from the reversal to the start of the pulse.
     pub start_delay_s: f64,
+}
+
+impl Pulse {
+    /// No pulse.
+    pub const OFF: Self = Self {
+        height_m_per_s: 0.0,
+        time_constant_s: 0.0,
+        start_delay_s: 0.0,
+    };
 }
 
 /// Friction as the drive's model has it, in SI units at the table.
@@ -168,6 +180,8 @@ pub enum Compensation {
     },
     /// The paper's pulse on the speed setpoint.
     Pulse(Pulse),
+    /// That pulse over the acceleration at the reversal.
+    Adaptive(Box<Adaptive>),
     /// A model of the friction, and of what it does to the screw.
     Model(Box<Model>),
 }
@@ -286,6 +300,7 @@ fn check_reversal(reversal: &Compensation) -> Result<(), Wrong> {
             Wrong("force_n", "a finite number of newtons", *force_n),
         ),
         Compensation::Pulse(pulse) => check_pulse(*pulse),
+        Compensation::Adaptive(adaptive) => adaptive.check(),
         Compensation::Model(model) => check_model(model),
     }
 }
@@ -425,6 +440,15 @@ mod tests {
         let written = [
             of(Compensation::Pulse(PULSE)),
             of(Compensation::Model(Box::new(MODEL))),
+        ];
+        assert_eq!(read_back(&written).unwrap(), written);
+        let adaptive = Adaptive {
+            forward_m_per_s: [1.0e-3; POINTS],
+            ..Adaptive::OFF
+        };
+        let written = [
+            of(Compensation::None),
+            of(Compensation::Adaptive(Box::new(adaptive))),
         ];
         assert_eq!(read_back(&written).unwrap(), written);
         let none = [AxisCompensation::default(), AxisCompensation::default()];

@@ -60,6 +60,14 @@ fn parameters(reversal: &Compensation) -> String {
             1.0e3 * pulse.time_constant_s,
             1.0e3 * pulse.start_delay_s
         ),
+        Compensation::Adaptive(own) => format!(
+            "pulses over the acceleration: forward {}, backward {} mm/s, {} ms, start delay {} ms at {} mm/s²",
+            span(1.0e3, &own.forward_m_per_s),
+            span(1.0e3, &own.backward_m_per_s),
+            span(1.0e3, &own.time_constant_s),
+            span(1.0e3, &own.start_delay_s),
+            span(1.0e3, &own.accelerations_m_per_s2()),
+        ),
         Compensation::Model(model) => format!(
             "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm",
             model.level_n(),
@@ -68,6 +76,14 @@ fn parameters(reversal: &Compensation) -> String {
             1.0e-6 * model.stiffness_n_per_m
         ),
     }
+}
+
+/// First and last of some values, in a unit of which there are so many in the SI unit.
+fn span(per_si: f64, values: &[f64]) -> String {
+    let [first, .., last] = values else {
+        return "none".into();
+    };
+    format!("{:.3} to {:.3}", per_si * first, per_si * last)
 }
 
 /// Prints what tuning found.

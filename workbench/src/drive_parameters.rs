@@ -12,7 +12,7 @@ use plant_sim::machine::{MachineAxis, PositionSensor};
 use servo::objects::{Entry, Parameter, TABLE};
 use servo::parameters::ParameterSet;
 
-use crate::compensation::{AxisCompensation, Compensation, Model};
+use crate::compensation::{Adaptive, AxisCompensation, Compensation, Model, Pulse};
 use crate::error::{Failure, Outcome};
 use crate::model_file::relation_m;
 
@@ -64,7 +64,10 @@ impl Set {
         if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
             return Err(Failure::new(format!(
                 "{key}: the drive cannot hold this value ({} [{}] takes {} to {}, wanted {rounded}); choose another one",
-                entry.name, entry.unit.text, entry.min, entry.max
+                entry.name(),
+                entry.unit.text,
+                entry.min,
+                entry.max
             )));
         }
         #[expect(
@@ -213,35 +216,73 @@ impl Set {
         self.put(Parameter::PresetTorque, "gravity_n", preset_nm)
     }
 
+    /// What is not asked for is switched off.
     fn compensation(&mut self, compensation: &AxisCompensation) -> Outcome<()> {
-        let (mut coulomb_n, mut height, mut constant_s, mut delay_s) = (0.0, 0.0, 0.0, 0.0);
-        let mut model = None;
+        let (mut force_n, mut pulse) = (0.0, Pulse::OFF);
+        let (mut adaptive, mut model) = (&Adaptive::OFF, &Model::OFF);
         match &compensation.reversal {
             Compensation::None => {}
-            Compensation::Model(own) => model = Some(own),
-            Compensation::Coulomb { force_n } => coulomb_n = *force_n,
-            Compensation::Pulse(pulse) => {
-                (height, constant_s, delay_s) = (
-                    pulse.height_m_per_s,
-                    pulse.time_constant_s,
-                    pulse.start_delay_s,
-                );
-            }
+            Compensation::Coulomb { force_n: own } => force_n = *own,
+            Compensation::Pulse(own) => pulse = *own,
+            Compensation::Adaptive(own) => adaptive = own,
+            Compensation::Model(own) => model = own,
         }
-        self.put(
-            Parameter::CoulombTorque,
-            "coulomb force_n",
-            coulomb_n * self.torque_per_newton,
-        )?;
-        self.put(Parameter::PulseHeight, "pulse height_m_per_s", height)?;
-        self.put(Parameter::PulseTime, "pulse time_constant_s", constant_s)?;
-        self.put(Parameter::PulseStartDelay, "pulse start_delay_s", delay_s)?;
+        let coulomb_nm = force_n * self.torque_per_newton;
+        self.put(Parameter::CoulombTorque, "coulomb force_n", coulomb_nm)?;
         self.put(
             Parameter::BacklashGap,
             "backlash_m",
             compensation.backlash_m,
         )?;
-        self.model(model.map_or(&Model::OFF, |own| own))
+        self.pulse(&pulse)?;
+        self.adaptive(adaptive)?;
+        self.model(model)
+    }
+
+    fn pulse(&mut self, pulse: &Pulse) -> Outcome<()> {
+        let (height, time) = (pulse.height_m_per_s, pulse.time_constant_s);
+        self.put(Parameter::PulseHeight, "pulse height_m_per_s", height)?;
+        self.put(Parameter::PulseTime, "pulse time_constant_s", time)?;
+        self.put(
+            Parameter::PulseStartDelay,
+            "pulse start_delay_s",
+            pulse.start_delay_s,
+        )
+    }
+
+    fn adaptive(&mut self, adaptive: &Adaptive) -> Outcome<()> {
+        self.put(
+            Parameter::AdaptiveFirst,
+            "adaptive acceleration_m_per_s2",
+            adaptive.acceleration_m_per_s2,
+        )?;
+        for (places, key, values) in [
+            (
+                Parameter::ADAPTIVE_FORWARD,
+                "adaptive forward_m_per_s",
+                adaptive.forward_m_per_s,
+            ),
+            (
+                Parameter::ADAPTIVE_BACKWARD,
+                "adaptive backward_m_per_s",
+                adaptive.backward_m_per_s,
+            ),
+            (
+                Parameter::ADAPTIVE_TIME,
+                "adaptive time_constant_s",
+                adaptive.time_constant_s,
+            ),
+            (
+                Parameter::ADAPTIVE_DELAY,
+                "adaptive start_delay_s",
+                adaptive.start_delay_s,
+            ),
+        ] {
+            for (place, value) in places.into_iter().zip(values) {
+                self.put(place, key, value)?;
+            }
+        }
+        Ok(())
     }
 
     fn model(&mut self, model: &Model) -> Outcome<()> {
@@ -522,9 +563,13 @@ mod tests {
             backlash_m: 4.0e-5,
         };
         let config = settings(&Machine::reference(), &compensation).config;
-        assert_same("height", config.pulse.amplitude.0.to_num(), 100.0);
-        assert_same("decay", config.pulse.decay.to_num(), (-0.05_f64).exp());
-        assert_eq!(config.pulse.start_delay_cycles, 3);
+        assert_same("height", config.pulse.shape.amplitude.0.to_num(), 100.0);
+        assert_same(
+            "decay",
+            config.pulse.shape.decay.to_num(),
+            (-0.05_f64).exp(),
+        );
+        assert_eq!(config.pulse.shape.start_delay_cycles, 3);
         assert_same("half gap", config.backlash.half_gap.0.to_num(), 2000.0);
     }
 

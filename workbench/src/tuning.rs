@@ -5,10 +5,13 @@
 //! ```
 //!
 //! [`coulomb_force`] and [`friction_model`] are other ways to a compensation: one force per axis,
-//! or a model, from a record; [`self_tuning`] lets the drives refine that.
+//! or a model, from a record; [`self_tuning`] lets the drives refine that. [`adaptive()`] tunes a
+//! pulse for each acceleration.
 
+mod adaptive;
 pub mod coulomb_force;
 pub mod friction_model;
+mod pulse_response;
 pub mod self_tuning;
 mod start_values;
 mod tuning_circles;
@@ -24,6 +27,7 @@ use crate::error::Outcome;
 use crate::model_file::Known;
 use crate::session::Stand;
 use crate::trajectory::Circle;
+pub use adaptive::adaptive;
 pub use start_values::LEAST_PEAK_UM;
 use start_values::start;
 use tuning_circles::TuningCircles;

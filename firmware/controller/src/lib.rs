@@ -101,7 +101,7 @@ impl Config {
     }
 
     fn asks_for_turns(&self) -> bool {
-        self.pulse.amplitude != Velocity::ZERO || self.refined().is_some()
+        !self.pulse.is_off() || self.refined().is_some()
     }
 }
 
@@ -289,7 +289,8 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
 
     let direction = state.direction.after(reference.next_velocity);
     let setpoint = state.setpoint(config, reference);
-    let pulse = state.pulse.step(&config.pulse, setpoint);
+    let change = reference.next_velocity.minus(reference.velocity);
+    let pulse = state.pulse.step(&config.pulse, setpoint, change);
     let (offset, offset_velocity) =
         state
             .backlash

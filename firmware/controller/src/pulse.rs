@@ -2,11 +2,14 @@
 //!
 //! On a change of commanded direction, `Δn · exp(−t / T_comp)` is added to the speed setpoint, in
 //! the new direction, after an optional start delay. So that it does no harm it comes at reversals
-//! alone that [count](crate::direction::Turns), and ends where the setpoint stops.
+//! alone that [count](crate::direction::Turns), and ends where the setpoint stops. One pulse is
+//! good for one acceleration at the reversal; a [`Schedule`] has one for each.
 //!
 //! Source: "Influence of the gap and the friction on trajectory reproduction accuracy in a
 //! multiaxis machine with CNC", §4.2. The exponential is a geometric series: one multiplication a
 //! cycle by `decay = exp(−T_cycle / T_comp)`, computed on the host.
+
+mod schedule;
 
 use fixed::FixedI64;
 use fixed::types::extra::U42;
@@ -14,20 +17,38 @@ use fixed::types::{I2F30, I20F12};
 
 use crate::direction::Direction;
 use crate::units::{PositionError, Velocity};
+pub use schedule::{MeanAcceleration, POINTS, Point, Schedule};
 
-/// Parameters of the pulse.
+/// What a pulse looks like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PulseConfig {
-    /// Δn: height of the pulse; zero switches it off.
+pub struct Shape {
+    /// Δn: height of the pulse, in the new direction.
     pub amplitude: Velocity,
     /// exp(−T_cycle / T_comp), 0…1.
     pub decay: I2F30,
     /// Cycles from the reversal to the start of the pulse.
     pub start_delay_cycles: u16,
+}
+
+/// Parameters of the pulse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PulseConfig {
+    /// The pulse of every reversal; without height there is none.
+    pub shape: Shape,
+    /// Pulses over the acceleration, instead of that one.
+    pub schedule: Option<Schedule>,
     /// Way the other way after which a reversal counts.
     pub shortest_way: PositionError,
     /// The setpoint has stopped when it has not moved for so many cycles.
     pub stop_cycles: u16,
+}
+
+impl PulseConfig {
+    /// Whether any reversal has a pulse.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        self.schedule.is_none() && self.shape.amplitude == Velocity::ZERO
+    }
 }
 
 /// What the setpoint does in a cycle.
@@ -41,81 +62,92 @@ pub enum Setpoint {
     Stopped,
 }
 
+/// Memory of the pulse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PulseState {
+    mean: MeanAcceleration,
+    stage: Stage,
+}
+
 /// Where the pulse stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PulseState {
+enum Stage {
     /// No pulse.
     #[default]
     Idle,
     /// A reversal was seen; so many cycles to go.
-    Waiting {
-        /// Cycles until the pulse starts.
-        cycles: u16,
-        /// Its direction.
-        direction: Direction,
-    },
+    Waiting { cycles: u16, pulse: Pulse },
     /// The pulse decays. What decays is the envelope, 1…0 in 2.30 bits: a decaying height in 20.12
     /// bits would lose an area that the velocity loop integrates.
-    Active {
-        /// exp(−t / T_comp), never negative.
-        envelope: I2F30,
-        /// Its direction.
-        direction: Direction,
-    },
+    Active { envelope: I2F30, pulse: Pulse },
+}
+
+/// The pulse of one reversal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Pulse {
+    amplitude: Velocity,
+    decay: I2F30,
+    direction: Direction,
 }
 
 impl PulseState {
-    /// Advances by one cycle; gives what is added to the speed setpoint.
-    pub fn step(&mut self, config: &PulseConfig, setpoint: Setpoint) -> Velocity {
-        if config.amplitude == Velocity::ZERO {
-            *self = Self::Idle;
+    /// Advances by one cycle; gives what is added to the speed setpoint. `change` is that of the
+    /// commanded velocity to the next cycle.
+    pub fn step(&mut self, config: &PulseConfig, setpoint: Setpoint, change: Velocity) -> Velocity {
+        if config.is_off() {
+            *self = Self::default();
             return Velocity::ZERO;
+        }
+        if let Some(schedule) = &config.schedule {
+            self.mean.take(schedule, change);
         }
         match setpoint {
             Setpoint::Moves => {}
-            Setpoint::Turns(direction) => {
-                *self = Self::Waiting {
-                    cycles: config.start_delay_cycles,
-                    direction,
-                };
-            }
-            Setpoint::Stopped => *self = Self::Idle,
+            Setpoint::Turns(direction) => self.stage = self.begun(config, direction),
+            Setpoint::Stopped => self.stage = Stage::Idle,
         }
-        match *self {
-            Self::Idle => Velocity::ZERO,
-            Self::Waiting {
-                cycles: 0,
-                direction,
-            } => self.emit(config, I2F30::ONE, direction),
-            Self::Waiting { cycles, direction } => {
-                *self = Self::Waiting {
-                    cycles: cycles.saturating_sub(1),
-                    direction,
-                };
+        match self.stage {
+            Stage::Idle => Velocity::ZERO,
+            Stage::Waiting { cycles: 0, pulse } => self.emit(I2F30::ONE, pulse),
+            Stage::Waiting { cycles, pulse } => {
+                let cycles = cycles.saturating_sub(1);
+                self.stage = Stage::Waiting { cycles, pulse };
                 Velocity::ZERO
             }
-            Self::Active {
-                envelope,
-                direction,
-            } => self.emit(config, envelope, direction),
+            Stage::Active { envelope, pulse } => self.emit(envelope, pulse),
         }
     }
 
-    fn emit(&mut self, config: &PulseConfig, envelope: I2F30, direction: Direction) -> Velocity {
-        // 2.30 times 2.30 bits: 4.60 bits, exact; rounded down, so that it ends.
-        let next = I2F30::saturating_from_num(envelope.wide_mul(config.decay));
-        let height = Velocity(I20F12::saturating_from_num(
-            config.amplitude.0.wide_mul(envelope).saturating_add(HALF),
-        ));
-        *self = if next == I2F30::ZERO {
-            Self::Idle
-        } else {
-            Self::Active {
-                envelope: next,
+    fn begun(&self, config: &PulseConfig, direction: Direction) -> Stage {
+        let shape = match &config.schedule {
+            Some(schedule) => schedule.shape(self.mean, direction),
+            None => config.shape,
+        };
+        Stage::Waiting {
+            cycles: shape.start_delay_cycles,
+            pulse: Pulse {
+                amplitude: shape.amplitude,
+                decay: shape.decay,
                 direction,
+            },
+        }
+    }
+
+    fn emit(&mut self, envelope: I2F30, pulse: Pulse) -> Velocity {
+        // 2.30 times 2.30 bits: 4.60 bits, exact; rounded down, so that it ends.
+        let next = I2F30::saturating_from_num(envelope.wide_mul(pulse.decay));
+        self.stage = if next == I2F30::ZERO {
+            Stage::Idle
+        } else {
+            Stage::Active {
+                envelope: next,
+                pulse,
             }
         };
-        signed(height, direction)
+        let height = Velocity(I20F12::saturating_from_num(
+            pulse.amplitude.0.wide_mul(envelope).saturating_add(HALF),
+        ));
+        signed(height, pulse.direction)
     }
 }
 
@@ -136,10 +168,14 @@ mod tests {
     fn config(delay: u16) -> PulseConfig {
         // T_comp = 20 cycles.
         let decay = I2F30::from_num((-1.0_f64 / 20.0).exp());
-        PulseConfig {
+        let shape = Shape {
             amplitude: Velocity(I20F12::from_num(100)),
             decay,
             start_delay_cycles: delay,
+        };
+        PulseConfig {
+            shape,
+            schedule: None,
             shortest_way: PositionError::ZERO,
             stop_cycles: 10,
         }
@@ -153,7 +189,7 @@ mod tests {
         let mut state = PulseState::default();
         for cycle in 0..100_u32 {
             let setpoint = if cycle == 0 { BACK } else { Setpoint::Moves };
-            let got: f64 = state.step(&config(0), setpoint).0.to_num();
+            let got: f64 = state.step(&config(0), setpoint, Velocity::ZERO).0.to_num();
             let wanted = -100.0 * (-f64::from(cycle) / 20.0).exp();
             assert!(
                 (got - wanted).abs() < 0.005,
@@ -168,7 +204,7 @@ mod tests {
         let heights: Vec<f64> = (0..5)
             .map(|cycle| {
                 let setpoint = if cycle == 0 { ON } else { Setpoint::Moves };
-                state.step(&config(3), setpoint).0.to_num()
+                state.step(&config(3), setpoint, Velocity::ZERO).0.to_num()
             })
             .collect();
         assert_eq!(&heights[..3], [0.0; 3]);
@@ -178,43 +214,49 @@ mod tests {
     #[test]
     fn a_second_reversal_starts_a_new_pulse() {
         let mut state = PulseState::default();
-        state.step(&config(0), ON);
-        let second: f64 = state.step(&config(0), BACK).0.to_num();
+        state.step(&config(0), ON, Velocity::ZERO);
+        let second: f64 = state.step(&config(0), BACK, Velocity::ZERO).0.to_num();
         assert!((second + 100.0).abs() < 1e-3);
     }
 
     #[test]
     fn the_pulse_ends() {
         let mut state = PulseState::default();
-        state.step(&config(0), BACK);
+        state.step(&config(0), BACK, Velocity::ZERO);
         for _ in 0..4000 {
-            state.step(&config(0), Setpoint::Moves);
+            state.step(&config(0), Setpoint::Moves, Velocity::ZERO);
         }
-        assert_eq!(state, PulseState::Idle);
+        assert_eq!(state.stage, Stage::Idle);
     }
 
     #[test]
     fn a_pulse_that_is_switched_off_does_not_come_back() {
         let mut state = PulseState::default();
-        state.step(&config(0), BACK);
+        state.step(&config(0), BACK, Velocity::ZERO);
         let off = PulseConfig {
-            amplitude: Velocity::ZERO,
+            shape: Shape::default(),
             ..config(0)
         };
-        assert_eq!(state.step(&off, Setpoint::Moves), Velocity::ZERO);
-        assert_eq!(state.step(&config(0), Setpoint::Moves), Velocity::ZERO);
+        assert_eq!(
+            state.step(&off, Setpoint::Moves, Velocity::ZERO),
+            Velocity::ZERO
+        );
+        assert_eq!(
+            state.step(&config(0), Setpoint::Moves, Velocity::ZERO),
+            Velocity::ZERO
+        );
     }
 
     #[test]
     fn a_stop_ends_the_pulse_and_one_that_waits() {
         for delay in [0, 9] {
             let mut state = PulseState::default();
-            state.step(&config(delay), BACK);
+            state.step(&config(delay), BACK, Velocity::ZERO);
             assert_eq!(
-                state.step(&config(delay), Setpoint::Stopped),
+                state.step(&config(delay), Setpoint::Stopped, Velocity::ZERO),
                 Velocity::ZERO
             );
-            assert_eq!(state, PulseState::Idle);
+            assert_eq!(state.stage, Stage::Idle);
         }
     }
 }

@@ -23,6 +23,22 @@ pub(crate) fn root(square: u64) -> u32 {
     u32::try_from(root).unwrap_or(u32::MAX)
 }
 
+/// The same of 32 bits: 64-bit shifts are calls on a Cortex-M4.
+pub(crate) fn short_root(square: u32) -> u32 {
+    let (mut rest, mut root) = (square, 0_u32);
+    let mut bit = 1_u32 << 30;
+    while bit > 0 {
+        let trial = root | bit;
+        root = root.wrapping_shr(1);
+        if rest >= trial {
+            rest = rest.wrapping_sub(trial);
+            root |= bit;
+        }
+        bit = bit.wrapping_shr(2);
+    }
+    root
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -32,6 +48,12 @@ mod tests {
         #[test]
         fn the_root_is_that_of_the_core_library(square in any::<u64>()) {
             prop_assert_eq!(u64::from(root(square)), square.isqrt());
+        }
+
+        #[test]
+        fn the_short_root_is_that_of_the_core_library(square in any::<u32>(), shift in 0..32_u32) {
+            let square = square >> shift;
+            prop_assert_eq!(short_root(square), square.isqrt());
         }
     }
 }

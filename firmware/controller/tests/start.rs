@@ -85,9 +85,9 @@ fn at_standstill_the_first_torque_is_the_one_that_holds() {
 }
 
 /// First torque of a stop from 0.4 m/s, µN·m: the axis goes on as measured in that cycle.
-fn first_torque_of_a_stop(law: State) -> i32 {
+fn first_torque_of_a_stop(begun: &State) -> i32 {
     let (config, here, speed) = (config(), Position::from_counts(123_456), per_cycle(40_000));
-    let (mut stage, mut law) = (ReferenceState::at(here, speed), law);
+    let (mut stage, mut law) = (ReferenceState::at(here, speed), *begun);
     let input = ReferenceInput {
         mode: Mode::QuickStop,
         ..Default::default()
@@ -111,9 +111,9 @@ fn out_of_motion_the_first_torque_is_that_of_the_ramp_alone() {
     let here = Position::from_counts(123_456);
     // The ramp begins with −100 counts per cycle², a step for the feedforward (above 50): Ja · 100,
     // of which the filter passes a quarter at once.
-    let torque = first_torque_of_a_stop(State::default().moving(here, per_cycle(40_000)));
+    let torque = first_torque_of_a_stop(&State::default().moving(here, per_cycle(40_000)));
     assert!((torque + 14_827 * 100 / 4).abs() <= 2, "{torque} µN·m");
     // Without the measured velocity the loop believes that the axis stands, and kicks with the
     // limit.
-    assert_eq!(first_torque_of_a_stop(State::default()), 14_323_944 / 4);
+    assert_eq!(first_torque_of_a_stop(&State::default()), 14_323_944 / 4);
 }

@@ -9,7 +9,7 @@
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
-use controller::pulse::PulseConfig;
+use controller::pulse::{PulseConfig, Shape};
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::ripple::RippleConfig;
 use controller::units::{
@@ -65,9 +65,12 @@ fn config(source: PositionSource) -> Config {
             torque_limit: Torque::from_micro_nm(LIMIT as i32),
         },
         pulse: PulseConfig {
-            amplitude: Velocity(I20F12::from_num(PULSE_HEIGHT)),
-            decay: I2F30::from_num(PULSE_DECAY),
-            start_delay_cycles: 0,
+            shape: Shape {
+                amplitude: Velocity(I20F12::from_num(PULSE_HEIGHT)),
+                decay: I2F30::from_num(PULSE_DECAY),
+                start_delay_cycles: 0,
+            },
+            schedule: None,
             shortest_way: PositionError::ZERO,
             stop_cycles: u16::MAX,
         },
@@ -150,8 +153,8 @@ impl Twin {
         let acceleration_gain: f64 = cascade.acceleration_gain.0.to_num();
         let share: f64 = cascade.velocity_filter.to_num();
         let (height, decay): (f64, f64) = (
-            self.config.pulse.amplitude.0.to_num(),
-            self.config.pulse.decay.to_num(),
+            self.config.pulse.shape.amplitude.0.to_num(),
+            self.config.pulse.shape.decay.to_num(),
         );
         let (limit, coulomb): (f64, f64) = (
             cascade.torque_limit.0.to_num(),

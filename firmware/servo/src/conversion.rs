@@ -14,13 +14,14 @@
 //! millionth, the exponentials by 2⁻³⁰. A value that the type cannot hold at that cycle time, or
 //! that would become zero though it is not, refuses the whole set: nothing saturates.
 
+mod pulse;
+
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
     Ahead, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
 };
-use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::ripple::{RippleConfig, Wave};
 use controller::units::{
@@ -314,16 +315,6 @@ impl Reading<'_> {
             &numerator,
             &[i, share.1, TORQUE_PER_COUNT, self.period_us, self.period_us],
         )
-    }
-
-    fn pulse(&self) -> Result<PulseConfig, SetError> {
-        Ok(PulseConfig {
-            amplitude: self.motion(Parameter::PulseHeight, 1)?,
-            decay: self.decay(Parameter::PulseTime),
-            start_delay_cycles: self.whole_cycles(Parameter::PulseStartDelay)?,
-            shortest_way: self.length(Parameter::PulseShortestWay, 1)?,
-            stop_cycles: self.whole_cycles(Parameter::PulseStop)?.max(1),
-        })
     }
 
     /// A length over a number.
@@ -795,7 +786,7 @@ mod tests {
                 .iter()
                 .find(|entry| entry.parameter == *parameter)
                 .unwrap();
-            assert_eq!(entry.check(*value), Ok(()), "{}", entry.name);
+            assert_eq!(entry.check(*value), Ok(()), "{}", entry.name());
             set.set(*parameter, *value);
         }
         set
@@ -890,7 +881,7 @@ mod tests {
             i64::from(cascade.integral_gain.0.to_bits()),
             i64::from(cascade.acceleration_gain.0.to_bits()),
             i64::from(settings.config.backlash.half_gap.0.to_bits()),
-            i64::from(settings.config.pulse.amplitude.0.to_bits()),
+            i64::from(settings.config.pulse.shape.amplitude.0.to_bits()),
             i64::from(reference.velocity_limit.0.to_bits()),
             i64::from(reference.acceleration_limit.0.to_bits()),
             i64::from(reference.quick_stop.deceleration.0.to_bits()),
@@ -898,7 +889,7 @@ mod tests {
             i64::from(reference.quick_stop.jerk.0.to_bits()),
             i64::from(reference.step.0.to_bits()),
             (i64::from(settings.way.whole) << 32) + i64::from(settings.way.fraction),
-            i64::from(settings.config.pulse.start_delay_cycles),
+            i64::from(settings.config.pulse.shape.start_delay_cycles),
             i64::from(settings.config.pulse.shortest_way.0.to_bits()),
         ]
     }
@@ -913,7 +904,7 @@ mod tests {
         [
             (1.0 - share, of(Parameter::VelocityFilterTime)),
             (
-                settings.config.pulse.decay.to_num(),
+                settings.config.pulse.shape.decay.to_num(),
                 of(Parameter::PulseTime),
             ),
         ]

@@ -56,8 +56,6 @@ pub struct Entry {
     pub address: Address,
     /// Which parameter.
     pub parameter: Parameter,
-    /// What it is.
-    pub name: &'static str,
     /// Step of the raw number.
     pub unit: Unit,
     /// Smallest raw value.
@@ -80,6 +78,16 @@ pub enum Misfit {
 }
 
 impl Entry {
+    /// What it is.
+    #[must_use]
+    #[expect(clippy::as_conversions, reason = "a discriminant is its place")]
+    pub fn name(&self) -> &'static str {
+        NAMES
+            .get(self.parameter as usize)
+            .copied()
+            .unwrap_or_default()
+    }
+
     /// Checks a raw value.
     ///
     /// # Errors
@@ -117,6 +125,58 @@ macro_rules! parameters {
                 Self::FilterB2,
                 Self::FilterA1,
                 Self::FilterA2,
+            ];
+
+            /// Heights of the adaptive pulse where the axis turns forward.
+            pub const ADAPTIVE_FORWARD: [Self; 9] = [
+                Self::AdaptiveForward1,
+                Self::AdaptiveForward2,
+                Self::AdaptiveForward3,
+                Self::AdaptiveForward4,
+                Self::AdaptiveForward5,
+                Self::AdaptiveForward6,
+                Self::AdaptiveForward7,
+                Self::AdaptiveForward8,
+                Self::AdaptiveForward9,
+            ];
+
+            /// And where it turns backward.
+            pub const ADAPTIVE_BACKWARD: [Self; 9] = [
+                Self::AdaptiveBackward1,
+                Self::AdaptiveBackward2,
+                Self::AdaptiveBackward3,
+                Self::AdaptiveBackward4,
+                Self::AdaptiveBackward5,
+                Self::AdaptiveBackward6,
+                Self::AdaptiveBackward7,
+                Self::AdaptiveBackward8,
+                Self::AdaptiveBackward9,
+            ];
+
+            /// Time constants of the adaptive pulse.
+            pub const ADAPTIVE_TIME: [Self; 9] = [
+                Self::AdaptiveTime1,
+                Self::AdaptiveTime2,
+                Self::AdaptiveTime3,
+                Self::AdaptiveTime4,
+                Self::AdaptiveTime5,
+                Self::AdaptiveTime6,
+                Self::AdaptiveTime7,
+                Self::AdaptiveTime8,
+                Self::AdaptiveTime9,
+            ];
+
+            /// Its start delays.
+            pub const ADAPTIVE_DELAY: [Self; 9] = [
+                Self::AdaptiveDelay1,
+                Self::AdaptiveDelay2,
+                Self::AdaptiveDelay3,
+                Self::AdaptiveDelay4,
+                Self::AdaptiveDelay5,
+                Self::AdaptiveDelay6,
+                Self::AdaptiveDelay7,
+                Self::AdaptiveDelay8,
+                Self::AdaptiveDelay9,
             ];
 
             /// Levels of the friction elements.
@@ -189,13 +249,16 @@ macro_rules! parameters {
         /// Raw values after reset, in the order of the parameters.
         pub const DEFAULTS: &[i32] = &[$($default,)*];
 
+        /// What the parameters are, apart from the table: no drive needs to know, and what is not
+        /// asked for is not in its flash.
+        static NAMES: [&str; PARAMETERS] = [$($text,)*];
+
         /// All parameters, in their order. The defaults move nothing: torque limit and gains are
         /// zero until a set is committed.
         pub static TABLE: [Entry; PARAMETERS] = [
             $(Entry {
                 address: Address::new($index, $subindex),
                 parameter: Parameter::$name,
-                name: $text,
                 unit: $unit,
                 min: $range.0,
                 max: $range.1,
@@ -248,6 +311,43 @@ parameters! {
     PulseStartDelay = (0x2110, 3), "reversal pulse start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
     PulseShortestWay = (0x2110, 4), "way after which a reversal has its pulse", TENTH_NANOMETRE, (0, 50_000_000), 200_000;
     PulseStop = (0x2110, 5), "time without motion after which a setpoint has stopped", MICROSECOND, (1, 1_000_000), 10_000;
+    AdaptiveFirst = (0x2116, 0), "acceleration at the reversal of adaptive pulse 1; each other one is at four times that of the one before", MICROMETRE_PER_S2, (1, i32::MAX), 28;
+    AdaptiveForward1 = (0x2117, 1), "adaptive pulse 1, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward2 = (0x2117, 2), "adaptive pulse 2, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward3 = (0x2117, 3), "adaptive pulse 3, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward4 = (0x2117, 4), "adaptive pulse 4, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward5 = (0x2117, 5), "adaptive pulse 5, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward6 = (0x2117, 6), "adaptive pulse 6, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward7 = (0x2117, 7), "adaptive pulse 7, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward8 = (0x2117, 8), "adaptive pulse 8, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveForward9 = (0x2117, 9), "adaptive pulse 9, height where the axis turns forward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward1 = (0x2118, 1), "adaptive pulse 1, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward2 = (0x2118, 2), "adaptive pulse 2, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward3 = (0x2118, 3), "adaptive pulse 3, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward4 = (0x2118, 4), "adaptive pulse 4, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward5 = (0x2118, 5), "adaptive pulse 5, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward6 = (0x2118, 6), "adaptive pulse 6, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward7 = (0x2118, 7), "adaptive pulse 7, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward8 = (0x2118, 8), "adaptive pulse 8, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveBackward9 = (0x2118, 9), "adaptive pulse 9, height where the axis turns backward", NANOMETRE_PER_S, (-i32::MAX, i32::MAX), 0;
+    AdaptiveTime1 = (0x2119, 1), "adaptive pulse 1, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime2 = (0x2119, 2), "adaptive pulse 2, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime3 = (0x2119, 3), "adaptive pulse 3, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime4 = (0x2119, 4), "adaptive pulse 4, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime5 = (0x2119, 5), "adaptive pulse 5, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime6 = (0x2119, 6), "adaptive pulse 6, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime7 = (0x2119, 7), "adaptive pulse 7, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime8 = (0x2119, 8), "adaptive pulse 8, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveTime9 = (0x2119, 9), "adaptive pulse 9, time constant (0: one cycle)", NANOSECOND, POSITIVE, 0;
+    AdaptiveDelay1 = (0x211A, 1), "adaptive pulse 1, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay2 = (0x211A, 2), "adaptive pulse 2, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay3 = (0x211A, 3), "adaptive pulse 3, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay4 = (0x211A, 4), "adaptive pulse 4, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay5 = (0x211A, 5), "adaptive pulse 5, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay6 = (0x211A, 6), "adaptive pulse 6, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay7 = (0x211A, 7), "adaptive pulse 7, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay8 = (0x211A, 8), "adaptive pulse 8, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
+    AdaptiveDelay9 = (0x211A, 9), "adaptive pulse 9, start delay, to whole cycles", MICROSECOND, (0, 1_000_000), 0;
     BacklashGap = (0x2111, 0), "backlash to compensate, the whole gap", TENTH_NANOMETRE, (0, 100_000_000), 0;
     CoulombTorque = (0x2112, 0), "Coulomb feedforward", MICRO_NM, SIGNED_TORQUE, 0;
     FrictionLevel1 = (0x2150, 1), "friction element 1, torque at which it slips", MICRO_NM, (0, TORQUE), 0;
@@ -488,8 +588,8 @@ mod tests {
     #[test]
     fn every_default_fits_its_row_and_every_row_is_at_the_place_of_its_parameter() {
         for (place, entry) in TABLE.iter().enumerate() {
-            assert_eq!(entry.parameter as usize, place, "{}", entry.name);
-            assert_eq!(entry.check(entry.default), Ok(()), "{}", entry.name);
+            assert_eq!(entry.parameter as usize, place, "{}", entry.name());
+            assert_eq!(entry.check(entry.default), Ok(()), "{}", entry.name());
         }
     }
 

@@ -84,6 +84,8 @@ impl Fraction {
 
     /// Long division: the head of the numerator is as long as the denominator; its tail comes down
     /// digit by digit. `None` beyond 64 digits.
+    // Once in the image, not at every conversion.
+    #[inline(never)]
     fn divided(self) -> Option<Quotient> {
         let (numerator, denominator) = self.shortened();
         let digits = u128::from(denominator)
@@ -124,6 +126,7 @@ const fn low(value: u128) -> u64 {
     value as u64
 }
 
+#[inline(never)]
 fn product(factors: &[u64]) -> Option<u128> {
     factors.iter().try_fold(1_u128, |product, factor| {
         product.checked_mul(u128::from(*factor))

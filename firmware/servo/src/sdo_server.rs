@@ -397,7 +397,7 @@ mod tests {
         let (_, Effect::Commit(settings)) = ask(&mut server, COMMIT) else {
             panic!("no commit")
         };
-        assert_eq!(settings.config.pulse.start_delay_cycles, 7);
+        assert_eq!(settings.config.pulse.shape.start_delay_cycles, 7);
         assert_eq!(
             (read(&mut server, delay), read(&mut server, objects::COMMIT)),
             (7000, 1)

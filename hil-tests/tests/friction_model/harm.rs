@@ -3,7 +3,7 @@
 
 use super::*;
 
-use workbench::compensation::{Compensation, Pulse};
+use workbench::compensation::{Adaptive, Compensation, Pulse};
 
 /// The largest error at the table and the largest change of the force within a cycle, from a time
 /// on, of the first axis along a path that begins at rest in its middle.
@@ -120,7 +120,20 @@ fn noise(time_s: f64) -> f64 {
 /// A pulse that comes once leaves so much more than none: its own height for a few cycles.
 const PULSE_UM: f64 = 13.0;
 
-/// What the methods are tuned to at R 100 F 2000: the pulse as `quadrant tune` has it, Coulomb
+/// Pulses over the acceleration as `quadrant tune` has them.
+const ADAPTIVE: Adaptive = Adaptive {
+    acceleration_m_per_s2: 2.8e-5,
+    forward_m_per_s: [
+        1.0e-4, 2.9e-4, 8.4e-4, 1.09e-3, 1.72e-3, 2.1e-3, 2.9e-3, 4.12e-3, 4.45e-3,
+    ],
+    backward_m_per_s: [
+        1.0e-4, 2.9e-4, 8.4e-4, 1.09e-3, 1.72e-3, 2.1e-3, 2.9e-3, 4.12e-3, 4.45e-3,
+    ],
+    time_constant_s: [1.63, 0.55, 0.171, 0.144, 0.086, 0.070, 0.046, 0.026, 0.022],
+    start_delay_s: [0.0, 0.048, 0.064, 0.001, 0.0, 0.0, 0.001, 0.002, 0.0],
+};
+
+/// What the methods are tuned to at R 100 F 2000: the pulses as `quadrant tune` has them, Coulomb
 /// friction as it is.
 fn methods() -> Vec<(&'static str, Vec<AxisCompensation>)> {
     let of = |reversal: Compensation| {
@@ -140,11 +153,13 @@ fn methods() -> Vec<(&'static str, Vec<AxisCompensation>)> {
         ("coulomb", of(Compensation::Coulomb { force_n: 400.0 })),
         ("pulse", of(Compensation::Pulse(pulse))),
         ("model", model().to_vec()),
+        ("adaptive", of(Compensation::Adaptive(Box::new(ADAPTIVE)))),
     ]
 }
 
 #[test]
-fn the_model_is_nowhere_worse_than_none_and_the_pulse_comes_once_where_nothing_is_to_be_gained() {
+fn model_and_adaptive_are_nowhere_worse_than_none_and_the_pulse_comes_once_where_nothing_is_gained()
+{
     let machine = Machine::reference();
     let (paths, methods) = (harmless_paths(), methods());
     let rows = on_all_cores(&paths, |(name, path, from_s)| {
@@ -155,11 +170,14 @@ fn the_model_is_nowhere_worse_than_none_and_the_pulse_comes_once_where_nothing_i
             let step = format!("{name}, {method}: largest step of the force");
             rows.push(row(step, step_n, "N"));
         }
-        let [none_um, _, pulse_um, model_um] = [0, 2, 4, 6].map(|place| rows[place].value);
-        assert!(
-            model_um <= none_um + 0.2,
-            "{name}: {model_um} µm, {none_um} without"
-        );
+        let [none_um, pulse_um, model_um, adaptive_um] =
+            [0, 4, 6, 8].map(|place| rows[place].value);
+        for harmless_um in [model_um, adaptive_um] {
+            assert!(
+                harmless_um <= none_um + 0.2,
+                "{name}: {harmless_um} µm, {none_um} without"
+            );
+        }
         assert!(pulse_um <= none_um + PULSE_UM, "{name}: {pulse_um} µm");
         rows
     });

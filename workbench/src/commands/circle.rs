@@ -56,15 +56,12 @@ fn compensation_of(
     match (arguments.compensation, file) {
         (Method::None, None) => Ok(stand.uncompensated()),
         (Method::None, Some(_)) => Err(Failure::new(
-            "--compensation-file: needs --compensation pulse, coulomb or model; without it the file would not be used",
+            "--compensation-file: needs --compensation pulse, adaptive, coulomb or model; without it the file would not be used",
         )),
         (Method::Coulomb, None) => coulomb_force::measured(stand),
-        (Method::Pulse, None) => Err(Failure::new(
-            "--compensation pulse: needs --compensation-file; make one with `quadrant tune --method pulse --out FILE`",
-        )),
-        (Method::Model, None) => Err(Failure::new(
-            "--compensation model: needs --compensation-file; make one with `quadrant tune --method model --out FILE`",
-        )),
+        (Method::Pulse, None) => Err(lacks_file("pulse")),
+        (Method::Adaptive, None) => Err(lacks_file("adaptive")),
+        (Method::Model, None) => Err(lacks_file("model")),
         (method, Some(path)) => {
             let read = compensation::read(path, &stand.axis_names())?;
             if read.iter().all(|axis| is_of_method(method, axis)) {
@@ -79,10 +76,17 @@ fn compensation_of(
     }
 }
 
+fn lacks_file(method: &str) -> Failure {
+    Failure::new(format!(
+        "--compensation {method}: needs --compensation-file; make one with `quadrant tune --method {method} --out FILE`"
+    ))
+}
+
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {
     matches!(
         (method, &compensation.reversal),
         (Method::Pulse, Compensation::Pulse(_))
+            | (Method::Adaptive, Compensation::Adaptive(_))
             | (Method::Coulomb, Compensation::Coulomb { .. })
             | (Method::Model, Compensation::Model(_))
     )

@@ -28,6 +28,7 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     };
     let tuned = match arguments.method {
         TuneMethod::Pulse => tuning::pulse(&stand, &circle, start_delay_s)?.ok_or_else(nothing)?,
+        TuneMethod::Adaptive => tuning::adaptive(&stand, &circle)?.ok_or_else(nothing)?,
         TuneMethod::Model => model(&stand, &circle)?.ok_or_else(without_friction)?,
     };
     write(&arguments.out, &file(arguments, &stand, &tuned)?)?;
@@ -73,6 +74,12 @@ fn file(arguments: &cli::Tune, stand: &Stand<'_>, tuned: &Tuned) -> Outcome<Stri
         TuneMethod::Pulse => format!(
             "# Tuned at R {radius} mm, F {feed} mm/min in {} circles: best there, and only there.\n",
             tuned.circles
+        ),
+        TuneMethod::Adaptive => format!(
+            "# Tuned at {} accelerations in {} circles; burst at R {radius} mm, F {feed} mm/min {}.\n",
+            compensation::POINTS,
+            tuned.circles,
+            fall(tuned)
         ),
         TuneMethod::Model => format!(
             "# From records of the axes, for every radius and feed; burst at R {radius} mm, F {feed} mm/min {}.\n",

@@ -8,7 +8,7 @@ use plant_sim::Machine;
 use protocol::Message;
 use protocol::message::{Decoded, decode};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
-use servo::objects::{self, Entry};
+use servo::objects;
 use servo::parameters::SetError;
 
 use super::{ANSWER, AnswerPatience, Master};
@@ -127,10 +127,13 @@ fn refusal(row: u32, reason: u32) -> String {
         .and_then(|place| objects::TABLE.get(place))
         .map_or_else(
             || format!("row {row} of its object table"),
-            |Entry { address, name, .. }| {
+            |entry| {
+                let address = entry.address;
                 format!(
-                    "object {:04X}h:{} ({name})",
-                    address.index, address.subindex
+                    "object {:04X}h:{} ({})",
+                    address.index,
+                    address.subindex,
+                    entry.name()
                 )
             },
         );
