@@ -9,14 +9,15 @@
 //! these one that oscillates is drawn again.
 //!
 //! It is commissioned as a user would: loops first, records, identification, model, and the model
-//! refined by the drives. The table has the largest burst, µm, without → with the model → refined
-//! at R 100 F 500, 2000 and 8000, what identification named, and what was told of the loops.
+//! refined by the drives. The table has the largest burst, µm, without → with the model of what the
+//! machine file says → with the model of its records → refined, at R 100 F 500, 2000 and 8000, what
+//! identification named, and what was told of the loops.
 
 use std::ops::RangeInclusive;
 
 use axis_model::TorqueRipple;
-use hil_tests::on_all_cores;
 use hil_tests::rig::circle;
+use hil_tests::{exact, on_all_cores};
 use plant_sim::Machine;
 use plant_sim::friction::Law;
 use plant_sim::machine::MachineAxis;
@@ -223,7 +224,7 @@ fn told(loops: &[fitness::Oscillation]) -> String {
     each.collect::<Vec<_>>().join("; ")
 }
 
-/// What was named on the first axis, and the models of both: of the records, and refined.
+/// What was named on the first axis, and the models of both: exact, of the records, and refined.
 fn commissioned(stand: &Stand<'_>) -> (String, Vec<Vec<AxisCompensation>>) {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     identified_axes::record(stand, folder.path()).expect("the axes can be recorded");
@@ -236,8 +237,15 @@ fn commissioned(stand: &Stand<'_>) -> (String, Vec<Vec<AxisCompensation>>) {
         let refined = tuning::self_tuning::refined(stand, &usual, model);
         refined.expect("the circles can be run")
     });
-    let models = model.into_iter().chain(refined);
-    (named, models.map(|tuned| tuned.compensation).collect())
+    let (axes, period_s) = (stand.machine.axes.iter(), stand.machine.period_s);
+    let mut models = vec![axes.map(|axis| exact::model(axis, period_s)).collect()];
+    models.extend(
+        model
+            .into_iter()
+            .chain(refined)
+            .map(|tuned| tuned.compensation),
+    );
+    (named, models)
 }
 
 fn cell(stand: &Stand<'_>, feed: f64, models: &[Vec<AxisCompensation>]) -> String {

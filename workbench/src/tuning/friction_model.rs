@@ -43,7 +43,7 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn of(result: &'a Identification) -> Self {
+    fn of(effects: &'a [Effect<Estimate>]) -> Self {
         let mut found = Self {
             coulomb_n: 0.0,
             viscous: 0.0,
@@ -55,7 +55,7 @@ impl<'a> Found<'a> {
             asymmetry: 0.0,
             ripples: Vec::new(),
         };
-        for effect in &result.effects {
+        for effect in effects {
             match effect {
                 Effect::Coulomb(Coulomb { coulomb }) => found.coulomb_n = coulomb.value.max(0.0),
                 Effect::Viscous(Viscous { viscous }) => found.viscous = viscous.value.max(0.0),
@@ -101,20 +101,37 @@ impl<'a> Found<'a> {
 /// The model of an axis; `None` where no friction was identified.
 #[must_use]
 pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
-    let found = Found::of(result);
+    let curve = result.report.presliding.as_ref();
+    let elements = curve.map_or(&[][..], |curve| &curve.elements);
+    let slipping: Vec<(f64, f64)> = elements
+        .iter()
+        .map(|own| (own.share, own.deflection))
+        .collect();
+    of_effects(known, &result.effects, &slipping)
+}
+
+/// The model of what is known of an axis, with the elements of its presliding: shares of the level
+/// and ways from rest, m; none of a bristle.
+#[must_use]
+pub fn of_effects(
+    known: &Known,
+    effects: &[Effect<Estimate>],
+    elements: &[(f64, f64)],
+) -> Option<Model> {
+    let found = Found::of(effects);
     if found.coulomb_n <= 0.0 {
         return None;
     }
-    let curve = result.report.presliding.as_ref();
-    let slipping = curve.filter(|curve| !curve.elements.is_empty());
-    let elements = match (slipping, found.bristle_m()) {
-        (Some(curve), Some(_)) => {
-            let own = curve.elements.iter();
-            let own = own.map(|element| (element.share * found.coulomb_n, element.deflection));
-            few(own.collect())
+    let slips = !elements.is_empty();
+    let elements = match found.bristle_m() {
+        Some(_) if slips => {
+            let own = elements.iter();
+            few(own
+                .map(|(share, way_m)| (share * found.coulomb_n, *way_m))
+                .collect())
         }
-        (_, Some(bristle_m)) => of_bristle(found.coulomb_n, bristle_m),
-        (_, None) => vec![(found.coulomb_n, RIGID_M)],
+        Some(bristle_m) => of_bristle(found.coulomb_n, bristle_m),
+        None => vec![(found.coulomb_n, RIGID_M)],
     };
     let (factor, span_m_per_s) = found.factors();
     let mut model = Model {
@@ -128,7 +145,7 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
         (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
     }
     model.lag_s = found.stribeck.map_or(0.0, lag_s);
-    if let (None, Some(bristle_m)) = (slipping, found.bristle_m()) {
+    if let (false, Some(bristle_m)) = (slips, found.bristle_m()) {
         give_bristle(&mut model, &found, bristle_m);
     }
     give_screw(&mut model, &found, known);
