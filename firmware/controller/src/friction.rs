@@ -35,7 +35,7 @@ mod tuning;
 
 pub use element::Element;
 use element::Strain;
-use levels::{Factor, times};
+use levels::{Factor, come_within, times};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
@@ -53,8 +53,10 @@ pub struct FrictionConfig {
     pub elements: [Element; ELEMENTS],
     /// Levels over the speed.
     pub levels: LevelCurve,
-    /// How they fall behind it.
+    /// How they fall behind it within a time, over a cycle.
     pub lag: LevelLag,
+    /// One over the way within which they come after that, per 10 nm; zero: at once.
+    pub lag_per_way: I8F24,
     /// Levels along the travel.
     pub place: LevelPlace,
     /// How they are refined.
@@ -109,6 +111,8 @@ struct Recent {
     present: Torque,
     next: Torque,
     acting: Torque,
+    /// Second difference of what acts.
+    turn: Torque,
 }
 
 /// What the model adds.
@@ -144,19 +148,24 @@ impl FrictionState {
             present: next,
             next,
             acting,
+            turn: Torque::ZERO,
         });
+        let turn = after.minus(acting).minus(acting.minus(before.acting));
         self.recent = Some(Recent {
             before: before.present,
             present: before.next,
             next,
             acting,
+            turn,
         });
         let change = before.next.minus(before.present);
         let bend = next
             .minus(before.next)
             .minus(before.present.minus(before.before));
         let windup = change.plus(damping(config.windup_cycles, bend));
-        let turn = after.minus(acting).minus(acting.minus(before.acting));
+        // The wind-up is ahead of what acts.
+        let turning = turn.minus(before.turn);
+        let turn = turn.plus(damping(config.windup_cycles, turning.plus(turning)));
         let inertia = config
             .motor_inertia
             .times(Acceleration(wound(config.compliance, turn)));
@@ -226,24 +235,29 @@ impl FrictionState {
         to: Position,
         pace: (Velocity, I8F24),
     ) {
-        let factor = self.factor_after(config, path.length(), pace, I8F24::ONE);
+        let factor = self.factor_after(config, path.length(), pace, config.lag);
         self.strains = self.strained(config, path, factor);
         self.held = torque(config, &self.strains);
         (self.at, self.factor) = (Some(to), Some(factor));
     }
 
-    /// The factor on the levels a way and some cycles later, at a velocity there and with a factor
-    /// on those of that velocity.
+    /// The factor on the levels a way and the cycles of a lag later, at a velocity there and with a
+    /// factor on those of that velocity.
     fn factor_after(
         &self,
         config: &FrictionConfig,
         way: Velocity,
         (velocity, scale): (Velocity, I8F24),
-        cycles: I8F24,
+        lag: LevelLag,
     ) -> Factor {
         let aim = times(config.levels.at(velocity), scale);
         let before = self.factor.unwrap_or(Factor::at(aim));
-        before.passed(config.lag, aim, way, cycles)
+        let way = if config.lag_per_way == I8F24::ZERO {
+            None
+        } else {
+            Some(come_within(way, config.lag_per_way))
+        };
+        before.passed(lag, way, aim)
     }
 
     /// Whether anything is known of the elements.
@@ -284,7 +298,7 @@ impl FrictionState {
         let there = Velocity(there);
         let begin = velocity.plus(half(acceleration));
         let path = Path::between(begin, there, ahead.cycles, way);
-        let factor = self.factor_after(config, path.length(), (there, scale), ahead.cycles);
+        let factor = self.factor_after(config, path.length(), (there, scale), ahead.lag);
         torque(config, &self.strained(config, &path, factor)).plus(config.viscous_torque(there))
     }
 }

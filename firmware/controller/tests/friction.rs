@@ -47,7 +47,20 @@ fn ahead(cycles: f64) -> Ahead {
         cycles: I8F24::from_num(cycles),
         way_by_acceleration: I8F24::from_num(0.5 * cycles * (cycles + 1.0)),
         velocity_by_acceleration: I8F24::from_num(cycles + 0.5),
+        lag: lag(cycles),
     }
+}
+
+/// Shares that come within some cycles.
+fn shares(cycles: f64) -> [f64; 2] {
+    let x = cycles / LAG_CYCLES;
+    let come = 1.0 - (-x).exp();
+    [come, 1.0 - come / x]
+}
+
+fn lag(cycles: f64) -> LevelLag {
+    let [come, ramp] = shares(cycles).map(I8F24::from_num);
+    LevelLag { come, ramp }
 }
 
 fn factors() -> [f64; LEVELS] {
@@ -58,7 +71,7 @@ const PER_VELOCITY: f64 = 16.0 / 370.0;
 const VISCOUS: f64 = 31.8;
 const ASYMMETRY: f64 = -4.8;
 const LAG_PER_WAY: f64 = 1.0 / 1300.0;
-const LAG_PER_CYCLE: f64 = 1.0 / 6.0;
+const LAG_CYCLES: f64 = 6.0;
 /// Level along the travel, per 2²⁴ counts: at most a tenth on these paths.
 const PLACE: [f64; 2] = [0.8, -0.3];
 const AHEAD: f64 = 1.0;
@@ -77,10 +90,8 @@ fn config() -> FrictionConfig {
             intervals_per_velocity: I8F24::from_num(PER_VELOCITY),
             factors: factors().map(I8F24::from_num),
         },
-        lag: LevelLag {
-            per_way: I8F24::from_num(LAG_PER_WAY),
-            per_cycle: I8F24::from_num(LAG_PER_CYCLE),
-        },
+        lag: lag(1.0),
+        lag_per_way: I8F24::from_num(LAG_PER_WAY),
         place: LevelPlace {
             linear: I8F24::from_num(PLACE[0]),
             quadratic: I8F24::from_num(PLACE[1]),
@@ -118,27 +129,35 @@ struct Twin {
     at: Option<f64>,
     place: f64,
     elements: [f64; ELEMENTS],
-    /// Behind the speed by the time, and that by the way.
-    factor: Option<[f64; 2]>,
-    recent: Option<[f64; 4]>,
+    /// That of the speed, behind it by the time, and behind that by the way.
+    factor: Option<[f64; 3]>,
+    /// Friction of the last cycles, and the second difference of what acts.
+    recent: Option<[f64; 5]>,
 }
 
 impl Twin {
-    fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 2] {
+    fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 3] {
         let x = self.place / f64::from(1 << 24);
         let scale = 1.0 + x * (PLACE[0] + x * PLACE[1]);
         let place = (velocity.abs() * PER_VELOCITY).min(16.0);
         let (from, factors) = ((place.floor() as usize).min(15), factors());
         let aim = factors[from] + (factors[from + 1] - factors[from]) * (place - from as f64);
         let aim = scale * aim;
-        let [level, acting] = self.factor.unwrap_or([aim; 2]);
-        let level = level + (aim - level) * (cycles * LAG_PER_CYCLE).min(1.0);
-        let acting = acting + (level - acting) * (way * LAG_PER_WAY).min(1.0);
-        [level, acting]
+        let [aimed, before, acting] = self.factor.unwrap_or([aim; 3]);
+        let [come, ramp] = shares(cycles);
+        let level = before + come * (aimed - before) + ramp * (aim - aimed);
+        let x = way * LAG_PER_WAY;
+        let share = if x < 2.0 {
+            x - x * x / 2.0 + x * x * x / 8.0
+        } else {
+            1.0
+        };
+        let acting = acting + (0.5 * (before + level) - acting) * share;
+        [aim, level, acting]
     }
 
     /// The elements after a path between two velocities, and the factor on their levels.
-    fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], [f64; 2]) {
+    fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], [f64; 3]) {
         let on = if begin * end < 0.0 {
             let share = begin.abs() / (begin.abs() + end.abs());
             0.5 * begin * cycles * (64.0 * share).floor() / 64.0
@@ -149,7 +168,7 @@ impl Twin {
         let mut torques = self.elements;
         for (torque, (level, slip)) in torques.iter_mut().zip(elements()) {
             for part in [on, way - on] {
-                let limit = level * factor[1];
+                let limit = level * factor[2];
                 *torque = (*torque + level / slip * part).clamp(-limit, limit);
             }
         }
@@ -174,10 +193,12 @@ impl Twin {
             torques.iter().sum::<f64>() + viscous(there)
         };
         let (now, after) = (acting(AHEAD), acting(AHEAD + 1.0));
-        let [before, present, last, acted] = self.recent.unwrap_or([next, next, next, now]);
-        self.recent = Some([present, last, next, now]);
-        let bend = next - last - (present - before);
+        let [before, present, last, acted, turned] =
+            self.recent.unwrap_or([next, next, next, now, 0.0]);
         let turn = after - 2.0 * now + acted;
+        self.recent = Some([present, last, next, now, turn]);
+        let bend = next - last - (present - before);
+        let turn = turn + WINDUP_CYCLES * (turn - turned);
         [
             now + 0.5 * DAMPING * (after - acted) + INERTIA * COMPLIANCE * turn,
             COMPLIANCE * (last - present + 0.5 * WINDUP_CYCLES * bend),
@@ -288,7 +309,8 @@ fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
 #[test]
 fn a_loop_within_presliding_closes_where_it_began() {
     let config = FrictionConfig {
-        lag: LevelLag::default(),
+        lag: LevelLag::NONE,
+        lag_per_way: I8F24::ZERO,
         levels: LevelCurve::default(),
         ..config()
     };

@@ -52,6 +52,7 @@ const Q8: u64 = 1 << 8;
 const Q12: u64 = 1 << 12;
 const Q24: u64 = 1 << 24;
 const Q28: u64 = 1 << 28;
+const Q30: u64 = 1 << 30;
 const Q32: u64 = 1 << 32;
 const Q40: u64 = 1 << 40;
 const Q48: u64 = 1 << 48;
@@ -95,17 +96,6 @@ impl ParameterSet {
             way: reading.way()?,
             rated_torque_mnm: self.get(Parameter::RatedTorque),
         })
-    }
-}
-
-/// A look ahead by so many cycles, ten at most: nothing of it leaves 8.24 bits.
-fn ahead_by(cycles: I8F24) -> Ahead {
-    let square = I8F24::saturating_from_num(cycles.wide_mul(cycles));
-    let sum = square.saturating_add(cycles);
-    Ahead {
-        cycles,
-        way_by_acceleration: I8F24::from_bits(sum.to_bits().wrapping_shr(1)),
-        velocity_by_acceleration: cycles.saturating_add(HALF_A_CYCLE),
     }
 }
 
@@ -354,13 +344,14 @@ impl Reading<'_> {
         Ok(Some(FrictionConfig {
             elements,
             levels: self.levels()?,
-            lag: self.level_lag()?,
+            lag: self.level_lag(I8F24::ONE),
+            lag_per_way: self.lag_per_way()?,
             place: self.level_place(),
             tuning: self.level_tuning()?,
             viscous: self.viscous(Parameter::ViscousTorque)?,
             viscous_asymmetry: self.viscous(Parameter::ViscousAsymmetry)?,
-            torque: ahead_by(torque),
-            torque_after: ahead_by(torque.saturating_add(I8F24::ONE)),
+            torque: self.ahead_by(torque),
+            torque_after: self.ahead_by(torque.saturating_add(I8F24::ONE)),
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
             compliance: self.compliance()?,
             windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
@@ -412,21 +403,49 @@ impl Reading<'_> {
         })
     }
 
-    /// 1 over a way, per count, and over a time, per cycle; what is faster than that is at once.
-    fn level_lag(&self) -> Result<LevelLag, SetError> {
-        let (way, time) = (Parameter::LevelLagWay, Parameter::LevelLagTime);
-        let per_cycle = if self.steps(time) == 0 {
-            I8F24::ZERO
-        } else {
-            let share = Self::held(time, &[self.period_us, Q24], &[self.steps(time)])?;
-            I8F24::from_bits(share)
+    /// How levels lag within a time over some cycles with 24 fractional bits, ten at most: `x = t /
+    /// τ`, come = 1 − exp(−x), ramp = 1 − come / x. Below 2²⁸ · 2²⁵ · 2³⁰ and 2³⁰ · 2³⁰ · 2²⁴.
+    fn level_lag(&self, cycles: I8F24) -> LevelLag {
+        let lag_ns = self.steps(Parameter::LevelLagTime).saturating_mul(1000);
+        if lag_ns == 0 {
+            return LevelLag::NONE;
+        }
+        let cycles = u64::from(cycles.to_bits().unsigned_abs());
+        let period_ns = self.period_us.saturating_mul(1000);
+        let time_ns = cycles.saturating_mul(period_ns).wrapping_shr(24);
+        let come = Q30.saturating_sub(u64::from(decay(time_ns, lag_ns)));
+        let of = |numerator: &[u64], denominator: &[u64]| {
+            let bits = Fraction::new(numerator, denominator).and_then(Fraction::nearest);
+            let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+            I8F24::from_bits(bits.unwrap_or_default())
         };
-        let per_way = if self.steps(way) == 0 {
-            I8F24::ZERO
+        let over_x = of(&[come, lag_ns, Q24], &[Q30, time_ns]);
+        LevelLag {
+            come: of(&[come, Q24], &[Q30]),
+            ramp: I8F24::ONE.saturating_sub(over_x),
+        }
+    }
+
+    /// What looks ahead by so many cycles, ten at most: nothing of it leaves 8.24 bits.
+    fn ahead_by(&self, cycles: I8F24) -> Ahead {
+        let square = I8F24::saturating_from_num(cycles.wide_mul(cycles));
+        let sum = square.saturating_add(cycles);
+        Ahead {
+            cycles,
+            way_by_acceleration: I8F24::from_bits(sum.to_bits().wrapping_shr(1)),
+            velocity_by_acceleration: cycles.saturating_add(HALF_A_CYCLE),
+            lag: self.level_lag(cycles),
+        }
+    }
+
+    /// 1 over the way of the lag, per count; none: zero.
+    fn lag_per_way(&self) -> Result<I8F24, SetError> {
+        let way = Parameter::LevelLagWay;
+        if self.steps(way) == 0 {
+            Ok(I8F24::ZERO)
         } else {
-            self.per_way(way)?
-        };
-        Ok(LevelLag { per_cycle, per_way })
+            self.per_way(way)
+        }
     }
 
     /// Per 2²⁴ counts and its square; their rows keep them below 128. Below 2³¹ · 2⁷².
@@ -514,7 +533,7 @@ impl Reading<'_> {
                 per_position: self.turns_per_position(period),
                 phase: self.angle(phase),
             }),
-            ahead: ahead_by(ahead.saturating_add(HALF_A_CYCLE)),
+            ahead: self.ahead_by(ahead.saturating_add(HALF_A_CYCLE)),
         })
     }
 

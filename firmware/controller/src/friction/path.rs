@@ -2,6 +2,7 @@
 
 use fixed::types::{I8F24, I20F12};
 
+use super::levels::LevelLag;
 use super::scaled;
 use crate::units::{Acceleration, Velocity};
 
@@ -15,6 +16,8 @@ pub struct Ahead {
     pub way_by_acceleration: I8F24,
     /// τ + 1/2.
     pub velocity_by_acceleration: I8F24,
+    /// How the levels fall behind the speed on the way there.
+    pub lag: LevelLag,
 }
 
 impl Ahead {
