@@ -182,7 +182,8 @@ fn of_number(number: u64) -> String {
             Ok(found) => found.iter().any(fitness::Oscillation::is_unfit),
             Err(_) => true,
         };
-        if is_unfit && number >= WITH_MORE {
+        let oscillates = is_unfit || loops.as_ref().is_ok_and(|found| !found.is_empty());
+        if oscillates && number >= WITH_MORE {
             draw += 1;
             continue;
         }
@@ -219,7 +220,9 @@ fn called(axis: &MachineAxis, draw: u64) -> String {
 fn told(loops: &[fitness::Oscillation]) -> String {
     let each = loops.iter().map(|own| {
         let (hz, um) = (own.frequency_hz, own.amplitude_um);
-        format!("{}: {hz:.0} Hz, {um:.1} µm", own.axis)
+        let at = own.creeping_m_per_s;
+        let at = at.map_or(String::new(), |at| format!(" at {:.1} mm/s", 1.0e3 * at));
+        format!("{}: {hz:.0} Hz, {um:.1} µm{at}", own.axis)
     });
     each.collect::<Vec<_>>().join("; ")
 }

@@ -3,7 +3,10 @@
 //!
 //! The axes stand, then run through the middle of their travel at two speeds. What a loop does by
 //! itself it does at the same frequency whatever the speed; what comes from the screw or the motor
-//! follows the speed, and noise does neither.
+//! follows the speed, and noise does neither. Then they creep: what rings at slow speeds alone is
+//! told, and the job goes on ([`creeping`]).
+
+mod creeping;
 
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use serde::Serialize;
@@ -57,6 +60,9 @@ pub struct Oscillation {
     pub amplitude_um: f64,
     /// Whether the axis stands or runs.
     pub at_standstill: bool,
+    /// Speed at which it oscillates while it creeps, m/s; elsewhere it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creeping_m_per_s: Option<f64>,
     /// The force comes to its limit.
     pub at_force_limit: bool,
 }
@@ -81,14 +87,17 @@ pub fn oscillations(stand: &Stand<'_>) -> Outcome<Vec<Oscillation>> {
         standing(session, stand, &mut runs)?;
         SPEED_SHARES
             .into_iter()
-            .try_for_each(|share| moving(session, stand, share, &mut runs))
+            .try_for_each(|share| moving(session, stand, share, &mut runs))?;
+        creeping(session, stand, &mut runs)
     });
     stand.interrupt.check()?;
     let axes = stand.machine.axes.iter().enumerate();
     let told = |(place, axis): (usize, &MachineAxis)| {
         let own: Vec<&Run> = runs.iter().filter_map(|run| run.get(place)).collect();
-        let (seen, at_standstill) = of_axis(axis, &own, stand.machine.period_s, outcome.is_err())?;
-        Some(seen.told(&axis.name, at_standstill))
+        let period_s = stand.machine.period_s;
+        let seen = of_axis(axis, &own, period_s, outcome.is_err());
+        let told = seen.map(|(seen, at_standstill)| seen.told(&axis.name, at_standstill));
+        told.or_else(|| while_creeping(axis, own.get(CREEPING)?, period_s))
     };
     let found: Vec<Oscillation> = axes.filter_map(told).collect();
     match outcome {
@@ -111,7 +120,7 @@ fn of_axis(
             let last = Seen::at_the_end(runs.last()?, period_s, limit_n)?;
             Some((last, runs.len() == 1))
         }
-        ([still, slow, fast], _) => judged(
+        ([still, slow, fast, ..], _) => judged(
             seen(still, least_standing_um(axis)),
             [slow, fast].map(|run| seen(run, LEAST_IN_MOTION_UM)),
         ),
@@ -150,6 +159,47 @@ fn moving(
     let way = Move::new(&end(-1.0), &end(1.0), speed, acceleration);
     recorded(session, stand, way.duration_s(), runs, |time_s| {
         way.at(time_s)
+    })
+}
+
+/// The place of that run: after the one at standstill and two in motion.
+const CREEPING: usize = 1 + SPEED_SHARES.len();
+
+/// From rest with an acceleration that leaves slow speeds time to show themselves, and to rest
+/// again.
+fn creeping(session: &mut Session<'_>, stand: &Stand<'_>, runs: &mut Vec<Vec<Run>>) -> Outcome<()> {
+    let axes = stand.machine.axes.len();
+    let travel_m = TRAVEL_SHARE * Slowest::of(stand.machine).travel_m;
+    let acceleration = creeping::ACCELERATION_M_PER_S2;
+    let sweep_s = creeping::LONGEST_S.min((2.0 * travel_m / acceleration).sqrt());
+    led(session, stand, &vec![0.0; axes], runs)?;
+    let up = |time_s: f64| vec![0.5 * acceleration * time_s * time_s; axes];
+    recorded(session, stand, sweep_s, runs, up)?;
+    let (speed, brake) = (
+        acceleration * sweep_s,
+        GENTLE * Slowest::of(stand.machine).acceleration_m_per_s2,
+    );
+    let end_m = up(sweep_s)[0];
+    session.follow(
+        speed / brake,
+        |time_s| {
+            let time_s = time_s.min(speed / brake);
+            vec![end_m + speed * time_s - 0.5 * brake * time_s * time_s; axes]
+        },
+        |_, _| (),
+    )
+}
+
+/// What rings while an axis creeps.
+fn while_creeping(axis: &MachineAxis, run: &Run, period_s: f64) -> Option<Oscillation> {
+    let seen = creeping::oscillation(&run.error_um, period_s, least_standing_um(axis))?;
+    Some(Oscillation {
+        axis: axis.name.clone(),
+        frequency_hz: seen.frequency_hz,
+        amplitude_um: seen.amplitude_um,
+        at_standstill: false,
+        creeping_m_per_s: Some(seen.speed_m_per_s),
+        at_force_limit: false,
     })
 }
 
@@ -250,6 +300,7 @@ impl Seen {
             frequency_hz: self.frequency_hz,
             amplitude_um: self.amplitude_um,
             at_standstill,
+            creeping_m_per_s: None,
             at_force_limit: self.at_limit,
         }
     }
@@ -290,12 +341,23 @@ impl Oscillation {
     /// Whether an axis with it is not to be compensated: it makes friction and circles unknowable.
     #[must_use]
     pub fn is_unfit(&self) -> bool {
-        self.amplitude_um >= UNFIT_UM
+        self.amplitude_um >= UNFIT_UM && self.creeping_m_per_s.is_none()
     }
 
     /// One sentence: what, how much, what to do.
     #[must_use]
     pub fn sentence(&self) -> String {
+        if let Some(speed) = self.creeping_m_per_s {
+            return format!(
+                "axis {}: at about {:.1} mm/s the loop oscillates at {:.0} Hz with {:.1} µm without any compensation, and no compensation takes \
+                 that away: slow circles keep as much of their burst; where friction falls as the speed grows a stiffer loop helps or another lubricant, \
+                 where the screw rings a slower loop",
+                self.axis,
+                1.0e3 * speed,
+                self.frequency_hz,
+                self.amplitude_um
+            );
+        }
         let place = if self.at_standstill {
             "at standstill"
         } else {

@@ -57,17 +57,17 @@ fn table(oscillations: &[Oscillation]) -> TextTable {
         "force at its limit",
     ])];
     rows.extend(oscillations.iter().map(|own| {
-        let seen = if own.at_standstill {
-            "at standstill"
-        } else {
-            "in motion"
+        let seen = match own.creeping_m_per_s {
+            Some(speed) => format!("at {:.1} mm/s", 1.0e3 * speed),
+            None if own.at_standstill => "at standstill".to_owned(),
+            None => "in motion".to_owned(),
         };
         let limit = if own.at_force_limit { "yes" } else { "no" };
         vec![
             own.axis.clone(),
             format!("{:.1}", own.frequency_hz),
             format!("{:.1}", own.amplitude_um),
-            seen.to_owned(),
+            seen,
             limit.to_owned(),
         ]
     }));
