@@ -1,5 +1,5 @@
-//! What each compensation leaves of the burst, of G and of H at every feed: `cargo bench -p hil-tests
-//! --bench compensation [-- CELLS]`.
+//! What each compensation leaves of the burst, of G and of H at every feed: `cargo bench -p
+//! hil-tests --bench compensation [-- CELLS]`.
 //!
 //! Circles on the reference machine with its noise, over the bus, mean of three turns of the true
 //! table. The pulse is tuned at R 100 F 2000, and in each cell itself; `adaptive` on circles of R

@@ -148,7 +148,7 @@ pub struct Tune {
     /// Feed of the tuning circle, mm/min
     #[arg(long, value_name = "F", default_value_t = 2000.0)]
     pub feed_mm_min: f64,
-    /// Time from the reversal to the start of the pulse, ms; the paper has none
+    /// Time from the reversal to the start of the pulse, ms; the paper has none, `adaptive` its own
     #[arg(long, value_name = "T", default_value_t = 0.0)]
     pub start_delay_ms: f64,
 }

@@ -35,7 +35,7 @@ mod tuning;
 
 pub use element::Element;
 use element::Strain;
-use levels::{Factor, come_within, times};
+use levels::{Factor, times, within_way};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
@@ -147,7 +147,8 @@ impl FrictionState {
             before: next,
             present: next,
             next,
-            acting,
+            // As if it had changed as it does now.
+            acting: acting.plus(acting).minus(after),
             turn: Torque::ZERO,
         });
         let turn = after.minus(acting).minus(acting.minus(before.acting));
@@ -252,12 +253,7 @@ impl FrictionState {
     ) -> Factor {
         let aim = times(config.levels.at(velocity), scale);
         let before = self.factor.unwrap_or(Factor::at(aim));
-        let way = if config.lag_per_way == I8F24::ZERO {
-            None
-        } else {
-            Some(come_within(way, config.lag_per_way))
-        };
-        before.passed(lag, way, aim)
+        before.passed(lag, within_way(way, config.lag_per_way), aim)
     }
 
     /// Whether anything is known of the elements.

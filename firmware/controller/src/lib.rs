@@ -290,6 +290,7 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     let direction = state.direction.after(reference.next_velocity);
     let setpoint = state.setpoint(config, reference);
     let change = reference.next_velocity.minus(reference.velocity);
+    let change = (!reference.bridged).then_some(change);
     let pulse = state.pulse.step(&config.pulse, setpoint, change);
     let (offset, offset_velocity) =
         state

@@ -67,6 +67,7 @@ pub enum Setpoint {
 pub struct PulseState {
     mean: MeanAcceleration,
     stage: Stage,
+    has_rested: bool,
 }
 
 /// Where the pulse stands.
@@ -92,17 +93,28 @@ struct Pulse {
 
 impl PulseState {
     /// Advances by one cycle; gives what is added to the speed setpoint. `change` is that of the
-    /// commanded velocity to the next cycle.
-    pub fn step(&mut self, config: &PulseConfig, setpoint: Setpoint, change: Velocity) -> Velocity {
+    /// commanded velocity to the next cycle, where a setpoint tells it.
+    ///
+    /// Out of rest the acceleration is not known yet: a schedule has no pulse there.
+    pub fn step(
+        &mut self,
+        config: &PulseConfig,
+        setpoint: Setpoint,
+        change: Option<Velocity>,
+    ) -> Velocity {
         if config.is_off() {
             *self = Self::default();
             return Velocity::ZERO;
         }
-        if let Some(schedule) = &config.schedule {
+        if let (Some(schedule), Some(change)) = (&config.schedule, change) {
             self.mean.take(schedule, change);
         }
+        let has_rested = core::mem::replace(&mut self.has_rested, setpoint == Setpoint::Stopped);
         match setpoint {
             Setpoint::Moves => {}
+            Setpoint::Turns(_) if has_rested && config.schedule.is_some() => {
+                self.stage = Stage::Idle;
+            }
             Setpoint::Turns(direction) => self.stage = self.begun(config, direction),
             Setpoint::Stopped => self.stage = Stage::Idle,
         }
@@ -189,7 +201,7 @@ mod tests {
         let mut state = PulseState::default();
         for cycle in 0..100_u32 {
             let setpoint = if cycle == 0 { BACK } else { Setpoint::Moves };
-            let got: f64 = state.step(&config(0), setpoint, Velocity::ZERO).0.to_num();
+            let got: f64 = state.step(&config(0), setpoint, None).0.to_num();
             let wanted = -100.0 * (-f64::from(cycle) / 20.0).exp();
             assert!(
                 (got - wanted).abs() < 0.005,
@@ -204,7 +216,7 @@ mod tests {
         let heights: Vec<f64> = (0..5)
             .map(|cycle| {
                 let setpoint = if cycle == 0 { ON } else { Setpoint::Moves };
-                state.step(&config(3), setpoint, Velocity::ZERO).0.to_num()
+                state.step(&config(3), setpoint, None).0.to_num()
             })
             .collect();
         assert_eq!(&heights[..3], [0.0; 3]);
@@ -214,17 +226,17 @@ mod tests {
     #[test]
     fn a_second_reversal_starts_a_new_pulse() {
         let mut state = PulseState::default();
-        state.step(&config(0), ON, Velocity::ZERO);
-        let second: f64 = state.step(&config(0), BACK, Velocity::ZERO).0.to_num();
+        state.step(&config(0), ON, None);
+        let second: f64 = state.step(&config(0), BACK, None).0.to_num();
         assert!((second + 100.0).abs() < 1e-3);
     }
 
     #[test]
     fn the_pulse_ends() {
         let mut state = PulseState::default();
-        state.step(&config(0), BACK, Velocity::ZERO);
+        state.step(&config(0), BACK, None);
         for _ in 0..4000 {
-            state.step(&config(0), Setpoint::Moves, Velocity::ZERO);
+            state.step(&config(0), Setpoint::Moves, None);
         }
         assert_eq!(state.stage, Stage::Idle);
     }
@@ -232,17 +244,14 @@ mod tests {
     #[test]
     fn a_pulse_that_is_switched_off_does_not_come_back() {
         let mut state = PulseState::default();
-        state.step(&config(0), BACK, Velocity::ZERO);
+        state.step(&config(0), BACK, None);
         let off = PulseConfig {
             shape: Shape::default(),
             ..config(0)
         };
+        assert_eq!(state.step(&off, Setpoint::Moves, None), Velocity::ZERO);
         assert_eq!(
-            state.step(&off, Setpoint::Moves, Velocity::ZERO),
-            Velocity::ZERO
-        );
-        assert_eq!(
-            state.step(&config(0), Setpoint::Moves, Velocity::ZERO),
+            state.step(&config(0), Setpoint::Moves, None),
             Velocity::ZERO
         );
     }
@@ -251,12 +260,35 @@ mod tests {
     fn a_stop_ends_the_pulse_and_one_that_waits() {
         for delay in [0, 9] {
             let mut state = PulseState::default();
-            state.step(&config(delay), BACK, Velocity::ZERO);
+            state.step(&config(delay), BACK, None);
             assert_eq!(
-                state.step(&config(delay), Setpoint::Stopped, Velocity::ZERO),
+                state.step(&config(delay), Setpoint::Stopped, None),
                 Velocity::ZERO
             );
             assert_eq!(state.stage, Stage::Idle);
         }
+    }
+
+    #[test]
+    fn a_schedule_has_no_pulse_out_of_rest() {
+        let point = Point {
+            forward: Velocity(I20F12::from_num(100)),
+            backward: Velocity(I20F12::from_num(100)),
+            decay: I2F30::from_bits(1 << 29),
+            start_delay_cycles: 0,
+        };
+        let config = PulseConfig {
+            schedule: Schedule::new(1 << 32, 0, [point; POINTS]),
+            ..config(0)
+        };
+        let change = Some(Velocity(I20F12::from_num(16)));
+        let pulse = |before: Setpoint| {
+            let mut state = PulseState::default();
+            state.step(&config, before, change);
+            let first: f64 = state.step(&config, BACK, change).0.to_num();
+            first
+        };
+        assert!((pulse(Setpoint::Moves) + 100.0).abs() < 1.0e-3);
+        assert_eq!(pulse(Setpoint::Stopped), 0.0);
     }
 }

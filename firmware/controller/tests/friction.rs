@@ -147,12 +147,13 @@ impl Twin {
         let [come, ramp] = shares(cycles);
         let level = before + come * (aimed - before) + ramp * (aim - aimed);
         let x = way * LAG_PER_WAY;
-        let share = if x < 2.0 {
-            x - x * x / 2.0 + x * x * x / 8.0
+        let ramp = if x < 2.0 {
+            x / 2.0 - x * x / 8.0
         } else {
-            1.0
+            (x / 8.0 + 0.25).min(1.0)
         };
-        let acting = acting + (0.5 * (before + level) - acting) * share;
+        let come = if x < 2.0 { x * (1.0 - ramp) } else { 1.0 };
+        let acting = acting + come * (before - acting) + ramp * (level - before);
         [aim, level, acting]
     }
 
@@ -194,7 +195,8 @@ impl Twin {
         };
         let (now, after) = (acting(AHEAD), acting(AHEAD + 1.0));
         let [before, present, last, acted, turned] =
-            self.recent.unwrap_or([next, next, next, now, 0.0]);
+            self.recent
+                .unwrap_or([next, next, next, 2.0 * now - after, 0.0]);
         let turn = after - 2.0 * now + acted;
         self.recent = Some([present, last, next, now, turn]);
         let bend = next - last - (present - before);

@@ -992,6 +992,45 @@ mod tests {
         (any::<i32>(), 0..31_u32).prop_map(move |(value, shift)| (value >> shift).clamp(min, max))
     }
 
+    #[test]
+    fn a_lag_of_the_levels_comes_exactly_over_a_cycle_and_over_what_looks_ahead() {
+        for (period_us, lag_us) in [
+            (1000, 2_000),
+            (1000, 100),
+            (250, 60_000),
+            (20_000, 1_000_000),
+        ] {
+            let set = with(&[
+                (Parameter::CyclePeriod, period_us),
+                (Parameter::LevelLagTime, lag_us),
+                (Parameter::FrictionAhead, period_us / 2),
+                (Parameter::ViscousTorque, 1_000_000),
+            ]);
+            let friction = set.settings().unwrap().config.friction.unwrap();
+            for (lag, cycles) in [
+                (friction.lag, 1.0),
+                (friction.torque.lag, 1.0),
+                (friction.torque_after.lag, 2.0),
+            ] {
+                let x = cycles * f64::from(period_us) / f64::from(lag_us);
+                let come = 1.0 - (-x).exp();
+                let off = |held: I8F24, exact: f64| (held.to_num::<f64>() - exact).abs();
+                assert!(
+                    off(lag.come, come) < 1.0e-7,
+                    "{period_us} {lag_us} {cycles}"
+                );
+                let ramp = 1.0 - come / x;
+                assert!(
+                    off(lag.ramp, ramp) < 1.0e-6,
+                    "{period_us} {lag_us} {cycles}"
+                );
+            }
+        }
+        let without = with(&[(Parameter::ViscousTorque, 1_000_000)]);
+        let friction = without.settings().unwrap().config.friction.unwrap();
+        assert_eq!(friction.lag, LevelLag::NONE);
+    }
+
     const CONVERTED: [Parameter; 23] = [
         Parameter::PositionGain,
         Parameter::Inertia,

@@ -64,7 +64,7 @@ fn compensation_of(
         (Method::Model, None) => Err(lacks_file("model")),
         (method, Some(path)) => {
             let read = compensation::read(path, &stand.axis_names())?;
-            if read.iter().all(|axis| is_of_method(method, axis)) {
+            if is_file_of(method, &read) {
                 Ok(read)
             } else {
                 Err(Failure::new(format!(
@@ -80,6 +80,13 @@ fn lacks_file(method: &str) -> Failure {
     Failure::new(format!(
         "--compensation {method}: needs --compensation-file; make one with `quadrant tune --method {method} --out FILE`"
     ))
+}
+
+/// An axis without a burst, or without friction, has none.
+fn is_file_of(method: Method, axes: &[AxisCompensation]) -> bool {
+    let is_none = |axis: &AxisCompensation| axis.reversal == Compensation::None;
+    let fits = |axis: &AxisCompensation| is_none(axis) || is_of_method(method, axis);
+    axes.iter().all(fits) && !axes.iter().all(is_none)
 }
 
 fn is_of_method(method: Method, compensation: &AxisCompensation) -> bool {
@@ -117,6 +124,12 @@ mod tests {
         };
         assert!(is_of_method(Method::Coulomb, &coulomb));
         assert!(!is_of_method(Method::Pulse, &coulomb));
-        assert!(!is_of_method(Method::Coulomb, &AxisCompensation::default()));
+        let none = AxisCompensation::default();
+        assert!(is_file_of(
+            Method::Coulomb,
+            &[none.clone(), coulomb.clone()]
+        ));
+        assert!(!is_file_of(Method::Pulse, &[none.clone(), coulomb]));
+        assert!(!is_file_of(Method::Coulomb, &[none.clone(), none]));
     }
 }

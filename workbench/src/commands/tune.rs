@@ -39,7 +39,7 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
 
 fn nothing() -> Failure {
     Failure::new(
-        "no axis has a burst to compensate on this circle: nothing was tuned, and no file written",
+        "no axis has a burst to compensate on the tuning circles: nothing was tuned, and no file written",
     )
 }
 
@@ -76,7 +76,7 @@ fn file(arguments: &cli::Tune, stand: &Stand<'_>, tuned: &Tuned) -> Outcome<Stri
             tuned.circles
         ),
         TuneMethod::Adaptive => format!(
-            "# Tuned at {} accelerations in {} circles; burst at R {radius} mm, F {feed} mm/min {}.\n",
+            "# Tuned on circles of R 20 mm or less at up to {} accelerations, {} in all; burst at R {radius} mm, F {feed} mm/min {}.\n",
             compensation::POINTS,
             tuned.circles,
             fall(tuned)

@@ -53,31 +53,57 @@ pub fn less_percent(before: f64, after: f64) -> f64 {
     100.0 * (1.0 - after / before)
 }
 
-/// The circle that was run, and those at other feeds that the machine can do, by feed.
+/// Circles at several feeds.
+#[derive(Clone, Debug, Default)]
+pub struct Feeds {
+    /// By feed.
+    pub run: Vec<AtFeed>,
+    /// A sentence on each feed at which a circle broke off.
+    pub broke_off: Vec<String>,
+}
+
+/// The circle that was run, and those at other feeds within the limits of the machine. One that
+/// breaks off, where a motor is too weak for its limits, is told.
 ///
 /// # Errors
-/// Where a circle cannot be run, or the operator interrupts.
+/// Where the operator interrupts.
 pub fn run(
     stand: &Stand<'_>,
     known: [&CircleRun; 2],
     circle: &Circle,
     compensation: &[AxisCompensation],
-) -> Outcome<Vec<AtFeed>> {
+) -> Outcome<Feeds> {
     let mut feeds = vec![AtFeed::of(known)];
+    let mut broke_off = Vec::new();
     let others = OTHERS.into_iter();
     for other in others.filter_map(|share| at_share_of_feed(stand.machine, circle, share)) {
-        let before = circle_test::run(stand, &other, &stand.uncompensated(), None)?;
-        let after = circle_test::run(stand, &other, compensation, None)?;
-        feeds.push(AtFeed::of([&before, &after]));
+        let run = |own: &[AxisCompensation]| circle_test::run(stand, &other, own, None);
+        let pair = run(&stand.uncompensated())
+            .map_err(|why| ("without compensation", why))
+            .and_then(|before| {
+                let after = run(compensation).map_err(|why| ("with the compensation", why))?;
+                Ok(AtFeed::of([&before, &after]))
+            });
+        stand.interrupt.check()?;
+        match pair {
+            Ok(at) => feeds.push(at),
+            Err((which, why)) => broke_off.push(format!(
+                "F {:.0} mm/min: the circle {which} broke off: {why}",
+                6.0e4 * other.feed_m_per_s
+            )),
+        }
     }
     feeds.sort_by(|one, other| one.feed_mm_min.total_cmp(&other.feed_mm_min));
-    Ok(feeds)
+    Ok(Feeds {
+        run: feeds,
+        broke_off,
+    })
 }
 
 /// Prints the circles at several feeds.
-pub fn print(feeds: &[AtFeed]) {
+pub fn print(feeds: &Feeds) {
     println!("feed, mm/min   burst before, µm   after, µm   less, %   G before, µm   after, µm");
-    for at in feeds {
+    for at in &feeds.run {
         println!(
             "{:>12.0} {:>18.2} {:>11.2} {:>9.1} {:>14.2} {:>11.2}",
             at.feed_mm_min,
@@ -87,5 +113,8 @@ pub fn print(feeds: &[AtFeed]) {
             at.circular_deviation_g_before_um,
             at.circular_deviation_g_after_um
         );
+    }
+    for sentence in &feeds.broke_off {
+        println!("{sentence}");
     }
 }

@@ -4,10 +4,11 @@
 //! The axes stand, then run through the middle of their travel at two speeds. What a loop does by
 //! itself it does at the same frequency whatever the speed; what comes from the screw or the motor
 //! follows the speed, and noise does neither. Then they creep: what rings at slow speeds alone is
-//! told, and the job goes on ([`creeping`]).
+//! told, and the job goes on.
 
 mod creeping;
 
+use creeping::Sweep;
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use serde::Serialize;
 
@@ -97,7 +98,8 @@ pub fn oscillations(stand: &Stand<'_>) -> Outcome<Vec<Oscillation>> {
         let period_s = stand.machine.period_s;
         let seen = of_axis(axis, &own, period_s, outcome.is_err());
         let told = seen.map(|(seen, at_standstill)| seen.told(&axis.name, at_standstill));
-        told.or_else(|| while_creeping(axis, own.get(CREEPING)?, period_s))
+        let sweep = own.get(CREEPING).filter(|_| outcome.is_ok());
+        told.or_else(|| while_creeping(stand, axis, sweep?))
     };
     let found: Vec<Oscillation> = axes.filter_map(told).collect();
     match outcome {
@@ -169,16 +171,16 @@ const CREEPING: usize = 1 + SPEED_SHARES.len();
 /// again.
 fn creeping(session: &mut Session<'_>, stand: &Stand<'_>, runs: &mut Vec<Vec<Run>>) -> Outcome<()> {
     let axes = stand.machine.axes.len();
-    let travel_m = TRAVEL_SHARE * Slowest::of(stand.machine).travel_m;
-    let acceleration = creeping::ACCELERATION_M_PER_S2;
-    let sweep_s = creeping::LONGEST_S.min((2.0 * travel_m / acceleration).sqrt());
+    let slowest = Slowest::of(stand.machine);
+    let acceleration = sweep_acceleration(stand);
+    let sweep_s = creeping::LONGEST_S
+        .min((2.0 * TRAVEL_SHARE * slowest.travel_m / acceleration).sqrt())
+        .min(0.5 * slowest.velocity_m_per_s / acceleration);
     led(session, stand, &vec![0.0; axes], runs)?;
     let up = |time_s: f64| vec![0.5 * acceleration * time_s * time_s; axes];
     recorded(session, stand, sweep_s, runs, up)?;
-    let (speed, brake) = (
-        acceleration * sweep_s,
-        GENTLE * Slowest::of(stand.machine).acceleration_m_per_s2,
-    );
+    let speed = acceleration * sweep_s;
+    let brake = acceleration.max(GENTLE * slowest.acceleration_m_per_s2);
     let end_m = up(sweep_s)[0];
     session.follow(
         speed / brake,
@@ -190,9 +192,19 @@ fn creeping(session: &mut Session<'_>, stand: &Stand<'_>, runs: &mut Vec<Vec<Run
     )
 }
 
+fn sweep_acceleration(stand: &Stand<'_>) -> f64 {
+    let most = 0.5 * Slowest::of(stand.machine).acceleration_m_per_s2;
+    creeping::ACCELERATION_M_PER_S2.min(most)
+}
+
 /// What rings while an axis creeps.
-fn while_creeping(axis: &MachineAxis, run: &Run, period_s: f64) -> Option<Oscillation> {
-    let seen = creeping::oscillation(&run.error_um, period_s, least_standing_um(axis))?;
+fn while_creeping(stand: &Stand<'_>, axis: &MachineAxis, run: &Run) -> Option<Oscillation> {
+    let sweep = Sweep {
+        error_um: &run.error_um,
+        period_s: stand.machine.period_s,
+        acceleration_m_per_s2: sweep_acceleration(stand),
+    };
+    let seen = creeping::oscillation(sweep, least_standing_um(axis))?;
     Some(Oscillation {
         axis: axis.name.clone(),
         frequency_hz: seen.frequency_hz,

@@ -5,7 +5,7 @@ use std::path::Path;
 use identification::{Identification, Report, figures};
 use serde::Serialize;
 
-use super::feeds::{AtFeed, less_percent};
+use super::feeds::{AtFeed, Feeds, less_percent};
 use super::fitness::Oscillation;
 use super::reversal_curves::six_curves;
 use super::reversal_run::reversal_rows;
@@ -34,6 +34,8 @@ struct SummaryFile<'a> {
     method: &'static str,
     tried: Vec<TrialSummary>,
     feeds: &'a [AtFeed],
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    broke_off: &'a [String],
     tuning_circles: u32,
     bus_load_percent: f64,
 }
@@ -58,7 +60,7 @@ pub struct Commissioned<'a> {
     /// The circle without compensation.
     pub before: &'a CircleRun,
     /// Circles at several feeds.
-    pub feeds: Vec<AtFeed>,
+    pub feeds: Feeds,
     /// What was tried, and what was taken.
     pub trials: &'a Trials,
     /// The circle with it.
@@ -99,7 +101,8 @@ impl Commissioned<'_> {
             burst_reduction_percent: self.reduction_percent(),
             method: self.trials.method,
             tried: self.trials.summaries(),
-            feeds: &self.feeds,
+            feeds: &self.feeds.run,
+            broke_off: &self.feeds.broke_off,
             tuning_circles: self.trials.circles(),
             bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
         }
@@ -150,6 +153,9 @@ impl Commissioned<'_> {
             page.paragraph(&oscillation.sentence());
         }
         page.table(&self.feeds_table());
+        for sentence in &self.feeds.broke_off {
+            page.paragraph(sentence);
+        }
         page.paragraph("What was tried on the circle; the one that leaves least is in the drive and in compensation.toml.");
         page.table(&self.trials_table());
         page.table(&self.overview_table());
@@ -180,7 +186,7 @@ impl Commissioned<'_> {
             "G before, µm",
             "G after, µm",
         ])];
-        rows.extend(self.feeds.iter().map(of_feed));
+        rows.extend(self.feeds.run.iter().map(of_feed));
         rows
     }
 

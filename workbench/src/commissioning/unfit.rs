@@ -41,7 +41,7 @@ fn page(machine: &Machine, oscillations: &[Oscillation]) -> String {
     }
     page.table(&table(oscillations));
     page.paragraph(
-        "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds. An oscillation that lasts is the loop's \
+        "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds, and from rest to slow ones. An oscillation that lasts is the loop's \
          own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded: friction that is \
          identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse.",
     );

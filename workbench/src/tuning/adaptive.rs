@@ -4,7 +4,7 @@
 //! each the axes turn round both ways: one circle without a pulse and a few with pulses tell the
 //! best for both axes and both directions at once ([`super::pulse_response`]).
 
-use super::pulse_response::{Bursts, Probe, Pulses, left_um};
+use super::pulse_response::{Bursts, LONGEST_S, Probe, Pulses, left_um};
 use super::start_values::start;
 use super::tuning_circles::{TuningCircle, TuningCircles};
 use super::{TUNING_RUN, Tuned};
@@ -89,7 +89,22 @@ fn tables(
             }
         }
     }
+    tables.iter_mut().for_each(fill);
     Ok((tables, all))
+}
+
+/// A point without a burst has the times of the nearest one that has: between the two the drive
+/// goes from one to the other.
+fn fill(table: &mut Adaptive) {
+    let has_height = |place: &usize| table.forward_m_per_s[*place] != 0.0;
+    let tuned: Vec<usize> = (0..POINTS).filter(has_height).collect();
+    for place in 0..POINTS {
+        let nearest = tuned.iter().min_by_key(|tuned| tuned.abs_diff(place));
+        if let Some(nearest) = nearest {
+            table.time_constant_s[place] = table.time_constant_s[*nearest];
+            table.start_delay_s[place] = table.start_delay_s[*nearest];
+        }
+    }
 }
 
 fn put(table: &mut Adaptive, place: usize, pulses: &Pulses) {
@@ -139,7 +154,11 @@ struct Search {
 
 impl Search {
     fn on(axis: usize, without: &TuningCircle, stand: &Stand<'_>) -> Option<Self> {
-        let start = start(&without.points, axis, without.radius_m, stand.machine)?;
+        let mut start = start(&without.points, axis, without.radius_m, stand.machine)?;
+        if start.time_constant_s > 0.5 * LONGEST_S {
+            start.height_m_per_s *= start.time_constant_s / (0.5 * LONGEST_S);
+            start.time_constant_s = 0.5 * LONGEST_S;
+        }
         Some(Self {
             axis,
             period_s: stand.machine.period_s,

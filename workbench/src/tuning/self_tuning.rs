@@ -8,6 +8,7 @@ use super::tuning_circles::TuningCircles;
 use super::{TUNING_RUN, Tuned};
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
+use crate::progress;
 use crate::session::{Session, Stand};
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::at_share_of_feed;
@@ -16,7 +17,8 @@ use crate::trajectory::circle_limits::at_share_of_feed;
 /// leave the level up to a fortieth too low.
 const FEEDS: [(f64, u32); 3] = [(4.0, 3), (1.0, 3), (0.25, 2)];
 
-/// A tuned model, refined by the drives, which go on doing so; `None` where it is no model.
+/// A tuned model, refined by the drives, which go on doing so; `None` where it is no model, or a
+/// circle broke off.
 ///
 /// # Errors
 /// Where a circle cannot be run, or the operator interrupts.
@@ -26,7 +28,15 @@ pub fn refined(stand: &Stand<'_>, circle: &Circle, model: &Tuned) -> Outcome<Opt
     };
     let session = stand.connect(TUNING_RUN)?;
     session.perform(&begin, None, |session| {
-        let turns = move_along(stand, circle, session)?;
+        let moved = move_along(stand, circle, session);
+        stand.interrupt.check()?;
+        let turns = match moved {
+            Ok(turns) => turns,
+            Err(why) => {
+                progress::step(&format!("the drives refined nothing: {why}"));
+                return Ok(None);
+            }
+        };
         let levels = session.refined_levels()?;
         let pairs = begin.iter().zip(levels);
         let compensation: Vec<AxisCompensation> =

@@ -54,7 +54,8 @@ impl LevelCurve {
 /// `τ L' = aim − L`, exactly, for an aim that changes evenly over some cycles.
 ///
 /// ```text
-/// L + come (aim₀ − L) + ramp (aim₁ − aim₀)      come = 1 − e, ramp = 1 − (1 − e) τ / t, e = exp(−t / τ)
+/// L + come (aim₀ − L) + ramp (aim₁ − aim₀)
+/// come = 1 − e      ramp = 1 − come τ / t      e = exp(−t / τ)
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LevelLag {
@@ -104,43 +105,41 @@ impl Factor {
         }
     }
 
-    /// The same on its way to `aim`, the cycles of a lag later and after a way that brings a share;
-    /// `None`: all of it at once.
-    pub(super) fn passed(self, lag: LevelLag, way: Option<I8F24>, aim: I8F24) -> Self {
+    /// The same on its way to `aim`, the cycles of a lag and a way later.
+    pub(super) fn passed(self, lag: LevelLag, way: LevelLag, aim: I8F24) -> Self {
         let level = lag.after(self.level, [self.aim, aim]);
-        let Some(share) = way else {
-            return Self {
-                aim,
-                level,
-                acting: level,
-            };
-        };
-        let mean = I8F24::from_bits(
-            self.level
-                .to_bits()
-                .wrapping_shr(1)
-                .wrapping_add(level.to_bits().wrapping_shr(1)),
-        );
         Self {
             aim,
             level,
-            acting: between(self.acting, mean, share),
+            acting: way.after(self.acting, [self.level, level]),
         }
     }
 }
 
-/// The share of a level that has come after a way, `1 − exp(−x)` to the second order, all of it
-/// after two ways of the lag: x − x²/2 + x³/8. What looks ahead by two cycles has to come to what
-/// two cycles bring.
-pub(super) fn come_within(way: Velocity, per_way: I8F24) -> I8F24 {
+/// How a level lags within a way, after x times that way: come is `1 − exp(−x)` to the second
+/// order, `x − x²/2 + x³/8`, and all of it from 2 on; ramp is `1 − come / x`, from 2 on by a
+/// straight line that ends at 6. What looks ahead by two cycles has to come to what two cycles
+/// bring.
+pub(super) fn within_way(way: Velocity, per_way: I8F24) -> LevelLag {
     const TWO: I8F24 = I8F24::from_bits(2 << 24);
-    let x = I8F24::saturating_from_num(way.0.saturating_abs().wide_mul(per_way));
-    if x >= TWO {
-        return I8F24::ONE;
+    if per_way == I8F24::ZERO {
+        return LevelLag::NONE;
     }
+    let x = I8F24::saturating_from_num(way.0.saturating_abs().wide_mul(per_way));
     let part = |bits: u32| I8F24::from_bits(x.to_bits().wrapping_shr(bits));
-    let inner = times(part(1), I8F24::ONE.saturating_sub(part(2)));
-    times(x, I8F24::ONE.saturating_sub(inner))
+    if x >= TWO {
+        // 1/2 + (x − 2) / 8
+        let ramp = part(3).saturating_add(I8F24::from_bits(1 << 22));
+        return LevelLag {
+            come: I8F24::ONE,
+            ramp: ramp.min(I8F24::ONE),
+        };
+    }
+    let ramp = times(part(1), I8F24::ONE.saturating_sub(part(2)));
+    LevelLag {
+        come: times(x, I8F24::ONE.saturating_sub(ramp)),
+        ramp,
+    }
 }
 
 /// Product of two factors, saturated.
@@ -157,6 +156,7 @@ fn between(from: I8F24, to: I8F24, share: I8F24) -> I8F24 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fixed::types::I20F12;
 
     /// The shares of a lag of so many cycles over some.
     fn lag(cycles: f64, over: f64) -> LevelLag {
@@ -172,29 +172,52 @@ mod tests {
     fn two_cycles_at_once_bring_what_two_bring_one_after_the_other() {
         let begin = Factor {
             aim: I8F24::from_num(1.0),
-            level: I8F24::from_num(1.3),
-            acting: I8F24::from_num(1.25),
+            level: I8F24::from_num(1.0),
+            acting: I8F24::from_num(0.95),
         };
         let at = |aim: f64| I8F24::from_num(aim);
-        let share = |ways: i32| {
-            come_within(
-                Velocity(fixed::types::I20F12::from_num(ways)),
-                I8F24::from_num(0.05),
-            )
-        };
-        let one = begin.passed(lag(2.1, 1.0), Some(share(1)), at(1.1));
-        let other = one.passed(lag(2.1, 1.0), Some(share(1)), at(1.2));
-        let both = begin.passed(lag(2.1, 2.0), Some(share(2)), at(1.2));
-        let apart = |a: I8F24, b: I8F24| (a - b).to_num::<f64>().abs();
-        assert!(apart(other.level, both.level) < 1.0e-6);
-        let off = apart(other.acting, both.acting);
-        assert!(off < 2.0e-3, "{off}");
+        // Ways of a cycle in ways of the lag, and what the level may be off of its change by 0.2.
+        for (ways, most) in [
+            (0.05, 1.0e-3),
+            (0.5, 6.0e-3),
+            (1.0, 8.0e-3),
+            (2.0, 4.0e-2),
+            (20.0, 0.0),
+        ] {
+            let way = |cycles: f64| {
+                within_way(Velocity(I20F12::from_num(100.0 * cycles)), at(0.01 * ways))
+            };
+            let one = begin.passed(lag(2.1, 1.0), way(1.0), at(1.1));
+            let other = one.passed(lag(2.1, 1.0), way(1.0), at(1.2));
+            let both = begin.passed(lag(2.1, 2.0), way(2.0), at(1.2));
+            let apart = |a: I8F24, b: I8F24| (a - b).to_num::<f64>().abs();
+            assert!(apart(other.level, both.level) < 1.0e-6);
+            let off = apart(other.acting, both.acting);
+            assert!(off <= most + 1.0e-6, "{ways}: {off}");
+        }
+    }
+
+    #[test]
+    fn a_long_way_has_no_lag_and_none_is_the_limit_of_a_short_one() {
+        let long = within_way(Velocity(I20F12::from_num(700)), I8F24::from_num(0.01));
+        assert_eq!(long, LevelLag::NONE);
+        assert_eq!(
+            within_way(Velocity(I20F12::ONE), I8F24::ZERO),
+            LevelLag::NONE
+        );
+        assert_eq!(
+            within_way(Velocity::ZERO, I8F24::from_num(0.01)),
+            LevelLag {
+                come: I8F24::ZERO,
+                ramp: I8F24::ZERO
+            }
+        );
     }
 
     #[test]
     fn a_level_without_a_lag_is_that_of_the_speed() {
         let begin = Factor::at(I8F24::from_num(1.3));
-        let after = begin.passed(LevelLag::NONE, None, I8F24::from_num(1.1));
+        let after = begin.passed(LevelLag::NONE, LevelLag::NONE, I8F24::from_num(1.1));
         assert_eq!(after, Factor::at(I8F24::from_num(1.1)));
     }
 }
