@@ -14,6 +14,7 @@ use identification::{Dataset, Identification, fit_declared};
 use plant_sim::Machine;
 use workbench::ballbar::CircleFigures;
 use workbench::circle_test;
+use workbench::commissioning::feeds::less_percent;
 use workbench::commissioning::identified_axes;
 use workbench::compensation::{self, AxisCompensation};
 use workbench::session::Stand;
@@ -136,10 +137,6 @@ fn of_cell(machine: &Machine, cell: (f64, f64), fixed: &[Fixed]) -> Vec<Left> {
     all
 }
 
-fn less(now: f64, before: f64) -> f64 {
-    100.0 * (1.0 - now / before)
-}
-
 /// The largest burst of each method, a row for each cell.
 fn print_bursts(cells: &[(f64, f64)], all: &[Vec<Left>]) {
     let Some(first) = all.first() else { return };
@@ -150,7 +147,7 @@ fn print_bursts(cells: &[(f64, f64)], all: &[Vec<Left>]) {
         let before = row[0].figures.peak_max_um;
         let own = |left: &Left| {
             let burst = left.figures.peak_max_um;
-            format!("{burst:.2} ({:.1})", less(burst, before))
+            format!("{burst:.2} ({:.1})", less_percent(before, burst))
         };
         let rest: Vec<String> = row[1..].iter().map(own).collect();
         println!(
@@ -176,9 +173,9 @@ fn print_figures(cells: &[(f64, f64)], all: &[Vec<Left>]) {
                 .collect();
             println!(
                 "| R {radius} F {feed} | {method} | {burst:.2} | {:.1} | {} | {g:.2} | {:.1} | {:.2} |",
-                less(burst, before.peak_max_um),
+                less_percent(before.peak_max_um, burst),
                 peaks.join(" | "),
-                less(g, before.circular_deviation_g_um),
+                less_percent(before.circular_deviation_g_um, g),
                 figures.circular_hysteresis_h_um.unwrap_or(f64::NAN)
             );
         }

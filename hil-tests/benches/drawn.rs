@@ -25,6 +25,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Uniform};
 use workbench::circle_test;
+use workbench::commissioning::feeds::less_percent;
 use workbench::commissioning::fitness;
 use workbench::commissioning::identified_axes;
 use workbench::compensation::AxisCompensation;
@@ -261,7 +262,7 @@ fn cell(stand: &Stand<'_>, feed: f64, models: &[Vec<AxisCompensation>]) -> Strin
         Err(failure) => return failure.to_string(),
     };
     let with = models.iter().map(|model| match burst_um(model) {
-        Ok(um) => format!(" → {um:.2} ({:.1} %)", 100.0 * (1.0 - um / none)),
+        Ok(um) => format!(" → {um:.2} ({:.1} %)", less_percent(none, um)),
         Err(failure) => format!(" → {failure}"),
     });
     format!("{none:.1}{}", with.collect::<String>())

@@ -57,6 +57,15 @@ pub struct CircleFigures {
     pub median_um: f64,
 }
 
+/// Radial deviations of a path from their median, µm.
+#[must_use]
+pub fn about_median_um(points: &[Point], radius_m: f64) -> Vec<f64> {
+    let deviations = points.iter().map(|point| radial_um(point, radius_m));
+    let deviations: Vec<f64> = deviations.collect();
+    let median_um = median(&deviations);
+    deviations.into_iter().map(|own| own - median_um).collect()
+}
+
 /// Figures of the turns that count.
 ///
 /// `backlash_m` widens the window about the reversals. An empty path gives zeros.

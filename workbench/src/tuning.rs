@@ -91,15 +91,24 @@ pub fn model(
     }
     let session = stand.connect(TUNING_RUN)?;
     session.perform(&stand.uncompensated(), None, |session| {
-        let mut circles = TuningCircles::on(session, circle);
-        let before_um = circles.run(&stand.uncompensated())?.bursts_um;
-        let after_um = circles.run(&compensation)?.bursts_um;
-        Ok(Some(Tuned {
-            compensation: compensation.clone(),
-            before_um,
-            after_um,
-            circles: circles.count,
-        }))
+        let circles = TuningCircles::on(session, circle);
+        worth(circles, stand, compensation.clone()).map(Some)
+    })
+}
+
+/// What a compensation is worth on two circles, without and with it.
+fn worth(
+    mut circles: TuningCircles<'_, '_>,
+    stand: &Stand<'_>,
+    compensation: Vec<AxisCompensation>,
+) -> Outcome<Tuned> {
+    let before_um = circles.run(&stand.uncompensated())?.bursts_um;
+    let after_um = circles.run(&compensation)?.bursts_um;
+    Ok(Tuned {
+        compensation,
+        before_um,
+        after_um,
+        circles: circles.count,
     })
 }
 

@@ -4,11 +4,11 @@
 //! each the axes turn round both ways: one circle without a pulse and a few with pulses tell the
 //! best for both axes and both directions at once ([`super::pulse_response`]).
 
-use super::pulse_response::{Bursts, LONGEST_S, Probe, Pulses, left_um};
+use super::pulse_response::{Bursts, Probe, Pulses, left_um};
 use super::start_values::start;
 use super::tuning_circles::{TuningCircle, TuningCircles};
-use super::{TUNING_RUN, Tuned};
-use crate::ballbar::{self, REVERSALS, apart, radial_um};
+use super::{TUNING_RUN, Tuned, worth};
+use crate::ballbar::{self, REVERSALS, apart};
 use crate::compensation::{Adaptive, Compensation, POINTS};
 use crate::error::Outcome;
 use crate::progress;
@@ -43,14 +43,10 @@ pub fn adaptive(stand: &Stand<'_>, circle: &Circle) -> Outcome<Option<Tuned>> {
                 axis.reversal = Compensation::Adaptive(Box::new(table));
             }
         }
-        let mut circles = TuningCircles::on(session, circle);
-        let before_um = circles.run(&stand.uncompensated())?.bursts_um;
-        let after_um = circles.run(&compensation)?.bursts_um;
+        let tuned = worth(TuningCircles::on(session, circle), stand, compensation)?;
         Ok(Some(Tuned {
-            compensation,
-            before_um,
-            after_um,
-            circles: turns + circles.count,
+            circles: turns + tuned.circles,
+            ..tuned
         }))
     })
 }
@@ -108,7 +104,6 @@ fn fill(table: &mut Adaptive) {
 }
 
 fn put(table: &mut Adaptive, place: usize, pulses: &Pulses) {
-    debug_assert!(place < POINTS);
     let [forward, backward] = pulses.heights_m_per_s;
     table.forward_m_per_s[place] = forward;
     table.backward_m_per_s[place] = backward;
@@ -154,11 +149,7 @@ struct Search {
 
 impl Search {
     fn on(axis: usize, without: &TuningCircle, stand: &Stand<'_>) -> Option<Self> {
-        let mut start = start(&without.points, axis, without.radius_m, stand.machine)?;
-        if start.time_constant_s > 0.5 * LONGEST_S {
-            start.height_m_per_s *= start.time_constant_s / (0.5 * LONGEST_S);
-            start.time_constant_s = 0.5 * LONGEST_S;
-        }
+        let start = start(&without.points, axis, without.radius_m, stand.machine)?;
         Some(Self {
             axis,
             period_s: stand.machine.period_s,
@@ -199,12 +190,8 @@ impl Search {
 
 /// Radial deviations from their median behind the reversals of an axis.
 fn bursts(circle: &TuningCircle, axis: usize) -> Bursts {
-    let (points, radius_m) = (&circle.points, circle.radius_m);
-    let all: Vec<f64> = points
-        .iter()
-        .map(|point| radial_um(point, radius_m))
-        .collect();
-    let median_um = ballbar::median(&all);
+    let points = &circle.points;
+    let all = ballbar::about_median_um(points, circle.radius_m);
     let mut bursts = Bursts::default();
     for (at, ..) in REVERSALS.into_iter().filter(|(_, of, _)| *of == axis) {
         let distances = points.iter().map(|point| apart(point.angle_rad, at));
@@ -216,10 +203,9 @@ fn bursts(circle: &TuningCircle, axis: usize) -> Bursts {
         let samples = behind
             .take_while(|point| apart(point.angle_rad, at) <= BEHIND_RAD)
             .count();
-        let seen = &all[turn.saturating_sub(BEFORE)..turn + samples];
         // At its far end an axis turns to negative position.
         let way = usize::from(points[turn].reference_m[axis] > 0.0);
-        bursts[way] = seen.iter().map(|own| own - median_um).collect();
+        bursts[way] = all[turn.saturating_sub(BEFORE)..turn + samples].to_vec();
     }
     bursts
 }

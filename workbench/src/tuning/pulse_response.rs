@@ -14,6 +14,7 @@
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 
+use super::valley::SENSIBLE_S;
 use crate::compensation::Pulse;
 use crate::error::{Failure, Outcome};
 
@@ -167,8 +168,7 @@ const STEPS: Corner = [0.2, 0.2, 0.3, 0.2];
 const MOST_STEPS: u64 = 200;
 /// Ln of the time constant may leave that of the probe by so much, before a circle is run again.
 const FARTHEST: f64 = 1.2;
-/// The longest time constant and start delay that the drive holds.
-pub(super) const LONGEST_S: f64 = 2.1;
+/// The longest start delay that the drive holds.
 const LONGEST_DELAY_S: f64 = 1.0;
 /// What pulses cost that make no sense: more than any burst, µm.
 const NO_PULSE_UM: f64 = 1.0e6;
@@ -194,7 +194,7 @@ impl CostFunction for &Probe<'_> {
             .map_err(|_| argmin::core::Error::msg("four numbers make a pulse"))?;
         let pulses = self.pulses_at(corner);
         let makes_sense = corner[2].abs() <= FARTHEST
-            && pulses.time_constant_s <= LONGEST_S
+            && pulses.time_constant_s <= SENSIBLE_S.end
             && (0.0..=LONGEST_DELAY_S).contains(&pulses.start_delay_s);
         Ok(if makes_sense {
             left_um(&self.predicted(&pulses))

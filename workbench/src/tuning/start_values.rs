@@ -4,7 +4,8 @@
 use plant_sim::Machine;
 
 use super::TOLERANCE_UM;
-use crate::ballbar::{self, Point, REVERSALS, apart, radial_um};
+use super::valley::SENSIBLE_S;
+use crate::ballbar::{self, Point, REVERSALS, apart};
 use crate::compensation::Pulse;
 
 /// Way that the pulse adds, over the area under the burst: found on the reference machine, and only
@@ -24,6 +25,8 @@ pub(super) fn start(
     let time_constant_s = machine.period_s * burst.samples_at_half_height as f64;
     let area_m_s = 1.0e-6 * burst.sum_um * machine.period_s;
     let way_m = WAY_OVER_AREA * machine.axes.get(axis)?.gains.position_gain_per_s * area_m_s;
+    // Pulses about it have to be some that can be tried.
+    let time_constant_s = time_constant_s.clamp(2.0 * SENSIBLE_S.start, 0.5 * SENSIBLE_S.end);
     Some(Pulse {
         height_m_per_s: way_m / time_constant_s,
         time_constant_s,
@@ -44,15 +47,11 @@ impl BurstSize {
     fn of_axis(points: &[Point], axis: usize, radius_m: f64) -> Option<Self> {
         let (at, ..) = REVERSALS.into_iter().find(|(_, of, _)| *of == axis)?;
         let window = ballbar::window_rad(radius_m, 0.0);
-        let all: Vec<f64> = points
-            .iter()
-            .map(|point| radial_um(point, radius_m))
-            .collect();
-        let median_um = ballbar::median(&all);
+        let all = ballbar::about_median_um(points, radius_m);
         let here = points.iter().zip(&all);
         let burst: Vec<f64> = here
             .filter(|(point, _)| apart(point.angle_rad, at) <= window)
-            .map(|(_, deviation)| (deviation - median_um).abs())
+            .map(|(_, deviation)| deviation.abs())
             .collect();
         let peak = burst.iter().copied().fold(0.0, f64::max);
         let wide = burst.iter().filter(|size| **size > 0.5 * peak).count();

@@ -21,7 +21,7 @@ const MOST_CIRCLES: u64 = 30;
 const STEPS: [f64; 2] = [0.12, 0.15];
 /// Time constants that make sense: from a tenth of a cycle to the longest that the drive holds,
 /// which is longer than any reversal. A burst over which a loop rings would lead beyond it.
-const SENSIBLE_S: Range<f64> = 1.0e-4..2.1;
+pub(super) const SENSIBLE_S: Range<f64> = 1.0e-4..2.1;
 /// The largest step of speed that makes sense: as fast as the fastest of our axes moves.
 const SENSIBLE_M_PER_S: f64 = 0.5;
 /// What a pulse costs for which no circle is run: more than any burst.
@@ -44,12 +44,8 @@ pub(super) struct Search<'a, 'b, 'm> {
 impl Search<'_, '_, '_> {
     /// The best pulse that circles find from a start.
     pub(super) fn run(self, start: Pulse) -> Outcome<Pulse> {
-        // All corners have to be pulses that can be tried.
-        let time_constant_s = start
-            .time_constant_s
-            .clamp(2.0 * SENSIBLE_S.start, 0.5 * SENSIBLE_S.end);
         let way = start.height_m_per_s * start.time_constant_s;
-        let corner = vec![way.ln(), time_constant_s.ln()];
+        let corner = vec![way.ln(), start.time_constant_s.ln()];
         let moved = |place: usize| {
             let mut corner = corner.clone();
             corner[place] += STEPS[place];

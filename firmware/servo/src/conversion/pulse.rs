@@ -44,8 +44,8 @@ impl Reading<'_> {
     /// In counts per cycle² with 32 fractional bits. Below 2³¹ · 2²⁹ · 2²⁷ · 2³².
     fn first_acceleration(&self) -> Result<u64, SetError> {
         let first = Parameter::AdaptiveFirst;
-        let period = [self.period_us, self.period_us];
-        let numerator = [self.steps(first), period[0], period[1], COUNTS_PER_M, Q32];
+        let (steps, period_us) = (self.steps(first), self.period_us);
+        let numerator = [steps, period_us, period_us, COUNTS_PER_M, Q32];
         let denominator = [first.unit().per_si, MICROS, MICROS];
         let acceleration = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
         acceleration.ok_or(SetError::TooLarge(first))
