@@ -9,7 +9,7 @@ use protocol::states::BrakeState;
 
 use crate::brake::{Brake, BrakeParameters};
 use crate::effects::{Effects, Instant};
-use crate::friction::{Friction, Law, Sliding};
+use crate::friction::{Friction, Law, Sides, Sliding};
 use crate::lag::{lag_share, mean_share};
 use crate::mechanics::{Drive, Mechanics, Motion};
 use crate::stops::Stops;
@@ -56,6 +56,15 @@ impl Mounting {
     }
 }
 
+/// Friction of what turns with the motor: bearings, nut, seals, seen at the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotorSide {
+    /// Sliding friction.
+    pub sliding: Sliding,
+    /// Friction law.
+    pub law: Law,
+}
+
 /// Everything that an axis really is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisParameters {
@@ -63,10 +72,12 @@ pub struct AxisParameters {
     pub mechanics: Mechanics,
     /// Travel per motor revolution, m.
     pub lead_m_per_rev: f64,
-    /// Sliding friction.
+    /// Sliding friction at the table.
     pub sliding: Sliding,
-    /// Friction law.
+    /// Friction law at the table.
     pub law: Law,
+    /// Friction of the motor's side, where it has some.
+    pub motor_side: Option<MotorSide>,
     /// Further effects.
     pub effects: Effects,
     /// Motor encoder.
@@ -118,7 +129,7 @@ pub struct Reading {
 pub struct Axis {
     parameters: AxisParameters,
     motion: Motion,
-    friction: Friction,
+    friction: Sides,
     brake: Option<Brake>,
     force_n: f64,
     delayed_n: f64,
@@ -132,7 +143,11 @@ impl Axis {
     /// An axis at rest in its start position, its brake closed.
     #[must_use]
     pub fn new(parameters: AxisParameters, seed: u64) -> Self {
-        let friction = Friction::new(parameters.sliding, parameters.law.clone());
+        let motor_side = parameters.motor_side.as_ref();
+        let friction = Sides {
+            table: Friction::new(parameters.sliding, parameters.law.clone()),
+            motor: motor_side.map(|own| Friction::new(own.sliding, own.law.clone())),
+        };
         let motion = parameters.mounting.start(&parameters.mechanics);
         let brake = parameters.mounting.brake.map(Brake::new);
         Self {

@@ -1,10 +1,10 @@
-//! Friction at the table, as an exchangeable effect.
+//! Friction of a body, the table or the motor, as an exchangeable effect.
 //!
-//! Every law answers one question of the integrator: given the velocity that the table would have
+//! Every law answers one question of the integrator: given the velocity that the body would have
 //! without friction, how large is the friction force over this sub-step? Laws with internal states
 //! advance them in the same call. Friction is positive against motion.
 //!
-//! - [`Coulomb`](Law::Coulomb) with Stribeck fall and a *set-valued* stick phase: the table stands
+//! - [`Coulomb`](Law::Coulomb) with Stribeck fall and a *set-valued* stick phase: the body stands
 //!   exactly still while the other forces stay below the breakaway force (Moreau's time stepping:
 //!   friction is solved for, not looked up).
 //! - [`LuGre`](Law::LuGre): bristle deflection `z`, `ż = v − σ0 |v| z / g(v)`, force `σ0 z + σ1 ż +
@@ -16,8 +16,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::ranges::{Quantity, Ranged};
 
+mod sides;
 mod sliding;
 
+pub use sides::Sides;
 pub use sliding::Sliding;
 pub(crate) use sliding::gaussian;
 use sliding::{Curve, Fall, sign};
@@ -110,9 +112,9 @@ impl State {
     }
 }
 
-/// What the integrator asks: the table without friction, over one sub-step.
+/// What the integrator asks: the body without friction, over one sub-step.
 #[derive(Clone, Copy, Debug)]
-pub struct Table {
+pub struct Body {
     /// Velocity at the begin of the sub-step.
     pub velocity: f64,
     /// Velocity that it would have at the end without friction.
@@ -127,7 +129,7 @@ pub struct Table {
     pub level_n: f64,
 }
 
-impl Table {
+impl Body {
     /// Friction level of a velocity, N.
     fn friction_n(&self, curve: Curve<'_>, v: f64) -> f64 {
         curve.level_n(v) * self.factor + self.level_n
@@ -153,20 +155,20 @@ impl Friction {
         }
     }
 
-    /// Velocity of the table at the end of the sub-step; advances the internal state.
-    pub fn advance(&mut self, table: Table) -> f64 {
+    /// Velocity of the body at the end of the sub-step; advances the internal state.
+    pub fn advance(&mut self, body: Body) -> f64 {
         let Self {
             sliding,
             law,
             state: State { deflection_m, fall },
         } = self;
-        *fall = fall.after(sliding, table.velocity, table.dt_s);
+        *fall = fall.after(sliding, body.velocity, body.dt_s);
         let curve = Curve {
             sliding,
             fall: *fall,
         };
         match law {
-            Law::Coulomb => coulomb(curve, table),
+            Law::Coulomb => coulomb(curve, body),
             Law::LuGre {
                 bristle_stiffness_n_per_m,
                 bristle_damping_n_s_per_m,
@@ -175,12 +177,12 @@ impl Friction {
                     stiffness: *bristle_stiffness_n_per_m,
                     damping: *bristle_damping_n_s_per_m,
                 };
-                lugre(curve, bristle, &mut deflection_m[0], table)
+                lugre(curve, bristle, &mut deflection_m[0], body)
             }
             Law::MaxwellSlip {
                 stiffness_n_per_m,
                 share,
-            } => maxwell(curve, stiffness_n_per_m, share, deflection_m, table),
+            } => maxwell(curve, stiffness_n_per_m, share, deflection_m, body),
         }
     }
 
@@ -203,16 +205,16 @@ impl Friction {
     }
 }
 
-/// Moreau: the friction that stops the table within the sub-step, if it is within the breakaway
+/// Moreau: the friction that stops the body within the sub-step, if it is within the breakaway
 /// force; else the sliding level against motion, never past standstill.
-fn coulomb(curve: Curve<'_>, table: Table) -> f64 {
-    let Table {
+fn coulomb(curve: Curve<'_>, body: Body) -> f64 {
+    let Body {
         velocity,
         free_velocity,
         mass_kg,
         dt_s,
         ..
-    } = table;
+    } = body;
     let direction = if velocity == 0.0 {
         free_velocity
     } else {
@@ -223,7 +225,7 @@ fn coulomb(curve: Curve<'_>, table: Table) -> f64 {
     } else {
         velocity
     };
-    let level = table.friction_n(curve, about);
+    let level = body.friction_n(curve, about);
     // Viscous part trapezoidal, so that the scheme stays second order while it slides.
     let half = 0.5 * curve.viscous_n_s_per_m(direction) * dt_s / mass_kg;
     let free_velocity = free_velocity - half * velocity;
@@ -240,22 +242,22 @@ struct Bristle {
     damping: f64,
 }
 
-/// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the table with
+/// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the body with
 /// the part of the bristle force that is linear in its velocity taken implicitly, the other half of
 /// the bristle.
-fn lugre(curve: Curve<'_>, bristle: Bristle, z: &mut f64, table: Table) -> f64 {
-    let Table {
+fn lugre(curve: Curve<'_>, bristle: Bristle, z: &mut f64, body: Body) -> f64 {
+    let Body {
         velocity,
         free_velocity,
         mass_kg,
         dt_s,
         ..
-    } = table;
-    let rate = |v: f64| bristle.stiffness * v.abs() / table.friction_n(curve, v);
+    } = body;
+    let rate = |v: f64| bristle.stiffness * v.abs() / body.friction_n(curve, v);
     *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
     // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
     // trapezoidal.
-    let level = table.friction_n(curve, velocity);
+    let level = body.friction_n(curve, velocity);
     let constant = bristle.stiffness * *z;
     let linear = bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level)
         + curve.viscous_n_s_per_m(velocity);
@@ -281,21 +283,21 @@ fn maxwell(
     stiffness: &[f64],
     share: &[f64],
     deflection: &mut [f64],
-    table: Table,
+    body: Body,
 ) -> f64 {
-    let Table {
+    let Body {
         velocity,
         free_velocity,
         mass_kg,
         dt_s,
         ..
-    } = table;
-    // An element slips at the level of the direction it is deflected in, whatever the table does at
+    } = body;
+    // An element slips at the level of the direction it is deflected in, whatever the body does at
     // the moment.
     let slide = |deflection: &mut [f64], velocity: f64| {
         let (forth, back) = (
-            table.friction_n(curve, velocity.abs()),
-            table.friction_n(curve, -velocity.abs()),
+            body.friction_n(curve, velocity.abs()),
+            body.friction_n(curve, -velocity.abs()),
         );
         let mut force = 0.0;
         for ((k, share), z) in stiffness.iter().zip(share).zip(deflection) {

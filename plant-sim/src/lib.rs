@@ -20,6 +20,6 @@ pub mod node;
 mod ranges;
 pub mod stops;
 
-pub use axis::{Axis, AxisParameters};
+pub use axis::{Axis, AxisParameters, MotorSide};
 pub use machine::{Machine, MachineError};
 pub use node::PlantNode;

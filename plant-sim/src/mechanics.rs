@@ -1,7 +1,7 @@
 //! Two masses on a ball screw, everything expressed at the table in SI units.
 //!
 //! ```text
-//! M1 ẍ1 = F − Fs − F_brake − F_ripple(x1)             motor, coupling, screw; brake on the shaft
+//! M1 ẍ1 = F − Fs − F_rubs − F_brake − F_ripple(x1)    motor, coupling, screw; brake on the shaft
 //! M2 ẍ2 = Fs − F_friction − F_offset + F_gravity + F_stop   table and what is added to it
 //! Fs    = K·dead zone(x1 − x2, gap) + C (ẋ1 − ẋ2)      the screw: it only pushes where there is
 //!                                                     a gap, and damps in contact only
@@ -10,9 +10,10 @@
 //! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the
 //! friction taken implicitly. The screw is integrated at second order, the bristles' coefficients
 //! lag by half a sub-step and make the whole first order: 6·10⁻⁵ of the way at the sub-step that is
-//! used (`tests/mechanics.rs`, against a high-accuracy integration).
+//! used (`tests/mechanics.rs`, against a high-accuracy integration). The friction of the motor's
+//! side is solved for first, with the table as fast as it was; then the brake, then the table.
 
-use crate::friction::{Friction, Table};
+use crate::friction::{Body, Friction, Sides};
 
 /// A table keeps at least this share of its mass: without one it has no equation of motion.
 const SMALLEST_SHARE: f64 = 1.0e-3;
@@ -89,7 +90,7 @@ impl Mechanics {
     }
 
     /// One sub-step.
-    pub fn advance(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, dt_s: f64) {
+    pub fn advance(&self, motion: &mut Motion, friction: &mut Sides, drive: Drive, dt_s: f64) {
         motion.motor_m += 0.5 * dt_s * motion.motor_m_per_s;
         motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
         self.kick(motion, friction, drive, dt_s);
@@ -97,7 +98,7 @@ impl Mechanics {
         motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
     }
 
-    fn kick(&self, motion: &mut Motion, friction: &mut Friction, drive: Drive, dt_s: f64) {
+    fn kick(&self, motion: &mut Motion, friction: &mut Sides, drive: Drive, dt_s: f64) {
         let deflection = self.deflection_m(motion);
         let in_contact = self.backlash_m == 0.0 || deflection != 0.0;
         let damping = if in_contact {
@@ -127,7 +128,7 @@ impl Mechanics {
     fn solve(
         &self,
         motion: &mut Motion,
-        friction: &mut Friction,
+        friction: &mut Sides,
         drive: Drive,
         deflection: f64,
         damping: f64,
@@ -150,10 +151,11 @@ impl Mechanics {
             level_n: drive.friction_level_n,
             dt_s,
         };
+        let kick = kick.rubbed(motion, friction);
         if drive.brake_n == 0.0 {
-            kick.free(motion, friction);
+            kick.free(motion, &mut friction.table);
         } else {
-            kick.braked(motion, friction, drive.brake_n);
+            kick.braked(motion, &mut friction.table, drive.brake_n);
         }
     }
 }
@@ -173,6 +175,23 @@ struct Kick {
 }
 
 impl Kick {
+    /// What the friction of the motor's side leaves.
+    fn rubbed(self, motion: &Motion, friction: &mut Sides) -> Self {
+        let mass_kg = self.m1 + self.half;
+        let motor = Body {
+            velocity: motion.motor_m_per_s,
+            free_velocity: (self.p1 + self.half * motion.table_m_per_s) / mass_kg,
+            mass_kg,
+            dt_s: self.dt_s,
+            factor: 1.0,
+            level_n: 0.0,
+        };
+        Self {
+            p1: self.p1 - friction.taken_of_motor(motor),
+            ..self
+        }
+    }
+
     /// Eliminating the motor leaves one equation for the table with an effective mass and a free
     /// velocity.
     fn free(self, motion: &mut Motion, friction: &mut Friction) {
@@ -212,8 +231,8 @@ impl Kick {
         .free(motion, friction);
     }
 
-    fn table(&self, velocity: f64, free_velocity: f64, mass_kg: f64) -> Table {
-        Table {
+    fn table(&self, velocity: f64, free_velocity: f64, mass_kg: f64) -> Body {
+        Body {
             velocity,
             free_velocity,
             mass_kg,

@@ -7,9 +7,9 @@ use ode_solvers::dop_shared::OutputType;
 use ode_solvers::dop853::Dop853;
 use ode_solvers::{SVector, System};
 use plant_sim::axis::SUB_STEP_S;
-use plant_sim::friction::{Friction, Law, Sliding, Table};
+use plant_sim::friction::{Body, Friction, Law, Sides, Sliding};
 use plant_sim::mechanics::{Drive, Mechanics, Motion};
-use plant_sim::{Axis, AxisParameters, Machine};
+use plant_sim::{Axis, AxisParameters, Machine, MotorSide};
 
 fn mechanics() -> Mechanics {
     Machine::reference().axes[0].actual.mechanics
@@ -29,9 +29,13 @@ fn dry(coulomb_n: f64) -> Sliding {
     }
 }
 
+fn table(sliding: Sliding, law: Law) -> Sides {
+    Friction::new(sliding, law).into()
+}
+
 fn push(
     m: &Mechanics,
-    friction: &mut Friction,
+    friction: &mut Sides,
     motion: &mut Motion,
     force: impl Fn(f64) -> f64,
     seconds: f64,
@@ -54,7 +58,7 @@ fn push(
 #[test]
 fn a_free_mass_accelerates_as_newton_says() {
     let (m, mut motion) = (mechanics(), Motion::default());
-    let mut friction = Friction::new(dry(0.0), Law::Coulomb);
+    let mut friction = table(dry(0.0), Law::Coulomb);
     push(&m, &mut friction, &mut motion, |_| 500.0, 0.2, SUB_STEP_S);
     let mass = m.motor_inertia_kg + m.table_mass_kg;
     let center = (m.motor_inertia_kg * motion.motor_m + m.table_mass_kg * motion.table_m) / mass;
@@ -72,7 +76,7 @@ fn the_two_masses_ring_at_their_resonance() {
         motor_m: 1.0e-5,
         ..Motion::default()
     };
-    let mut friction = Friction::new(dry(0.0), Law::Coulomb);
+    let mut friction = table(dry(0.0), Law::Coulomb);
     let (m1, m2) = (m.motor_inertia_kg, m.table_mass_kg);
     let hz = (m.screw_stiffness_n_per_m * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
     let dt = SUB_STEP_S / 4.0;
@@ -99,7 +103,7 @@ fn a_dry_table_sticks_until_the_screw_pulls_harder_than_breakaway() {
         static_n: 520.0,
         ..dry(400.0)
     };
-    let (mut friction, mut motion) = (Friction::new(sliding, Law::Coulomb), Motion::default());
+    let (mut friction, mut motion) = (table(sliding, Law::Coulomb), Motion::default());
     // A slow ramp of the motor force; the table is exactly still before breakaway.
     let mut at_n = 0.0;
     while motion.table_m_per_s == 0.0 && at_n < 1000.0 {
@@ -120,7 +124,7 @@ fn a_dry_table_sticks_until_the_screw_pulls_harder_than_breakaway() {
 #[test]
 fn sliding_comes_to_rest_within_the_way_that_friction_allows_and_stays() {
     let m = mechanics();
-    let mut friction = Friction::new(dry(400.0), Law::Coulomb);
+    let mut friction = table(dry(400.0), Law::Coulomb);
     let v = 0.1;
     let mut motion = Motion {
         motor_m_per_s: v,
@@ -141,12 +145,54 @@ fn sliding_comes_to_rest_within_the_way_that_friction_allows_and_stays() {
 }
 
 #[test]
+fn a_motor_that_rubs_slides_as_if_its_friction_were_the_tables_but_winds_nothing_up() {
+    let m = mechanics();
+    let wind_up = |at_table_n: f64, at_motor_n: f64| {
+        let mut friction = Sides {
+            table: Friction::new(dry(at_table_n), Law::Coulomb),
+            motor: Some(Friction::new(dry(at_motor_n), Law::Coulomb)),
+        };
+        let mut motion = Motion::default();
+        push(&m, &mut friction, &mut motion, |_| 1000.0, 0.5, SUB_STEP_S);
+        let mass = m.motor_inertia_kg + m.table_mass_kg;
+        let wanted = (1000.0 - at_table_n - at_motor_n) / mass * 0.5;
+        assert!((motion.table_m_per_s / wanted - 1.0).abs() < 0.01);
+        let transmitted_n = at_table_n + m.table_mass_kg * wanted / 0.5;
+        let wound_m = motion.motor_m - motion.table_m;
+        assert!((wound_m / (transmitted_n / m.screw_stiffness_n_per_m) - 1.0).abs() < 0.02);
+    };
+    wind_up(400.0, 0.0);
+    wind_up(250.0, 150.0);
+    wind_up(0.0, 400.0);
+}
+
+#[test]
+fn a_motor_that_rubs_holds_itself_up_to_its_breakaway() {
+    let m = mechanics();
+    let sliding = Sliding {
+        static_n: 300.0,
+        ..dry(200.0)
+    };
+    let moved_m = |force_n: f64| {
+        let mut friction = Sides {
+            table: Friction::new(dry(0.0), Law::Coulomb),
+            motor: Some(Friction::new(sliding, Law::Coulomb)),
+        };
+        let mut motion = Motion::default();
+        push(&m, &mut friction, &mut motion, |_| force_n, 0.5, SUB_STEP_S);
+        motion.motor_m
+    };
+    assert_eq!(moved_m(299.0), 0.0);
+    assert!(moved_m(301.0) > 1.0e-3);
+}
+
+#[test]
 fn the_motor_crosses_the_gap_in_the_time_of_its_free_flight() {
     let m = Mechanics {
         backlash_m: 1.0e-4,
         ..mechanics()
     };
-    let mut friction = Friction::new(dry(400.0), Law::Coulomb);
+    let mut friction = table(dry(400.0), Law::Coulomb);
     // At the back end of the gap.
     let mut motion = Motion {
         motor_m: -0.5e-4,
@@ -186,7 +232,7 @@ fn maxwell_slip_remembers_its_reversal_points() {
     let go = |friction: &mut Friction, velocity: f64, way: f64| {
         let dt_s = 1.0e-5;
         for _ in 0..(way / velocity.abs() / dt_s).round() as usize {
-            friction.advance(Table {
+            friction.advance(Body {
                 velocity,
                 free_velocity: velocity,
                 mass_kg: 1.0e12,
@@ -221,7 +267,7 @@ fn steady_sliding_with_bristles_costs_exactly_the_sliding_level() {
         let mut next = 0.1;
         // Held at 0.1 m/s: what friction takes off in a sub-step is its force.
         for _ in 0..2000 {
-            next = friction.advance(Table {
+            next = friction.advance(Body {
                 velocity: 0.1,
                 free_velocity: 0.1,
                 mass_kg: 1.0e9,
@@ -235,14 +281,48 @@ fn steady_sliding_with_bristles_costs_exactly_the_sliding_level() {
     }
 }
 
-type Vector = SVector<f64, 5>;
+type Vector = SVector<f64, 6>;
+
+/// A LuGre bristle, as an equation.
+#[derive(Clone, Copy)]
+struct Bristle {
+    sliding: Sliding,
+    stiffness: f64,
+    damping: f64,
+}
+
+impl Bristle {
+    fn of(sliding: Sliding, law: &Law) -> Self {
+        let &Law::LuGre {
+            bristle_stiffness_n_per_m,
+            bristle_damping_n_s_per_m,
+        } = law
+        else {
+            panic!("LuGre expected")
+        };
+        Self {
+            sliding,
+            stiffness: bristle_stiffness_n_per_m,
+            damping: bristle_damping_n_s_per_m,
+        }
+    }
+
+    /// Friction and rate of the deflection.
+    fn at(&self, v: f64, z: f64) -> [f64; 2] {
+        let own = &self.sliding;
+        let fall = (-(v / own.stribeck_velocity_m_per_s).powi(2)).exp();
+        let level = own.coulomb_n + (own.static_n - own.coulomb_n) * fall;
+        let dz = v - self.stiffness * v.abs() / level * z;
+        let friction = self.stiffness * z + self.damping * dz + own.viscous_n_s_per_m * v;
+        [friction, dz]
+    }
+}
 
 /// LuGre axis without a gap, as equations; written for the comparison and for nothing else.
 struct Equations {
     mechanics: Mechanics,
-    sliding: Sliding,
-    stiffness: f64,
-    damping: f64,
+    table: Bristle,
+    motor: Option<Bristle>,
 }
 
 fn force(t: f64) -> f64 {
@@ -251,27 +331,44 @@ fn force(t: f64) -> f64 {
 
 impl System<f64, Vector> for Equations {
     fn system(&self, t: f64, y: &Vector, dy: &mut Vector) {
-        let [x1, v1, x2, v2, z] = [y[0], y[1], y[2], y[3], y[4]];
+        let [x1, v1, x2, v2, z, z1] = [y[0], y[1], y[2], y[3], y[4], y[5]];
         let m = &self.mechanics;
         let screw = m.screw_stiffness_n_per_m * (x1 - x2) + m.screw_damping_n_s_per_m * (v1 - v2);
-        let fall = (-(v2 / self.sliding.stribeck_velocity_m_per_s).powi(2)).exp();
-        let level =
-            self.sliding.coulomb_n + (self.sliding.static_n - self.sliding.coulomb_n) * fall;
-        let dz = v2 - self.stiffness * v2.abs() / level * z;
-        let friction = self.stiffness * z + self.damping * dz + self.sliding.viscous_n_s_per_m * v2;
+        let [friction, dz] = self.table.at(v2, z);
+        let [rubs, dz1] = self.motor.map_or([0.0; 2], |motor| motor.at(v1, z1));
         dy[0] = v1;
-        dy[1] = (force(t) - screw) / m.motor_inertia_kg;
+        dy[1] = (force(t) - screw - rubs) / m.motor_inertia_kg;
         dy[2] = v2;
         dy[3] = (screw - friction) / m.table_mass_kg;
         dy[4] = dz;
+        dy[5] = dz1;
+    }
+}
+
+/// A motor's side that rubs otherwise than the table.
+fn rubbing() -> MotorSide {
+    MotorSide {
+        sliding: Sliding {
+            static_n: 190.0,
+            stribeck_velocity_m_per_s: 4.0e-3,
+            viscous_n_s_per_m: 900.0,
+            ..dry(150.0)
+        },
+        law: Law::LuGre {
+            bristle_stiffness_n_per_m: 2.0e7,
+            bristle_damping_n_s_per_m: 9.0e3,
+        },
     }
 }
 
 /// Table position after 0.4 s under [`force`], by our scheme.
-fn ours(dt_s: f64) -> f64 {
+fn ours(motor_side: Option<&MotorSide>, dt_s: f64) -> f64 {
     let machine = Machine::reference();
     let actual = &machine.axes[0].actual;
-    let mut friction = Friction::new(actual.sliding, actual.law.clone());
+    let mut friction = Sides {
+        table: Friction::new(actual.sliding, actual.law.clone()),
+        motor: motor_side.map(|own| Friction::new(own.sliding, own.law.clone())),
+    };
     let mut motion = Motion::default();
     push(
         &actual.mechanics,
@@ -286,20 +383,24 @@ fn ours(dt_s: f64) -> f64 {
 
 #[test]
 fn the_scheme_converges_to_a_high_accuracy_integration() {
+    converges(None);
+}
+
+#[test]
+fn so_it_does_where_the_motor_rubs_as_well() {
+    let rubbing = rubbing();
+    converges(Some(&rubbing));
+    let way = |motor_side| ours(motor_side, SUB_STEP_S);
+    assert!((way(Some(&rubbing)) - way(None)).abs() > 1.0e-4);
+}
+
+fn converges(motor_side: Option<&MotorSide>) {
     let machine = Machine::reference();
     let actual = &machine.axes[0].actual;
-    let Law::LuGre {
-        bristle_stiffness_n_per_m,
-        bristle_damping_n_s_per_m,
-    } = actual.law
-    else {
-        panic!("LuGre expected")
-    };
     let equations = Equations {
         mechanics: actual.mechanics,
-        sliding: actual.sliding,
-        stiffness: bristle_stiffness_n_per_m,
-        damping: bristle_damping_n_s_per_m,
+        table: Bristle::of(actual.sliding, &actual.law),
+        motor: motor_side.map(|own| Bristle::of(own.sliding, &own.law)),
     };
     // The kinks at reversals cost many small steps; only the end is kept.
     let mut solver = Dop853::from_param(
@@ -322,7 +423,8 @@ fn the_scheme_converges_to_a_high_accuracy_integration() {
     );
     solver.integrate().unwrap();
     let exact = solver.y_out().last().unwrap()[2];
-    let errors = [4.0, 8.0, 16.0, 32.0, 64.0].map(|n| 1.0e9 * (ours(1.0e-3 / n) - exact).abs());
+    let errors =
+        [4.0, 8.0, 16.0, 32.0, 64.0].map(|n| 1.0e9 * (ours(motor_side, 1.0e-3 / n) - exact).abs());
     println!(
         "table after 0.4 s: {:.6} mm; error at 1/4, 1/8, 1/16, 1/32, 1/64 ms: {errors:.3?} nm",
         1.0e3 * exact

@@ -2,21 +2,30 @@
 //!
 //! The effects of sliding friction become the sliding curve, presliding becomes a friction law, the
 //! others become [`Effects`]. `[axis.actual.sliding]` and `[axis.actual.friction]` state the curve
-//! and the law themselves; then the effects of these are not stated again.
+//! and the law themselves; then the effects of these are not stated again. All that is friction at
+//! the table; `[axis.actual.motor_side]` has the two tables of what turns with the motor.
 
 use axis_model::{Effect, Presliding};
 use toml::Spanned;
 
-use super::forms::ActualForm;
+use super::forms::{ActualForm, MotorSideForm};
 use super::source::{MachineError, Source, Start};
 use crate::effects::Effects;
 use crate::friction::{Law, Sliding, gaussian};
 
 /// What an axis really has, besides its mechanics.
 pub(super) struct Actual {
+    /// Friction at the table.
+    pub table: Side,
+    /// Friction of what turns with the motor.
+    pub motor: Option<Side>,
+    pub effects: Effects,
+}
+
+/// Friction of one side of the screw.
+pub(super) struct Side {
     pub sliding: Sliding,
     pub law: Law,
-    pub effects: Effects,
     /// Where the sliding friction is stated.
     pub sliding_at: Start,
     /// Where the friction law is stated.
@@ -44,6 +53,7 @@ pub(super) fn read(
     let ActualForm {
         sliding,
         friction,
+        motor_side,
         effects,
     } = form.get_ref();
     let mut stated = Stated::default();
@@ -67,7 +77,25 @@ pub(super) fn read(
     let effects_at = effects.as_ref().map_or(Start::of(form), Start::of);
     let sliding_at = sliding.as_ref().map_or(effects_at, Start::of);
     let law_at = friction.as_ref().map_or(effects_at, Start::of);
-    Ok(stated.actual(sliding_at, law_at))
+    let motor = motor_side.as_ref().map(|form| side(source, form));
+    let motor = motor.transpose()?;
+    Ok(stated.actual(sliding_at, law_at, motor))
+}
+
+/// Friction of the motor's side, as its tables state it.
+fn side(source: Source<'_>, form: &MotorSideForm) -> Result<Side, MachineError> {
+    source.check(&form.sliding)?;
+    if let Some(table) = &form.friction {
+        source.check(table)?;
+    }
+    let sliding_at = Start::of(&form.sliding);
+    let law = form.friction.as_ref();
+    Ok(Side {
+        sliding: *form.sliding.get_ref(),
+        law: law.map_or(Law::Coulomb, |table| table.get_ref().clone()),
+        sliding_at,
+        law_at: law.map_or(sliding_at, Start::of),
+    })
 }
 
 /// Why `[axis.actual.effects]` cannot state an effect, and what to do; `None` where it can.
@@ -127,17 +155,20 @@ impl Stated {
     }
 
     /// What was stated, as the simulator computes with it; `None` without friction.
-    fn actual(self, sliding_at: Start, law_at: Start) -> Option<Actual> {
+    fn actual(self, sliding_at: Start, law_at: Start, motor: Option<Side>) -> Option<Actual> {
         let has_friction = self.curve.is_some() || !self.on_curve.is_empty();
         let sliding = self.curve.unwrap_or_else(|| curve(&self.on_curve));
         let bristle = || self.presliding.map(|own| bristle(&sliding, own));
         let law = self.law.clone().or_else(bristle).unwrap_or(Law::Coulomb);
         has_friction.then_some(Actual {
-            sliding,
-            law,
+            table: Side {
+                sliding,
+                law,
+                sliding_at,
+                law_at,
+            },
+            motor,
             effects: self.others,
-            sliding_at,
-            law_at,
         })
     }
 }
@@ -177,6 +208,8 @@ fn bristle(sliding: &Sliding, presliding: Presliding) -> Law {
 
 #[cfg(test)]
 mod tests {
+    use crate::axis::MotorSide;
+    use crate::friction::Law;
     use crate::machine::Machine;
 
     /// The built-in machine with another `[axis.actual]`.
@@ -257,6 +290,41 @@ mod tests {
         );
         let drift = "friction_drift = { gain = 0.1, time_constant_s = 1.0, viscous_gain = 0.1 }";
         refused(drift, "the simulator's viscous friction does not drift");
+    }
+
+    #[test]
+    fn the_motors_side_has_tables_of_its_own_with_their_own_errors() {
+        let with = |tables: &str| {
+            let table = "[axis.actual.sliding]\ncoulomb_n = 1.0\nstatic_n = 1.0\n\
+                         stribeck_velocity_m_per_s = 1e-3\nviscous_n_s_per_m = 0.0\n";
+            machine(&format!("{table}{tables}"))
+        };
+        let sliding = "[axis.actual.motor_side.sliding]\ncoulomb_n = 50.0\nstatic_n = 60.0\n\
+                       stribeck_velocity_m_per_s = 2e-3\nviscous_n_s_per_m = 300.0\n";
+        let bristle = "[axis.actual.motor_side.friction]\nlaw = \"lu-gre\"\n\
+                       bristle_stiffness_n_per_m = 1e7\nbristle_damping_n_s_per_m = 0.0\n";
+        let motor_side = |tables: &str| with(tables).unwrap().axes[0].actual.motor_side.clone();
+        assert_eq!(motor_side(""), None);
+        let rigid = motor_side(sliding).unwrap();
+        assert_eq!((rigid.sliding.coulomb_n, rigid.law), (50.0, Law::Coulomb));
+        let stiffness = |own: &MotorSide| own.law.stiffness_n_per_m();
+        let bristled = motor_side(&format!("{sliding}{bristle}"));
+        assert_eq!(bristled.as_ref().map(stiffness), Some(1.0e7));
+
+        let at = line_of_actual() + 5;
+        let low = sliding.replace("60.0", "40.0");
+        let error = with(&low).unwrap_err();
+        let start = format!("m.toml:{}: static_n: must be 50 to", at + 2);
+        assert!(error.starts_with(&start), "{error}");
+        let stiff = format!("{sliding}{}", bristle.replace("1e7", "1e11"));
+        let error = with(&stiff).unwrap_err();
+        let start = format!("m.toml:{}: law: with this mass of the motor", at + 6);
+        assert!(error.starts_with(&start), "{error}");
+        assert!(
+            with(bristle)
+                .unwrap_err()
+                .contains("missing field `sliding`")
+        );
     }
 
     #[test]

@@ -227,7 +227,16 @@ ranged! {
 pub(super) struct ActualForm {
     pub sliding: Option<Spanned<Sliding>>,
     pub friction: Option<Spanned<Law>>,
+    pub motor_side: Option<MotorSideForm>,
     pub effects: Option<Spanned<EffectTable>>,
+}
+
+/// Friction of what turns with the motor, in tables like those of the table.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MotorSideForm {
+    pub sliding: Spanned<Sliding>,
+    pub friction: Option<Spanned<Law>>,
 }
 
 /// What the axis' model says, as words: an unknown one is told with its line.

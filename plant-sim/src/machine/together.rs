@@ -4,13 +4,13 @@ use axis_model::EffectName;
 use toml::Spanned;
 
 use super::MachineAxis;
-use super::actual::{self, Actual};
+use super::actual::{self, Actual, Side};
 use super::forms::{
     ActuatorForm, AxisForm, DeclaredForm, EncodersForm, Gains, LONGEST_PERIOD_S, Limits,
     MechanicsForm,
 };
 use super::source::{MachineError, Source, Start};
-use crate::axis::{AxisParameters, Mounting, SUB_STEP_S};
+use crate::axis::{AxisParameters, MotorSide, Mounting, SUB_STEP_S};
 use crate::brake::BrakeParameters;
 use crate::friction::{Law, Sliding};
 use crate::mechanics::Mechanics;
@@ -44,7 +44,12 @@ pub(super) fn axis(
     let actual = actual::read(source, &actual_table)?.ok_or_else(|| missing(FRICTION))?;
     let tables = Tables::of(&form, missing)?;
     tables.check(source)?;
-    check_friction(source, &actual)?;
+    for side in [Some(&actual.table), actual.motor.as_ref()]
+        .into_iter()
+        .flatten()
+    {
+        check_friction(source, side)?;
+    }
     tables.check_together(source, &actual)?;
     let declared = declared(source, &tables.declared)?;
     Ok(MachineAxis {
@@ -130,13 +135,20 @@ impl Tables {
             );
             return Err(source.error(Start::of(&self.mechanics), "screw_stiffness_n_per_m", text));
         }
-        let (bristles, table) = (actual.law.stiffness_n_per_m(), stiffest(m2));
-        if bristles > table {
-            let text = format!(
-                "with this table mass the simulation resolves friction stiffness up to {table:.3e} \
-                 N/m, got {bristles:.3e}"
-            );
-            return Err(source.error(actual.law_at, "law", text));
+        let sides = [
+            (Some(&actual.table), m2, "of the table"),
+            (actual.motor.as_ref(), m1, "of the motor"),
+        ];
+        for (side, mass, whose) in sides {
+            let (most, side) = (stiffest(mass), side.into_iter());
+            for side in side.filter(|side| side.law.stiffness_n_per_m() > most) {
+                let text = format!(
+                    "with this mass {whose} the simulation resolves friction stiffness up to \
+                     {most:.3e} N/m, got {:.3e}",
+                    side.law.stiffness_n_per_m()
+                );
+                return Err(source.error(side.law_at, "law", text));
+            }
         }
         Ok(())
     }
@@ -223,8 +235,12 @@ impl Tables {
                 backlash_m: mechanics.backlash_m,
             },
             lead_m_per_rev: mechanics.lead_m_per_rev,
-            sliding: actual.sliding,
-            law: actual.law,
+            sliding: actual.table.sliding,
+            law: actual.table.law,
+            motor_side: actual.motor.map(|side| MotorSide {
+                sliding: side.sliding,
+                law: side.law,
+            }),
             effects: actual.effects,
             motor_encoder_counts_per_rev: encoders.motor_counts_per_rev,
             load_encoder_resolution_m: encoders.load_resolution_m,
@@ -263,18 +279,18 @@ const BRISTLE_LEVEL_N: f64 = 1.0e-3;
 
 /// Breakaway is not below sliding, bristles slip at some level, and the elements of Maxwell
 /// friction share it.
-fn check_friction(source: Source<'_>, actual: &Actual) -> Result<(), MachineError> {
-    let start = actual.sliding_at;
+fn check_friction(source: Source<'_>, side: &Side) -> Result<(), MachineError> {
+    let start = side.sliding_at;
     let Sliding {
         coulomb_n,
         static_n,
         ..
-    } = actual.sliding;
+    } = side.sliding;
     source.within(
         start,
         Quantity::new("static_n", static_n, (coulomb_n, 1.0e6)),
     )?;
-    match &actual.law {
+    match &side.law {
         Law::Coulomb => Ok(()),
         Law::LuGre { .. } => {
             let level = Quantity::new("coulomb_n", coulomb_n, (BRISTLE_LEVEL_N, 1.0e6));
@@ -283,7 +299,7 @@ fn check_friction(source: Source<'_>, actual: &Actual) -> Result<(), MachineErro
         Law::MaxwellSlip {
             stiffness_n_per_m,
             share,
-        } => check_shares(source, actual.law_at, stiffness_n_per_m.len(), share),
+        } => check_shares(source, side.law_at, stiffness_n_per_m.len(), share),
     }
 }
 
