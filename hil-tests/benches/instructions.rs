@@ -283,6 +283,7 @@ fn model() -> AxisCompensation {
         lag_m: 1.3e-5,
         viscous_n_s_per_m: 2000.0,
         stiffness_n_per_m: 1.2e8,
+        table_share: 1.0,
         motor_inertia_kg: 632.0,
         ahead_s: 5.0e-4,
         damping_s: 7.5e-4,

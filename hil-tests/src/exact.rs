@@ -1,5 +1,6 @@
 //! The drive's model of friction made of what a machine file says, not of what a record shows: what
-//! is left with it is not the fault of identification.
+//! is left with it is not the fault of identification. Friction of both sides of the screw is one
+//! friction to the drive: bristles of either side are one, as stiff as both.
 
 use std::f64::consts::TAU;
 
@@ -7,9 +8,9 @@ use axis_model::{
     Compliance, Coulomb, Effect, Estimate, Inertia, Presliding, Stribeck, TorqueRipple, Viscous,
     ViscousAsymmetry,
 };
-use plant_sim::friction::Law;
+use plant_sim::friction::{Law, Sliding};
 use plant_sim::machine::MachineAxis;
-use workbench::compensation::{AxisCompensation, Compensation};
+use workbench::compensation::{AxisCompensation, Compensation, Model};
 use workbench::model_file::Known;
 use workbench::tuning::friction_model;
 
@@ -18,9 +19,13 @@ use workbench::tuning::friction_model;
 pub fn model(axis: &MachineAxis, period_s: f64) -> AxisCompensation {
     let known = Known::of_machine(axis, period_s);
     let model = friction_model::of_effects(&known, &effects(axis), &elements(axis));
+    let table_share = axis.actual.sliding.coulomb_n / coulomb_n(axis);
     AxisCompensation {
         reversal: model.map_or(Compensation::None, |model| {
-            Compensation::Model(Box::new(model))
+            Compensation::Model(Box::new(Model {
+                table_share,
+                ..model
+            }))
         }),
         backlash_m: 0.0,
     }
@@ -30,33 +35,55 @@ fn known(value: f64) -> Estimate {
     Estimate::about(value, 0.0, "")
 }
 
+/// Friction of the table, and of the motor's side where it has some.
+fn sides(axis: &MachineAxis) -> Vec<(&Sliding, &Law)> {
+    let actual = &axis.actual;
+    let motor = actual.motor_side.as_ref();
+    let motor = motor.map(|own| (&own.sliding, &own.law));
+    [(&actual.sliding, &actual.law)]
+        .into_iter()
+        .chain(motor)
+        .collect()
+}
+
+/// A quantity of both sides together.
+fn of_both(axis: &MachineAxis, of_side: impl Fn(&Sliding, &Law) -> f64) -> f64 {
+    let each = sides(axis).into_iter();
+    each.map(|(sliding, law)| of_side(sliding, law)).sum()
+}
+
+fn coulomb_n(axis: &MachineAxis) -> f64 {
+    of_both(axis, |sliding, _| sliding.coulomb_n)
+}
+
 fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     let (sliding, mechanics) = (&axis.actual.sliding, &axis.actual.mechanics);
     let (motor_kg, table_kg) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
-    let stiffness_n_per_m = axis.actual.law.stiffness_n_per_m();
-    let damping = match axis.actual.law {
+    let stiffness_n_per_m = of_both(axis, |_, law| law.stiffness_n_per_m());
+    let damping = of_both(axis, |_, law| match law {
         Law::LuGre {
             bristle_damping_n_s_per_m,
             ..
-        } => bristle_damping_n_s_per_m,
+        } => *bristle_damping_n_s_per_m,
         _ => 0.0,
-    };
+    });
+    let excess_n = of_both(axis, |sliding, _| sliding.static_n - sliding.coulomb_n);
     let mut effects = vec![
         Effect::Inertia(Inertia {
             inertia: known(motor_kg + table_kg),
             load: Some(known(table_kg)),
         }),
         Effect::Coulomb(Coulomb {
-            coulomb: known(sliding.coulomb_n),
+            coulomb: known(coulomb_n(axis)),
         }),
         Effect::Viscous(Viscous {
-            viscous: known(sliding.viscous_n_s_per_m),
+            viscous: known(of_both(axis, |sliding, _| sliding.viscous_n_s_per_m)),
         }),
         Effect::ViscousAsymmetry(ViscousAsymmetry {
             viscous_asymmetry: known(sliding.viscous_asymmetry),
         }),
         Effect::Stribeck(Stribeck {
-            excess: known(sliding.static_n - sliding.coulomb_n),
+            excess: known(excess_n),
             velocity: known(sliding.stribeck_velocity_m_per_s),
             exponent: Some(known(sliding.stribeck_exponent)),
             lag: Some(known(sliding.stribeck_lag_s)),
@@ -68,7 +95,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     ];
     if stiffness_n_per_m > 0.0 {
         effects.push(Effect::Presliding(Presliding {
-            deflection: known(sliding.coulomb_n / stiffness_n_per_m),
+            deflection: known(coulomb_n(axis) / stiffness_n_per_m),
             damping: Some(known(damping)),
         }));
     }
@@ -96,16 +123,21 @@ fn ripple(own: &TorqueRipple<f64>) -> TorqueRipple<Estimate> {
 
 /// Shares and ways from rest of Maxwell slip.
 fn elements(axis: &MachineAxis) -> Vec<(f64, f64)> {
-    let Law::MaxwellSlip {
-        stiffness_n_per_m,
-        share,
-    } = &axis.actual.law
-    else {
-        return Vec::new();
+    let all_n = coulomb_n(axis);
+    let of_side = |(sliding, law): (&Sliding, &Law)| {
+        let Law::MaxwellSlip {
+            stiffness_n_per_m,
+            share,
+        } = law
+        else {
+            return Vec::new();
+        };
+        let level_n = sliding.coulomb_n;
+        let pairs = share.iter().zip(stiffness_n_per_m);
+        let element = |(share, stiffness): (&f64, &f64)| {
+            (share * level_n / all_n, share * level_n / stiffness)
+        };
+        pairs.map(element).collect()
     };
-    let level_n = axis.actual.sliding.coulomb_n;
-    let pairs = share.iter().zip(stiffness_n_per_m);
-    pairs
-        .map(|(share, stiffness)| (*share, share * level_n / stiffness))
-        .collect()
+    sides(axis).into_iter().flat_map(of_side).collect()
 }

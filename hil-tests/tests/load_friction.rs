@@ -1,5 +1,6 @@
 //! Friction of a load that winds a screw up, of laws and sizes unlike the reference machine's, as
-//! `commission` records and identifies it: names, verdict, and every parameter in its interval.
+//! `commission` records and identifies it: names, verdict, and every parameter in its interval. The
+//! last one has friction of the motor's side as well.
 
 use hil_tests::Scope;
 use plant_sim::Machine;
@@ -13,7 +14,7 @@ struct Case {
     parameters: &'static [(&'static str, f64)],
 }
 
-const CASES: [Case; 4] = [
+const CASES: [Case; 5] = [
     Case {
         machine: include_str!("../machines/slipping-stage.toml"),
         lacks: &["presliding"],
@@ -78,6 +79,24 @@ const CASES: [Case; 4] = [
             ("stribeck_excess", 150.0),
             ("stribeck_velocity", 3.0e-3),
             ("stribeck_exponent", 1.2),
+        ],
+    },
+    Case {
+        machine: include_str!("../machines/rubbing-motor.toml"),
+        lacks: &["presliding", "stribeck"],
+        parameters: &[
+            ("inertia", 800.0),
+            ("load_inertia", 380.0),
+            ("coulomb", 350.0),
+            ("load_coulomb", 240.0),
+            ("motor_coulomb", 110.0),
+            ("motor_deflection", 5.0e-6),
+            ("viscous", 2200.0),
+            ("compliance_stiffness", 1.4e8),
+            ("compliance_damping", 2.4e4),
+            ("presliding_deflection", 1.2e-5),
+            ("stribeck_excess", 87.5),
+            ("stribeck_velocity", 2.0e-3),
         ],
     },
 ];

@@ -67,6 +67,9 @@ pub struct Model {
     pub viscous_n_s_per_m: f64,
     /// Stiffness of the screw that the friction of the table winds up.
     pub stiffness_n_per_m: f64,
+    /// Share of the friction that is the table's: that of the motor's own side winds nothing up.
+    #[serde(default = "whole")]
+    pub table_share: f64,
     /// What of the inertia is the motor's.
     pub motor_inertia_kg: f64,
     /// From the begin of its cycle until the torque acts as friction does.
@@ -90,6 +93,11 @@ pub struct Model {
     /// Ripple of the force.
     #[serde(default)]
     pub ripple: [Ripple; RIPPLES],
+}
+
+/// All friction is the table's where no file says otherwise.
+const fn whole() -> f64 {
+    1.0
 }
 
 /// Waves of the force over the position that the drive has.
@@ -154,6 +162,7 @@ impl Model {
         lag_s: 0.0,
         viscous_n_s_per_m: 0.0,
         stiffness_n_per_m: f64::INFINITY,
+        table_share: whole(),
         motor_inertia_kg: 0.0,
         ahead_s: 0.0,
         damping_s: 0.0,
@@ -349,6 +358,7 @@ fn check_model(model: &Model) -> Result<(), Wrong> {
         stiffness > 0.0,
         Wrong("stiffness_n_per_m", "above zero", stiffness),
     )?;
+    each("table_share", "0 to 1", &[model.table_share], 0.0..=1.0)?;
     let inertia = model.motor_inertia_kg;
     each("motor_inertia_kg", "0 to 1e6 kg", &[inertia], 0.0..=1.0e6)?;
     each("ahead_s", "0 to 0.1 s", &[model.ahead_s], 0.0..=0.1)?;

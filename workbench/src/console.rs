@@ -4,7 +4,7 @@ use identification::{Identification, figures};
 
 use crate::ballbar::REVERSALS;
 use crate::circle_test::CircleReport;
-use crate::compensation::Compensation;
+use crate::compensation::{Compensation, Model};
 use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
 use crate::tuning::Tuned;
 
@@ -69,12 +69,23 @@ fn parameters(reversal: &Compensation) -> String {
             span(1.0e3, &own.accelerations_m_per_s2()),
         ),
         Compensation::Model(model) => format!(
-            "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm",
+            "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm{}",
             model.level_n(),
             model.level_n() * model.factor[0],
             model.viscous_n_s_per_m,
-            1.0e-6 * model.stiffness_n_per_m
+            1.0e-6 * model.stiffness_n_per_m,
+            table_share(model)
         ),
+    }
+}
+
+/// How much of the friction is the table's, where that is not all.
+fn table_share(model: &Model) -> String {
+    let share = 100.0 * model.table_share;
+    if share < 100.0 {
+        format!(", {share:.0} % of the friction at the table")
+    } else {
+        String::new()
     }
 }
 

@@ -288,7 +288,7 @@ impl Set {
     fn model(&mut self, model: &Model) -> Outcome<()> {
         self.elements(model)?;
         let per_newton = self.torque_per_newton;
-        let windup = 1.0 / model.stiffness_n_per_m / per_newton;
+        let windup = model.table_share / model.stiffness_n_per_m / per_newton;
         for (place, key, value) in [
             (
                 Parameter::LevelSpan,

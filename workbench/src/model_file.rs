@@ -13,9 +13,11 @@ use plant_sim::machine::{ActuatorForm, Bus, EncodersForm, Gains, Limits, Mechani
 use serde::Serialize;
 
 mod known;
+mod motor_side;
 mod stated;
 
 pub use known::{Known, relation_m};
+pub use motor_side::MotorSide;
 
 /// The file.
 #[derive(Serialize)]
@@ -54,6 +56,8 @@ struct Actual {
     effects: EffectTable,
     #[serde(skip_serializing_if = "Option::is_none")]
     friction: Option<Law>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    motor_side: Option<motor_side::Tables>,
 }
 
 #[derive(Serialize)]
@@ -116,8 +120,16 @@ impl Own {
     fn of(name: &str, known: &Known, result: &Identification) -> Self {
         let report = &result.report;
         let (mechanics, table_mass) = stated::mechanics(known, &result.effects);
-        let friction = stated::friction(result, mechanics.table_mass_kg);
-        let mut stated = stated::effects(known, &result.effects, mechanics.table_mass_kg);
+        let motor = MotorSide::of(&report.parameters);
+        let motor_side =
+            motor.and_then(|motor| motor.tables(&result.effects, mechanics.motor_inertia_kg));
+        let of_table = match motor.filter(|_| motor_side.is_some()) {
+            Some(motor) => motor.left(&result.effects),
+            None => result.effects.clone(),
+        };
+        let curve = report.presliding.as_ref();
+        let friction = stated::friction(curve, &of_table, mechanics.table_mass_kg);
+        let mut stated = stated::effects(known, &of_table, mechanics.table_mass_kg);
         if friction.is_some() {
             stated.without_presliding();
         }
@@ -136,6 +148,7 @@ impl Own {
             actual: Actual {
                 effects: stated.effects,
                 friction,
+                motor_side,
             },
             declared: Declared {
                 effects: names.cloned().collect(),
@@ -365,6 +378,48 @@ mod tests {
         let stiffness = machine.axes[0].actual.law.stiffness_n_per_m();
         let most = 0.2 * 280.0 / plant_sim::axis::SUB_STEP_S.powi(2);
         assert!((stiffness / most - 1.0).abs() < 1.0e-9, "{stiffness}");
+    }
+
+    #[test]
+    fn friction_of_the_motors_side_has_its_tables_and_the_table_has_the_rest() {
+        let effects = vec![
+            inertia(700.0, None),
+            Effect::Coulomb(Coulomb {
+                coulomb: estimate(200.0),
+            }),
+            Effect::Presliding(Presliding {
+                deflection: estimate(1.0e-5),
+                damping: Some(estimate(4.0e3)),
+            }),
+        ];
+        let mut result = identification(effects);
+        for (name, value) in [
+            ("motor_coulomb", 50.0),
+            ("load_coulomb", 150.0),
+            ("motor_deflection", 4.0e-6),
+            ("presliding_deflection", 1.0e-5),
+        ] {
+            let known = &mut result.report.parameters.known;
+            known.insert(name.into(), estimate(value));
+        }
+        let (_, machine) = written_of(&result);
+        let actual = &machine.axes[0].actual;
+        let motor = actual.motor_side.as_ref().unwrap();
+        let bristle = |stiffness: f64, damping: f64| Law::LuGre {
+            bristle_stiffness_n_per_m: stiffness,
+            bristle_damping_n_s_per_m: damping,
+        };
+        assert_eq!(
+            (motor.sliding.coulomb_n, actual.sliding.coulomb_n),
+            (50.0, 150.0)
+        );
+        for (law, wanted) in [
+            (&motor.law, bristle(50.0 / 4.0e-6, 1.0e3)),
+            (&actual.law, bristle(150.0 / 1.0e-5, 3.0e3)),
+        ] {
+            let (is, should) = (law.stiffness_n_per_m(), wanted.stiffness_n_per_m());
+            assert!((is / should - 1.0).abs() < 1.0e-9, "{law:?} {wanted:?}");
+        }
     }
 
     #[test]

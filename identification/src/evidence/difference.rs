@@ -26,6 +26,7 @@ mod known;
 mod left;
 mod linearised;
 mod load;
+mod motor_side;
 mod refined;
 mod rubbing;
 mod search;
@@ -230,6 +231,7 @@ fn settled(
     difference.motor_coulomb = spring.map(|spring| spring.motor_coulomb);
     if let Some(told) = &told {
         difference.stiffness = Some(told.stiffness);
+        difference.motor_coulomb = told.motor_side.map(|own| own.coulomb);
         difference.gap = told.gap.or(difference.gap);
     } else {
         difference.doubt_stiffness(spring.map(|spring| spring.stiffness));
@@ -830,7 +832,7 @@ impl Difference {
     /// between its flanks it does not, and neither is right.
     fn agrees_with(&self, told: &ByTheLoad) -> bool {
         let stiffness = self.stiffness.map_or(f64::NAN, |known| known.value);
-        (told.stiffness.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
+        (told.unrubbed.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
     }
 
     /// Takes back what was found where what is declared leaves no more without it. It was found

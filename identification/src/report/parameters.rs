@@ -133,6 +133,8 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
         ),
     ];
     own.extend(told.gap.map(|gap| ("backlash_gap", estimate(gap, length))));
+    let deflection = told.motor_side.map(|motor| motor.deflection);
+    own.extend(deflection.map(|deflection| ("motor_deflection", estimate(deflection, length))));
     own.extend(bristle_of_the_load(findings, told));
     own.extend(sliding_of_the_load(findings, told));
     own
@@ -176,7 +178,7 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         let exponent = exponent.map(|exponent| ("stribeck_exponent", estimate(exponent, "")));
         own.extend(lag.into_iter().chain(exponent));
     }
-    if told.motor_rubs || !is_told(fitted.model(), told.more) {
+    if told.motor_side.is_some() || !is_told(fitted.model(), told.more) {
         return own;
     }
     if !told.more.over_position {

@@ -5,7 +5,7 @@ use axis_model::{
     Backlash, Compliance, Coulomb, Delay, Effect, EffectName, EffectTable, Estimate, FrictionDrift,
     Inertia, Presliding, TorqueRipple,
 };
-use identification::{ForceNoise, Identification, SlipElement};
+use identification::{ForceNoise, Identification, PreslidingCurve, SlipElement};
 use plant_sim::axis::SUB_STEP_S;
 use plant_sim::friction::Law;
 use plant_sim::machine::{ActuatorForm, EncodersForm, MechanicsForm, refusal};
@@ -164,11 +164,14 @@ pub(super) fn effects(known: &Known, effects: &[Effect<Estimate>], table_kg: f64
 
 /// `[axis.actual.friction]`: Maxwell slip, which no effect of the vocabulary can state. Elements as
 /// stiff as the sub-step carries, at most.
-pub(super) fn friction(result: &Identification, table_kg: f64) -> Option<Law> {
-    let deflection: Option<&Presliding<Estimate>> = identified!(result.effects, Presliding);
-    let curve = result.report.presliding.as_ref();
+pub(super) fn friction(
+    curve: Option<&PreslidingCurve>,
+    effects: &[Effect<Estimate>],
+    table_kg: f64,
+) -> Option<Law> {
+    let deflection: Option<&Presliding<Estimate>> = identified!(effects, Presliding);
     let curve = curve.filter(|_| deflection.is_some())?;
-    let coulomb: Option<&Coulomb<Estimate>> = identified!(result.effects, Coulomb);
+    let coulomb: Option<&Coulomb<Estimate>> = identified!(effects, Coulomb);
     let level_n = coulomb?.coulomb.value.max(LEAST_LEVEL_N);
     let shortest = level_n / stiffest(table_kg);
     let stiffness = |element: &SlipElement| {

@@ -22,7 +22,7 @@ use identification::Identification;
 use crate::compensation::{
     BENDS_PER_M2, ELEMENTS, LEVELS, Model, PERIODS_M, RIPPLES, Ripple, SLOPES_PER_M,
 };
-use crate::model_file::Known;
+use crate::model_file::{Known, MotorSide};
 
 /// Friction that no reversal shows to give way slips within this, m.
 const RIGID_M: f64 = 1.0e-6;
@@ -107,11 +107,42 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
         .iter()
         .map(|own| (own.share, own.deflection))
         .collect();
-    of_effects(known, &result.effects, &slipping)
+    let model = of_effects(known, &result.effects, &slipping)?;
+    Some(match MotorSide::of(&result.report.parameters) {
+        Some(motor) => beside_motor(&model, motor),
+        None => model,
+    })
+}
+
+/// The model of an axis of whose friction all was taken for the table's: each element is one of the
+/// table and one of the motor's side.
+fn beside_motor(model: &Model, motor: MotorSide) -> Model {
+    let table_share = 1.0 - motor.share;
+    let pairs = model.level_n.into_iter().zip(model.slip_m);
+    let both = pairs.flat_map(|(level_n, slip_m)| {
+        let of_motor = (motor.share * level_n, motor.deflection * slip_m);
+        [(table_share * level_n, slip_m), of_motor]
+    });
+    Model {
+        table_share,
+        ..with_elements(*model, few(both.collect()))
+    }
+}
+
+fn with_elements(model: Model, elements: Vec<(f64, f64)>) -> Model {
+    let mut model = Model {
+        level_n: Model::OFF.level_n,
+        slip_m: Model::OFF.slip_m,
+        ..model
+    };
+    for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
+        (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
+    }
+    model
 }
 
 /// The model of what is known of an axis, with the elements of its presliding: shares of the level
-/// and ways from rest, m; none of a bristle.
+/// and ways from rest, m; none of a bristle. All friction is the table's.
 #[must_use]
 pub fn of_effects(
     known: &Known,
@@ -141,9 +172,7 @@ pub fn of_effects(
         ahead_s: known.lag_s,
         ..Model::OFF
     };
-    for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
-        (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
-    }
+    model = with_elements(model, elements);
     model.lag_s = found.stribeck.map_or(0.0, lag_s);
     if let (false, Some(bristle_m)) = (slips, found.bristle_m()) {
         give_bristle(&mut model, &found, bristle_m);
@@ -299,6 +328,29 @@ mod tests {
         let stiffness = |elements: &[(f64, f64)]| force(elements, 1.0e-9);
         assert!((force(&fewer, 1.0) - force(&many, 1.0)).abs() < 1.0e-9);
         assert!((stiffness(&fewer) / stiffness(&many) - 1.0).abs() < 1.0e-9);
+    }
+
+    #[test]
+    fn friction_of_the_motors_side_is_beside_the_tables_and_winds_nothing_up() {
+        let model = with_elements(Model::OFF, of_bristle(400.0, 1.0e-5));
+        let motor = MotorSide {
+            coulomb_n: 100.0,
+            share: 0.25,
+            deflection: 0.4,
+        };
+        let both = beside_motor(&model, motor);
+        assert_eq!(both.table_share, 0.75);
+        assert!((both.level_n() - 400.0).abs() < 1.0e-9);
+        let elements: Vec<_> = both.level_n.into_iter().zip(both.slip_m).collect();
+        for place in 0..40 {
+            let way_m = 1.0e-6 * f64::from(place);
+            let bristle = |level_n: f64, deflection_m: f64| {
+                level_n * (1.0 - (-2.0 * way_m / deflection_m).exp())
+            };
+            let wanted = bristle(300.0, 1.0e-5) + bristle(100.0, 4.0e-6);
+            let off = force(&elements, way_m) - wanted;
+            assert!(off.abs() < 8.0, "{off} N at {way_m} m");
+        }
     }
 
     fn about(value: f64) -> Estimate {

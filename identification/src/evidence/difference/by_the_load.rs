@@ -2,7 +2,7 @@
 //!
 //! Wind-up that is fitted to motor − load ([`carried`](super::carried)) has its coefficients over
 //! the stiffness: M2/K, Fc2/K, C/K. The stiffness itself is in the effort alone, beside the wind-up
-//! that was measured: `F = M1·a1 + F0 + K·D(d − c) + C·ḋ in contact` ([`flanks`](super::flanks)).
+//! that was measured ([`motor_side`]).
 //!
 //! Intervals are those of the jackknife over held-out blocks. Deflection, rise and velocity of the
 //! bristle have them by the derivative of its columns, which are fitted beside the others; so has
@@ -12,10 +12,10 @@
 //! Units: m or rad, s, unit of the effort.
 
 use super::columns::{Apart, Way};
-use super::flanks::{Balance, Stiffness};
 use super::known::Known;
 use super::linearised::Linearised;
 use super::load::{Carried, More, where_it_moves};
+use super::motor_side::{self, MotorSide, Stiffness};
 use super::refined::stepped;
 use super::rubbing::LoadFriction;
 use super::slipping;
@@ -31,13 +31,16 @@ pub(crate) struct ByTheLoad {
     pub damping: Known,
     /// Mass of the load.
     pub mass: Known,
-    /// Whether the motor's own side has friction beside that of the load.
-    pub motor_rubs: bool,
+    /// What the stiffness would be without friction of the motor's own side: levels of friction are
+    /// those of both sides by it.
+    pub unrubbed: Known,
+    /// Friction of the motor's own side, where some is seen.
+    pub motor_side: Option<MotorSide>,
     /// What else the load's friction goes with.
     pub more: More,
-    /// Coulomb level of the load, in the middle of the travel.
+    /// Coulomb level, in the middle of the travel.
     pub coulomb: Known,
-    /// Viscous friction of the load.
+    /// Viscous friction.
     pub viscous: Known,
     /// How much more of that it has forward than backward, halved, where that is told apart.
     pub asymmetry: Option<Known>,
@@ -97,10 +100,7 @@ pub(super) fn told(
         return None;
     };
     let apart = apart.where_known(ways);
-    let Stiffness {
-        known: stiffness,
-        is_rubbed,
-    } = Balance::of(&apart).stiffness(carried.flanks)?;
+    let stiffness = motor_side::stiffness(&apart, carried)?;
     let apart = where_the_load_moves(apart, smallest.velocity);
     let apart = apart.without_strikes(ways);
     let turning = |counts: f64| {
@@ -110,7 +110,7 @@ pub(super) fn told(
             ..carried
         });
         let turning = stepped(&apart, turning, place);
-        near(&apart, &turning, place, stiffness, is_rubbed)
+        near(&apart, &turning, place, stiffness)
     };
     let told = turning(SMALLEST_TURN)?;
     let mut others = OTHER_TURNS.into_iter();
@@ -127,13 +127,7 @@ fn where_the_load_moves(apart: Apart<'_>, moving_velocity: f64) -> Apart<'_> {
 }
 
 /// What a wind-up tells by the fit that is linearised about it.
-fn near(
-    apart: &Apart<'_>,
-    ways: &[Way],
-    place: usize,
-    stiffness: Known,
-    motor_rubs: bool,
-) -> Option<ByTheLoad> {
+fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Option<ByTheLoad> {
     let Some(Way::Carried(carried)) = ways.get(place) else {
         return None;
     };
@@ -147,20 +141,21 @@ fn near(
         let change = known[carried.width() + place];
         Some(Known::new(1.0 + change.value, change.half_width).of(value))
     };
-    let coulomb = known[Carried::FRICTION].times(stiffness);
+    let (stiffness, of_all) = (spring.known, spring.unrubbed);
+    let coulomb = known[Carried::FRICTION].times(of_all);
     let damping = known[Carried::DAMPING].times(stiffness);
     let deflection = of_friction(friction.deflection, 0)?;
-    let bent = known[Carried::BENDING].times(stiffness);
+    let bent = known[Carried::BENDING].times(of_all);
     Some(ByTheLoad {
         stiffness,
         damping: damping.of(-1.0),
         mass: known[Carried::MASS].times(stiffness),
-        motor_rubs,
+        unrubbed: spring.unrubbed,
+        motor_side: spring.motor_side,
         more: carried.more,
         coulomb,
-        viscous: known[Carried::VISCOUS].times(stiffness),
-        asymmetry: (carried.more.by_direction)
-            .then(|| known[Carried::BY_DIRECTION].times(stiffness)),
+        viscous: known[Carried::VISCOUS].times(of_all),
+        asymmetry: (carried.more.by_direction).then(|| known[Carried::BY_DIRECTION].times(of_all)),
         deflection,
         elements: None,
         bristle_damping: bent.times(deflection.inverse()),
@@ -194,7 +189,8 @@ impl ByTheLoad {
             stiffness: known(self.stiffness),
             damping: known(self.damping),
             mass: known(self.mass),
-            motor_rubs: self.motor_rubs,
+            unrubbed: known(self.unrubbed),
+            motor_side: self.motor_side,
             more: self.more,
             coulomb: known(self.coulomb),
             viscous: known(self.viscous),
@@ -275,8 +271,7 @@ mod tests {
         let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let told = told(&apart, &ways, 1, SMALLEST).unwrap();
         let wanted = [
-            (told.stiffness, STIFFNESS, 0.005),
-            (told.mass, 60.0, 0.005),
+            (told.unrubbed, STIFFNESS, 0.005),
             (told.coulomb, 25.0, 0.01),
             (told.viscous, 200.0, 0.01),
             (told.deflection, FRICTION.deflection, 0.01),
@@ -291,8 +286,14 @@ mod tests {
             let half_width = known.half_width / known.value;
             assert!((1.0e-6..2.0 * share).contains(&half_width), "{known:?}");
         }
+        // What friction of the motor's side could hide is in their intervals.
+        for (known, truth) in [(told.stiffness, STIFFNESS), (told.mass, 60.0)] {
+            assert!((known.value / truth - 1.0).abs() < 0.005, "{known:?}");
+            let half_width = known.half_width / known.value;
+            assert!((1.0e-3..0.25).contains(&half_width), "{known:?}");
+        }
         // The made axis has no damper, no gap and no friction of its motor.
-        assert!(!told.motor_rubs);
+        assert_eq!(told.motor_side, None);
         assert!(told.damping.value.abs() < 1.0e-5 * STIFFNESS, "{told:?}");
         let bristle = told.bristle_damping;
         assert!(

@@ -188,6 +188,16 @@ pub(super) mod tests {
         by_direction: f64,
         more: impl Fn(f64) -> f64,
     ) -> Axis {
+        rubbed_on_both(friction, by_direction, (0.0, friction), more)
+    }
+
+    /// The same with so much Coulomb friction of the motor's own side, which follows another law.
+    pub(in crate::evidence::difference) fn rubbed_on_both(
+        friction: LoadFriction,
+        by_direction: f64,
+        (motor_coulomb, motor): (f64, LoadFriction),
+        more: impl Fn(f64) -> f64,
+    ) -> Axis {
         let load = two_sines(6000);
         let of = |x: &[f64]| Derivatives::new(x, 1.0e-3, EffortHold::Instant);
         let moved = of(&load);
@@ -200,13 +210,16 @@ pub(super) mod tests {
         let force: Vec<f64> = (0..6000).map(force).collect();
         let wound = force.iter().map(|force| force / STIFFNESS);
         let apart = wound.zip(&bend).map(|(wound, bend)| wound + more(*bend));
-        let motor: Vec<f64> = load.iter().zip(apart).map(|(x, apart)| x + apart).collect();
-        let pushed = of(&motor).acceleration;
+        let at: Vec<f64> = load.iter().zip(apart).map(|(x, apart)| x + apart).collect();
+        let pushed = of(&at);
+        let own = motor.bend(&Steps::of(&at, &pushed.velocity, 1.0e-3));
         let noise = |row: usize| 4.0 * (1.7 * (row * row % 1013) as f64).sin();
-        let efforts = force.iter().zip(pushed).enumerate();
-        let effort = efforts.map(|(row, (force, a))| force + 30.0 * a + noise(row));
-        let mut made = record(1.0e-3, motor);
-        made.effort = effort.collect();
+        let effort = force.iter().enumerate().map(|(row, force)| {
+            force + 30.0 * pushed.acceleration[row] + motor_coulomb * own[row] + noise(row)
+        });
+        let effort = effort.collect();
+        let mut made = record(1.0e-3, at);
+        made.effort = effort;
         made.load = Some(load);
         on(made)
     }

@@ -21,8 +21,9 @@
 use super::columns::{Apart, of_motor};
 use super::edges::Flanks;
 use super::known::Known;
-use crate::evidence::thresholds::{DIFFERENCE_SHARE, DIFFERENCE_T, FEWEST_COUNTS};
+use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
 use crate::fit::blocks::{Blocks, Fit, Gain};
+use crate::fit::rows::Rows;
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
 use crate::motion::kinematics::Kinematics;
@@ -44,9 +45,9 @@ const OWN_FRICTION: usize = 1;
 /// Places of all that the motor's own side has: mass, Coulomb and viscous friction, offset.
 const OWN: [usize; 4] = [0, OWN_FRICTION, 2, 3];
 /// Places of what it has without Coulomb friction.
-const OWN_WITHOUT_COULOMB: [usize; 3] = [0, 2, 3];
+pub(super) const OWN_WITHOUT_COULOMB: [usize; 3] = [0, 2, 3];
 /// Places of what it has without friction.
-const OWN_WITHOUT_FRICTION: [usize; 2] = [0, 3];
+pub(super) const OWN_WITHOUT_FRICTION: [usize; 2] = [0, 3];
 /// Seconds with so many times the effort of the median one are left out. Chosen: between slow and
 /// fast strokes it differs by up to four times, and a loop that bounces between the flanks brings
 /// ten.
@@ -62,15 +63,6 @@ pub(crate) struct Judged {
     /// Whether the force shows the flanks at all: without them the fit is worse, and stiffness and
     /// motor mass come out positive.
     pub sees_flanks: bool,
-}
-
-/// The stiffness between motor and load.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stiffness {
-    /// Value.
-    pub known: Known,
-    /// Whether the motor's own side has friction.
-    pub is_rubbed: bool,
 }
 
 /// The motor's balance of forces on a record.
@@ -142,8 +134,7 @@ impl<'a> Balance<'a> {
     /// Sum of squares of the effort that columns at the rows, low-passed, leave beside the motor's
     /// own side.
     pub(super) fn left_by_all(&self, columns: &[Vec<f64>]) -> f64 {
-        let held = columns.iter().map(|column| self.held(|row| column[row]));
-        self.blocks(&held.collect::<Vec<_>>()).fit().sse
+        self.blocks(&self.at_efforts(columns)).fit().sse
     }
 
     /// The same of one column, that of the wind-up. Friction of the motor's own side only holds
@@ -157,34 +148,29 @@ impl<'a> Balance<'a> {
         self.blocks_beside(&OWN_WITHOUT_COULOMB, &held).fit().sse
     }
 
-    /// The stiffness as the effort shows it, between flanks or of a spring without a gap. Motor −
-    /// load was measured, so noise of the effort does not bias it. Friction of the motor's own side
-    /// is asked only where it is seen: it would take half a percent of the stiffness away.
-    pub(super) fn stiffness(&self, flanks: Option<Flanks>) -> Option<Stiffness> {
+    /// Columns of what is wound up, between flanks or without a gap: its rate in contact, itself.
+    pub(super) fn wound(&self, flanks: Option<Flanks>) -> [Vec<f64>; 2] {
         let wind_up = |row: usize| {
             let apart = self.difference[row];
             flanks.map_or(apart, |flanks| flanks.wind_up(apart))
         };
         let touches = |d| flanks.is_none_or(|flanks| flanks.touches(d));
-        let columns = [self.rate(touches), self.column(wind_up)];
-        let [rubbed, plain] =
-            [&OWN[..], &OWN_WITHOUT_FRICTION[..]].map(|own| self.blocks_beside(own, &columns));
-        let [with, without] = [&rubbed, &plain].map(Blocks::cross_validate);
-        let gain = Gain::of(&without, &with);
-        let is_rubbed = gain.share >= DIFFERENCE_SHARE
-            && gain.t >= DIFFERENCE_T
-            && with.coefficients[OWN_FRICTION] > 0.0;
-        let (fit, blocks) = if is_rubbed {
-            (with, rubbed)
-        } else {
-            (without, plain)
-        };
-        let value = *fit.coefficients.last()?;
-        let half_width = *blocks.half_widths().last()?;
-        (value > 0.0).then_some(Stiffness {
-            known: Known { value, half_width },
-            is_rubbed,
-        })
+        [self.rate(touches), self.column(wind_up)]
+    }
+
+    /// Columns at the rows, low-passed, at the times at which the effort acts.
+    pub(super) fn at_efforts(&self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let held = columns.iter().map(|column| self.held(|row| column[row]));
+        held.collect()
+    }
+
+    /// The rows of a mask that are judged, with columns beside some of the motor's own side.
+    pub(super) fn rows(&self, own: &[usize], columns: &[Vec<f64>], mask: &[bool]) -> Rows {
+        let own = own.iter().map(|place| self.own[*place].as_slice());
+        let all: Vec<&[f64]> = own.chain(columns.iter().map(Vec::as_slice)).collect();
+        let pairs = mask.iter().zip(&self.mask);
+        let mask: Vec<bool> = pairs.map(|(mask, own)| *mask && *own).collect();
+        Rows::new(&all, self.effort, &mask, self.motion.period_s)
     }
 
     /// Rate of motor − load where a condition on it holds.

@@ -13,6 +13,7 @@
 use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
+use super::columns::Apart;
 use super::edges::Flanks;
 use super::rubbing::{Law, LoadFriction};
 use crate::model::effects::stribeck::GAUSS;
@@ -59,6 +60,12 @@ impl LoadMotion {
             rate: derived(motion, &wound, slope),
             steps: motion.pieces.iter().map(steps_of).collect(),
         }
+    }
+
+    /// Of the motor, as if it were the load.
+    pub(super) fn of_motor(apart: &Apart<'_>) -> Self {
+        let nothing = vec![0.0; apart.raw.len()];
+        Self::of(apart.motion, apart.path.position, &nothing, None, 0.0)
     }
 
     /// The bend and its rate, low-passed.

@@ -1,0 +1,212 @@
+//! The stiffness between motor and load, beside friction of the motor's own side.
+//!
+//! ```text
+//! F = M1·a1 + Fc1·z1 + d1·ż1 + Fv1·v1 + F0 + K·w + C·ẇ
+//! ```
+//!
+//! w is the wind-up and z1 the bend of the motor's own friction, which follows the law of the
+//! load's with a deflection of its own. A spring that is wound up by the friction of a load alone
+//! and one that is as much softer as the motor takes of that friction look nearly alike: w goes
+//! with acceleration, friction and velocity of the load, and the motor has hardly another motion.
+//! They differ by what accelerates the motor while the spring winds up, M1·ẅ, and by how its own
+//! friction turns over. So without friction of the motor's side a stiffness is too large by the
+//! share that is not seen of it, and the mass of the load with it. Whether it is seen or not, what
+//! the record leaves open of it is in the interval.
+//!
+//! Motor − load was measured, so noise of the effort does not bias the stiffness.
+//! Units: m or rad, s, unit of the effort.
+
+use super::columns::Apart;
+use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
+use super::known::Known;
+use super::load::{Carried, LoadMotion};
+use super::rubbing::LoadFriction;
+use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE};
+use crate::fit::blocks::{Blocks, Fit, Gain};
+use crate::fit::rows::Rows;
+use crate::fit::search::{descend, smallest};
+
+/// Deflections that are tried, in those of the load's friction.
+const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
+/// First step of the descent from the best of them, as a share of it.
+const STEP: f64 = 0.1;
+/// Deflections are linearised over such a share of them.
+const LINEAR: f64 = 0.05;
+/// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
+/// friction, offset, rate of the wind-up, wind-up, bend, rate of the bend.
+const VISCOUS: usize = 1;
+const STIFFNESS: usize = 4;
+const COULOMB: usize = 5;
+
+/// The stiffness between motor and load.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stiffness {
+    /// Value.
+    pub known: Known,
+    /// What it would be without friction of the motor's own side: what all friction is over the
+    /// wind-up by that of the load.
+    pub unrubbed: Known,
+    /// Friction of the motor's own side, where some is seen.
+    pub motor_side: Option<MotorSide>,
+}
+
+/// Friction of the motor's own side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MotorSide {
+    /// Coulomb friction.
+    pub coulomb: Known,
+    /// Deflection of its bristle, or that by which its elements are scaled: Coulomb level over
+    /// stiffness at standstill.
+    pub deflection: Known,
+}
+
+/// The stiffness as the effort shows it; `None` where it would be below zero.
+pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness> {
+    let balance = Balance::of(apart);
+    let wound = balance.wound(carried.flanks);
+    let rubbing = Rubbing {
+        motor: LoadMotion::of_motor(apart),
+        apart,
+        rows: balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
+        friction: carried.friction,
+        balance: &balance,
+    };
+    let plain = balance.rows(&OWN_WITHOUT_FRICTION, &wound, &apart.mask);
+    let plain = Blocks::with(&plain, &[]);
+    let without = plain.cross_validate();
+    let unrubbed = last(&without.coefficients, &plain.half_widths())?;
+    let (with, own, motor_side) = rubbing.at(rubbing.best());
+    let gain = Gain::of(&without, &with);
+    let is_seen = gain.share >= MOTOR_SIDE_SHARE
+        && gain.t >= DIFFERENCE_T
+        && with.coefficients[VISCOUS] >= 0.0
+        && motor_side.coulomb.value > motor_side.coulomb.half_width
+        && own.value > 0.0;
+    let known = if is_seen {
+        own
+    } else {
+        // As soft as it would be with as much friction of the motor's side as is not seen, which
+        // hides best where it turns over as that of the load does.
+        let (_, hidden, _) = rubbing.at(1.0);
+        let softest = [own, hidden].map(|known| known.value - known.half_width);
+        let less = unrubbed.value - softest[0].min(softest[1]);
+        unrubbed.within(less.max(0.0))
+    };
+    (unrubbed.value > 0.0).then_some(Stiffness {
+        known,
+        unrubbed,
+        motor_side: is_seen.then_some(motor_side),
+    })
+}
+
+fn last(values: &[f64], half_widths: &[f64]) -> Option<Known> {
+    Some(Known::new(*values.last()?, *half_widths.last()?))
+}
+
+/// The balance beside a friction of the motor's side.
+struct Rubbing<'a> {
+    motor: LoadMotion,
+    apart: &'a Apart<'a>,
+    /// All columns but those of the bend.
+    rows: Rows,
+    /// Of the load.
+    friction: LoadFriction,
+    balance: &'a Balance<'a>,
+}
+
+impl Rubbing<'_> {
+    /// The bend of the motor's side and its rate, with such a deflection in those of the load's.
+    fn bend(&self, deflection: f64) -> Vec<Vec<f64>> {
+        let deflection = deflection * self.friction.deflection;
+        let friction = LoadFriction {
+            deflection,
+            ..self.friction
+        };
+        let bend = self.motor.rubbed(self.apart.motion, friction);
+        self.balance.at_efforts(&bend)
+    }
+
+    fn blocks(&self, deflection: f64) -> Blocks {
+        Blocks::with(&self.rows, &self.bend(deflection))
+    }
+
+    /// The deflection that leaves least.
+    fn best(&self) -> f64 {
+        let left = |deflection: f64| self.blocks(deflection).fit().sse;
+        let begin = smallest(&DEFLECTIONS, &left).unwrap_or(1.0);
+        let range = (DEFLECTIONS[0], DEFLECTIONS[DEFLECTIONS.len() - 1]);
+        descend(begin, STEP * begin, range, &left)
+    }
+
+    /// The fit at a deflection, the stiffness and what the motor's side has by it, as uncertain as
+    /// that deflection is.
+    fn at(&self, deflection: f64) -> (Fit, Known, MotorSide) {
+        let fit = self.blocks(deflection).cross_validate();
+        let bend = self.bend(deflection);
+        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.bend(by * deflection));
+        let pairs = more[0].iter().zip(&less[0]);
+        let by_deflection = pairs.map(|(more, less)| (more - less) / (2.0 * LINEAR));
+        let columns = [bend, vec![by_deflection.collect()]].concat();
+        let half_widths = Blocks::with(&self.rows, &columns).half_widths();
+        let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
+        let [stiffness, coulomb] = [STIFFNESS, COULOMB].map(known);
+        let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
+        let deflection = Known::new(1.0, share).of(deflection * self.friction.deflection);
+        let motor_side = MotorSide {
+            coulomb,
+            deflection,
+        };
+        (fit, stiffness, motor_side)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::carried::instead;
+    use super::super::carried::tests::{
+        FRICTION, STIFFNESS, UNIT, WAYS, apart, axis, rubbed_on_both,
+    };
+    use super::super::columns::Way;
+    use super::*;
+    use crate::fit::made::Axis;
+
+    /// What the balance says beside the wind-up that the load's motion asks for.
+    fn told(axis: &Axis) -> Stiffness {
+        let apart = apart(axis);
+        let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
+        let Way::Carried(carried) = ways[1] else {
+            panic!("{ways:?}")
+        };
+        stiffness(&apart.where_known(&ways), carried).unwrap()
+    }
+
+    #[test]
+    fn friction_of_the_motors_side_is_seen_by_how_it_turns_over() {
+        let motor = LoadFriction {
+            deflection: 0.4 * FRICTION.deflection,
+            ..FRICTION
+        };
+        let told = told(&rubbed_on_both(FRICTION, 0.0, (15.0, motor), |_| 0.0));
+        let seen = told.motor_side.unwrap();
+        for (known, truth) in [
+            (told.known, STIFFNESS),
+            (seen.coulomb, 15.0),
+            (seen.deflection, motor.deflection),
+        ] {
+            let off = (known.value - truth).abs();
+            assert!(off < 0.1 * truth && off < known.half_width, "{known:?}");
+        }
+        // Without it the spring would be as much stiffer as the load has less of all friction.
+        let stiffer = told.unrubbed.value / STIFFNESS;
+        assert!((stiffer / (40.0 / 25.0) - 1.0).abs() < 0.1, "{stiffer}");
+    }
+
+    #[test]
+    fn where_none_is_seen_what_could_hide_is_in_the_interval() {
+        let told = told(&axis(|_| 0.0));
+        assert_eq!(told.motor_side, None);
+        assert_eq!(told.known.value, told.unrubbed.value);
+        assert!(told.known.half_width > 3.0 * told.unrubbed.half_width);
+        assert!((told.unrubbed.value / STIFFNESS - 1.0).abs() < 0.005);
+    }
+}
