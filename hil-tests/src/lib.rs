@@ -11,6 +11,7 @@
 pub mod architecture;
 pub mod comparison;
 pub mod confusion;
+pub mod drawn;
 pub mod exact;
 pub mod gaps;
 pub mod golden;

@@ -29,6 +29,7 @@ pub(super) fn parameters(plan: &Plan, draws: &mut Draws) -> AxisParameters {
         lead_m_per_rev: LEAD_M,
         sliding,
         law: Law::Coulomb,
+        motor_side: None,
         effects: offset(draws.between(-30.0, 30.0)),
         motor_encoder_counts_per_rev: COUNTS_PER_REV,
         load_encoder_resolution_m: LOAD_RESOLUTION_M,

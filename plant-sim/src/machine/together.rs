@@ -140,8 +140,9 @@ impl Tables {
             (actual.motor.as_ref(), m1, "of the motor"),
         ];
         for (side, mass, whose) in sides {
-            let (most, side) = (stiffest(mass), side.into_iter());
-            for side in side.filter(|side| side.law.stiffness_n_per_m() > most) {
+            let most = stiffest(mass);
+            let stiff = side.filter(|side| side.law.stiffness_n_per_m() > most);
+            if let Some(side) = stiff {
                 let text = format!(
                     "with this mass {whose} the simulation resolves friction stiffness up to \
                      {most:.3e} N/m, got {:.3e}",

@@ -125,15 +125,15 @@ fn beside_motor(model: &Model, motor: MotorSide) -> Model {
     });
     Model {
         table_share,
-        ..with_elements(*model, few(both.collect()))
+        ..with_elements(model, few(both.collect()))
     }
 }
 
-fn with_elements(model: Model, elements: Vec<(f64, f64)>) -> Model {
+fn with_elements(model: &Model, elements: Vec<(f64, f64)>) -> Model {
     let mut model = Model {
         level_n: Model::OFF.level_n,
         slip_m: Model::OFF.slip_m,
-        ..model
+        ..*model
     };
     for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
         (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
@@ -172,7 +172,7 @@ pub fn of_effects(
         ahead_s: known.lag_s,
         ..Model::OFF
     };
-    model = with_elements(model, elements);
+    model = with_elements(&model, elements);
     model.lag_s = found.stribeck.map_or(0.0, lag_s);
     if let (false, Some(bristle_m)) = (slips, found.bristle_m()) {
         give_bristle(&mut model, &found, bristle_m);
@@ -332,7 +332,7 @@ mod tests {
 
     #[test]
     fn friction_of_the_motors_side_is_beside_the_tables_and_winds_nothing_up() {
-        let model = with_elements(Model::OFF, of_bristle(400.0, 1.0e-5));
+        let model = with_elements(&Model::OFF, of_bristle(400.0, 1.0e-5));
         let motor = MotorSide {
             coulomb_n: 100.0,
             share: 0.25,

@@ -31,16 +31,15 @@ pub(crate) struct ByTheLoad {
     pub damping: Known,
     /// Mass of the load.
     pub mass: Known,
-    /// What the stiffness would be without friction of the motor's own side: levels of friction are
-    /// those of both sides by it.
+    /// What the stiffness would be without friction of the motor's own side.
     pub unrubbed: Known,
     /// Friction of the motor's own side, where some is seen.
     pub motor_side: Option<MotorSide>,
     /// What else the load's friction goes with.
     pub more: More,
-    /// Coulomb level, in the middle of the travel.
+    /// Coulomb level of both sides, in the middle of the travel.
     pub coulomb: Known,
-    /// Viscous friction.
+    /// Viscous friction of both sides.
     pub viscous: Known,
     /// How much more of that it has forward than backward, halved, where that is told apart.
     pub asymmetry: Option<Known>,
@@ -141,11 +140,13 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         let change = known[carried.width() + place];
         Some(Known::new(1.0 + change.value, change.half_width).of(value))
     };
-    let (stiffness, of_all) = (spring.known, spring.unrubbed);
-    let coulomb = known[Carried::FRICTION].times(of_all);
+    let stiffness = spring.known;
+    let of_both = spring.of_both(known[Carried::FRICTION]);
+    let unlike = spring.unlike(known[Carried::FRICTION]);
+    let coulomb = known[Carried::FRICTION].times(of_both);
     let damping = known[Carried::DAMPING].times(stiffness);
     let deflection = of_friction(friction.deflection, 0)?;
-    let bent = known[Carried::BENDING].times(of_all);
+    let bent = known[Carried::BENDING].times(of_both);
     Some(ByTheLoad {
         stiffness,
         damping: damping.of(-1.0),
@@ -154,12 +155,12 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         motor_side: spring.motor_side,
         more: carried.more,
         coulomb,
-        viscous: known[Carried::VISCOUS].times(of_all),
-        asymmetry: (carried.more.by_direction).then(|| known[Carried::BY_DIRECTION].times(of_all)),
+        viscous: known[Carried::VISCOUS].times(of_both),
+        asymmetry: (carried.more.by_direction).then(|| known[Carried::BY_DIRECTION].times(of_both)),
         deflection,
         elements: None,
-        bristle_damping: bent.times(deflection.inverse()),
-        excess: of_friction(friction.rise, 1)?.times(coulomb),
+        bristle_damping: (bent.times(deflection.inverse())).within_share(unlike),
+        excess: (of_friction(friction.rise, 1)?.times(coulomb)).within_share(unlike),
         velocity: of_friction(friction.velocity, 2)?,
         lag: of_friction(friction.lag_s, LoadFriction::LAG),
         exponent: of_friction(friction.exponent, LoadFriction::EXPONENT),

@@ -13,7 +13,6 @@
 use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
-use super::columns::Apart;
 use super::edges::Flanks;
 use super::rubbing::{Law, LoadFriction};
 use crate::model::effects::stribeck::GAUSS;
@@ -63,9 +62,8 @@ impl LoadMotion {
     }
 
     /// Of the motor, as if it were the load.
-    pub(super) fn of_motor(apart: &Apart<'_>) -> Self {
-        let nothing = vec![0.0; apart.raw.len()];
-        Self::of(apart.motion, apart.path.position, &nothing, None, 0.0)
+    pub(super) fn of_motor(motion: &Kinematics, position: &[f64]) -> Self {
+        Self::of(motion, position, &vec![0.0; position.len()], None, 0.0)
     }
 
     /// The bend and its rate, low-passed.
@@ -86,12 +84,14 @@ impl LoadMotion {
         friction: LoadFriction,
         grid: &[f64],
     ) -> Vec<Vec<f64>> {
-        let of_element = |at: &f64| {
-            let pieces = self.steps.iter();
-            let bends: Vec<_> = pieces.map(|steps| friction.element(steps, *at)).collect();
-            bends.concat()
-        };
-        motion.all_low_passed(&grid.iter().map(of_element).collect::<Vec<_>>())
+        let mut bends = vec![Vec::new(); grid.len()];
+        for steps in &self.steps {
+            let of_piece = friction.bends(steps, grid);
+            for (bend, own) in bends.iter_mut().zip(of_piece) {
+                bend.extend(own);
+            }
+        }
+        motion.all_low_passed(&bends)
     }
 
     /// What does not depend on the friction's parameters.

@@ -13,6 +13,10 @@
 //! share that is not seen of it, and the mass of the load with it. Whether it is seen or not, what
 //! the record leaves open of it is in the interval.
 //!
+//! The motor's friction may turn over by another law than the load's. So it is also fitted by some
+//! bends that are free beside each other: that knows less, but holds whatever the law is. Where it
+//! contradicts the law of the load's, it stands.
+//!
 //! Motor − load was measured, so noise of the effort does not bias the stiffness.
 //! Units: m or rad, s, unit of the effort.
 
@@ -20,18 +24,27 @@ use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
-use super::rubbing::LoadFriction;
+use super::rubbing::{Law, LoadFriction};
 use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::{descend, smallest};
+use crate::motion::bodies::minus;
 
 /// Deflections that are tried, in those of the load's friction.
 const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
+/// Bends that are free beside each other, where the law of the load's friction does not fit that of
+/// the motor's side. The middle one comes first.
+const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
 /// First step of the descent from the best of them, as a share of it.
 const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
+/// Fall and damping of the motor's part of a friction are taken for those of the load's. Chosen:
+/// they may be another by a fifth of that part.
+const UNLIKE: f64 = 0.2;
+/// Most that is open of a friction that is seen, as a share of it.
+const MOST_OPEN: f64 = 0.95;
 /// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
 /// friction, offset, rate of the wind-up, wind-up, bend, rate of the bend.
 const VISCOUS: usize = 1;
@@ -43,8 +56,7 @@ const COULOMB: usize = 5;
 pub(super) struct Stiffness {
     /// Value.
     pub known: Known,
-    /// What it would be without friction of the motor's own side: what all friction is over the
-    /// wind-up by that of the load.
+    /// What it would be without friction of the motor's own side.
     pub unrubbed: Known,
     /// Friction of the motor's own side, where some is seen.
     pub motor_side: Option<MotorSide>,
@@ -60,12 +72,35 @@ pub(crate) struct MotorSide {
     pub deflection: Known,
 }
 
+impl Stiffness {
+    /// What levels of the load's friction over the stiffness have to be multiplied with to be those
+    /// of both sides, where the load has such a Coulomb level over the stiffness.
+    pub(super) fn of_both(&self, coulomb: Known) -> Known {
+        let Some(motor) = self.motor_side else {
+            return self.unrubbed;
+        };
+        let both = self.known.value + motor.coulomb.value / coulomb.value;
+        Known::new(1.0, self.unrubbed.half_width / self.unrubbed.value).of(both)
+    }
+
+    /// What is not known of a friction of both sides whose motor's part is taken for the load's, as
+    /// a share of it.
+    pub(super) fn unlike(&self, coulomb: Known) -> f64 {
+        let motor_share = 1.0 - self.known.value / self.of_both(coulomb).value;
+        if self.motor_side.is_some() {
+            UNLIKE * motor_share
+        } else {
+            0.0
+        }
+    }
+}
+
 /// The stiffness as the effort shows it; `None` where it would be below zero.
 pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness> {
     let balance = Balance::of(apart);
     let wound = balance.wound(carried.flanks);
     let rubbing = Rubbing {
-        motor: LoadMotion::of_motor(apart),
+        motor: LoadMotion::of_motor(apart.motion, apart.path.position),
         apart,
         rows: balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
         friction: carried.friction,
@@ -82,8 +117,14 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness
         && with.coefficients[VISCOUS] >= 0.0
         && motor_side.coulomb.value > motor_side.coulomb.half_width
         && own.value > 0.0;
+    let (seen, motor_side) = rubbing.by_its_own_law(own, motor_side);
+    let (seen, motor_side) = if let Law::Slip(_) = carried.friction.law {
+        beside_elements(seen, motor_side, unrubbed)
+    } else {
+        (seen, motor_side)
+    };
     let known = if is_seen {
-        own
+        seen
     } else {
         // As soft as it would be with as much friction of the motor's side as is not seen, which
         // hides best where it turns over as that of the load does.
@@ -97,6 +138,18 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness
         unrubbed,
         motor_side: is_seen.then_some(motor_side),
     })
+}
+
+/// The same where the load's friction has elements that slip. Two machines of two whose motor had
+/// other elements came out with half to all of what its friction does to the stiffness, beyond
+/// what free bends say (2026-11-26): as much as that is open, but for the sign of the friction.
+fn beside_elements(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> (Known, MotorSide) {
+    let coulomb = motor_side.coulomb.value;
+    let motor_side = MotorSide {
+        coulomb: Known::new(coulomb, MOST_OPEN * coulomb),
+        ..motor_side
+    };
+    (stiffness.beside(unrubbed), motor_side)
 }
 
 fn last(values: &[f64], half_widths: &[f64]) -> Option<Known> {
@@ -136,6 +189,48 @@ impl Rubbing<'_> {
         let begin = smallest(&DEFLECTIONS, &left).unwrap_or(1.0);
         let range = (DEFLECTIONS[0], DEFLECTIONS[DEFLECTIONS.len() - 1]);
         descend(begin, STEP * begin, range, &left)
+    }
+
+    /// What holds of a stiffness and a friction of the motor's side that follows the law of the
+    /// load's, whatever law it follows: these, with half of what is otherwise with free bends in
+    /// their intervals, or what is told with those.
+    fn by_its_own_law(&self, stiffness: Known, motor_side: MotorSide) -> (Known, MotorSide) {
+        let [free_stiffness, free_coulomb] = self.of_any_shape();
+        let apart = (free_stiffness.value - stiffness.value).abs();
+        if apart > free_stiffness.half_width {
+            let coulomb = free_coulomb;
+            return (
+                free_stiffness,
+                MotorSide {
+                    coulomb,
+                    ..motor_side
+                },
+            );
+        }
+        let coulomb = motor_side.coulomb;
+        let other = 0.5 * (free_coulomb.value - coulomb.value);
+        let coulomb = coulomb.within(other);
+        (
+            stiffness.within(0.5 * apart),
+            MotorSide {
+                coulomb,
+                ..motor_side
+            },
+        )
+    }
+
+    /// Stiffness and Coulomb friction of the motor's side with free bends: the first column has the
+    /// coefficients of all.
+    fn of_any_shape(&self) -> [Known; 2] {
+        // The first bend and its rate.
+        let mut columns = self.bend(SHAPES[0]);
+        for shape in &SHAPES[1..] {
+            let other = minus(&self.bend(*shape)[0], &columns[0]);
+            columns.push(other);
+        }
+        let blocks = Blocks::with(&self.rows, &columns);
+        let (fit, half_widths) = (blocks.fit(), blocks.half_widths());
+        [STIFFNESS, COULOMB].map(|place| Known::new(fit.coefficients[place], half_widths[place]))
     }
 
     /// The fit at a deflection, the stiffness and what the motor's side has by it, as uncertain as

@@ -173,8 +173,9 @@ impl LoadFriction {
             return self.bristle(path);
         }
         let mut sum = vec![0.0; path.len()];
+        let levels = self.levels(path);
         for (at, share) in self.elements() {
-            let own = self.element(path, at);
+            let own = element(path, &levels, at);
             sum.iter_mut()
                 .zip(own)
                 .for_each(|(sum, own)| *sum += share * own);
@@ -193,17 +194,35 @@ impl LoadFriction {
         })
     }
 
-    /// Bend of one element that slips after a way, in Coulomb levels.
-    pub(super) fn element(self, path: &Steps, at: f64) -> Vec<f64> {
-        let (mut bend, mut left) = (0.0_f64, Left::along(self, path));
-        path.followed(|step, velocity| {
-            let [_, level] = left.levels(velocity);
-            if step != 0.0 {
-                bend = (bend + step / at).clamp(-level, level);
-            }
-            bend
-        })
+    /// Bends of elements that slip after such ways, in Coulomb levels.
+    pub(super) fn bends(self, path: &Steps, at: &[f64]) -> Vec<Vec<f64>> {
+        let levels = self.levels(path);
+        at.iter().map(|at| element(path, &levels, *at)).collect()
     }
+
+    /// Levels at the end of each part of each row, in Coulomb levels: they are the same for all
+    /// elements, and take most of the time.
+    fn levels(self, path: &Steps) -> Vec<f64> {
+        let (mut levels, mut left) = (Vec::new(), Left::along(self, path));
+        path.followed(|_, velocity| {
+            let [_, level] = left.levels(velocity);
+            levels.push(level);
+            level
+        });
+        levels
+    }
+}
+
+/// Bend of one element that slips after a way under such levels, in Coulomb levels.
+fn element(path: &Steps, levels: &[f64], at: f64) -> Vec<f64> {
+    let (mut bend, mut levels) = (0.0_f64, levels.iter());
+    path.followed(|step, _| {
+        let level = levels.next().copied().unwrap_or(1.0);
+        if step != 0.0 {
+            bend = (bend + step / at).clamp(-level, level);
+        }
+        bend
+    })
 }
 
 #[cfg(test)]

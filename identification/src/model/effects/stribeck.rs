@@ -123,6 +123,10 @@ impl Stribeck {
     }
 }
 
+/// Beyond this power of e nothing is left: 10⁻⁴³. Where the exponential itself underflows it takes
+/// several times as long.
+const NOTHING_LEFT: f64 = 100.0;
+
 /// exp(−|ratio|^exponent): what is left of a fall, by the velocity over that of the fall.
 #[must_use]
 pub(crate) fn left(ratio: f64, exponent: f64) -> f64 {
@@ -131,6 +135,9 @@ pub(crate) fn left(ratio: f64, exponent: f64) -> f64 {
     } else {
         ratio.abs().powf(exponent)
     };
+    if power > NOTHING_LEFT {
+        return 0.0;
+    }
     (-power).exp()
 }
 
