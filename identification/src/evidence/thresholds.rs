@@ -159,8 +159,8 @@ pub(crate) const DIFFERENCE_SHARE_OF_ALL: f64 = 0.01;
 pub(crate) const DIFFERENCE_T: f64 = 2.0;
 
 /// Smallest share of the held-out variance of the effort that friction of the motor's own side
-/// removes beside a spring. With a fifth of 400 N there it is 6 %, with two fifths 15 to 80; without
-/// any a thousandth.
+/// removes beside a spring. With a fifth of 400 N there it is 6 %, with two fifths 15 to 80; where
+/// there is none, a thousandth.
 pub(crate) const MOTOR_SIDE_SHARE: f64 = 0.02;
 
 /// Where the force shows a gap, a large share of the effort asks for less: as [`EFFORT_T`] does.
