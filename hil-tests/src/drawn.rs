@@ -229,8 +229,9 @@ impl Drawn {
         }
     }
 
+    /// Axes that cannot be moved are no reason to draw again: they are told.
     fn oscillates(&self) -> bool {
-        self.loops.as_ref().map_or(true, |found| !found.is_empty())
+        self.loops.as_ref().is_ok_and(|found| !found.is_empty())
     }
 
     /// Whether it is not commissioned at all.

@@ -1,6 +1,6 @@
 //! The drive's model of friction made of what a machine file says, not of what a record shows: what
 //! is left with it is not the fault of identification. Friction of both sides of the screw is one
-//! friction to the drive: bristles of either side are one, as stiff as both.
+//! friction to the drive, made of the elements of both.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use axis_model::{
 use plant_sim::friction::{Law, Sliding};
 use plant_sim::machine::MachineAxis;
 use workbench::compensation::{AxisCompensation, Compensation, Model};
-use workbench::model_file::Known;
+use workbench::model_file::{Known, MotorSide};
 use workbench::tuning::friction_model;
 
 /// The compensation of an axis; none where it has no friction. Friction over position is not in it.
@@ -19,16 +19,40 @@ use workbench::tuning::friction_model;
 pub fn model(axis: &MachineAxis, period_s: f64) -> AxisCompensation {
     let known = Known::of_machine(axis, period_s);
     let model = friction_model::of_effects(&known, &effects(axis), &elements(axis));
-    let table_share = axis.actual.sliding.coulomb_n / coulomb_n(axis);
+    let model = model.map(|model| match bristle_of_motor(axis) {
+        Some(motor) => friction_model::beside_motor(&model, motor),
+        None => Model {
+            table_share: table_share(axis),
+            ..model
+        },
+    });
+    let model = model.map(|model| Compensation::Model(Box::new(model)));
     AxisCompensation {
-        reversal: model.map_or(Compensation::None, |model| {
-            Compensation::Model(Box::new(Model {
-                table_share,
-                ..model
-            }))
-        }),
+        reversal: model.unwrap_or_default(),
         backlash_m: 0.0,
     }
+}
+
+fn table_share(axis: &MachineAxis) -> f64 {
+    let motor = axis.actual.motor_side.as_ref();
+    let motor_n = motor.map_or(0.0, |own| own.sliding.coulomb_n);
+    1.0 - motor_n / coulomb_n(axis).max(motor_n)
+}
+
+/// The motor's friction beside that of the table, where both are bristles.
+fn bristle_of_motor(axis: &MachineAxis) -> Option<MotorSide> {
+    let own = axis.actual.motor_side.as_ref()?;
+    let deflection_m = |sliding: &Sliding, law: &Law| match law {
+        Law::LuGre { .. } => Some(sliding.coulomb_n / law.stiffness_n_per_m()),
+        _ => None,
+    };
+    let own_m = deflection_m(&own.sliding, &own.law)?;
+    let of_table_m = deflection_m(&axis.actual.sliding, &axis.actual.law)?;
+    Some(MotorSide {
+        coulomb_n: own.sliding.coulomb_n,
+        share: 1.0 - table_share(axis),
+        deflection: own_m / of_table_m,
+    })
 }
 
 fn known(value: f64) -> Estimate {
@@ -59,7 +83,7 @@ fn coulomb_n(axis: &MachineAxis) -> f64 {
 fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     let (sliding, mechanics) = (&axis.actual.sliding, &axis.actual.mechanics);
     let (motor_kg, table_kg) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
-    let stiffness_n_per_m = of_both(axis, |_, law| law.stiffness_n_per_m());
+    let stiffness_n_per_m = axis.actual.law.stiffness_n_per_m();
     let damping = of_both(axis, |_, law| match law {
         Law::LuGre {
             bristle_damping_n_s_per_m,
@@ -95,7 +119,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     ];
     if stiffness_n_per_m > 0.0 {
         effects.push(Effect::Presliding(Presliding {
-            deflection: known(coulomb_n(axis) / stiffness_n_per_m),
+            deflection: known(sliding.coulomb_n / stiffness_n_per_m),
             damping: Some(known(damping)),
         }));
     }

@@ -151,11 +151,11 @@ impl Mechanics {
             level_n: drive.friction_level_n,
             dt_s,
         };
-        let kick = kick.rubbed(motion, friction);
         if drive.brake_n == 0.0 {
+            let kick = kick.rubbed(motion, friction);
             kick.free(motion, &mut friction.table);
         } else {
-            kick.braked(motion, &mut friction.table, drive.brake_n);
+            kick.braked(motion, friction, drive.brake_n);
         }
     }
 }
@@ -211,11 +211,12 @@ impl Kick {
 
     /// Moreau: the brake takes what stops the shaft within the sub-step if that is within its
     /// force; else it slips against that force. The motor's velocity grows with its momentum, so a
-    /// slipping shaft keeps its direction.
-    fn braked(self, motion: &mut Motion, friction: &mut Friction, brake_n: f64) {
+    /// slipping shaft keeps its direction. A shaft that is held bends no bristle of the motor.
+    fn braked(self, motion: &mut Motion, friction: &mut Sides, brake_n: f64) {
         let bristles = friction.state();
         let mass = self.m2 + self.half;
-        let held = friction.advance(self.table(motion.table_m_per_s, self.p2 / mass, mass));
+        let held = self.table(motion.table_m_per_s, self.p2 / mass, mass);
+        let held = friction.table.advance(held);
         let stopping = self.p1 + self.half * held;
         let most = brake_n * self.dt_s;
         if stopping.abs() <= most {
@@ -224,11 +225,12 @@ impl Kick {
             return;
         }
         friction.restore(bristles);
-        Self {
+        let slipping = Self {
             p1: self.p1 - most * stopping.signum(),
             ..self
-        }
-        .free(motion, friction);
+        };
+        let slipping = slipping.rubbed(motion, friction);
+        slipping.free(motion, &mut friction.table);
     }
 
     fn table(&self, velocity: f64, free_velocity: f64, mass_kg: f64) -> Body {

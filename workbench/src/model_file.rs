@@ -121,9 +121,9 @@ impl Own {
         let report = &result.report;
         let (mechanics, table_mass) = stated::mechanics(known, &result.effects);
         let motor = MotorSide::of(&report.parameters);
-        let motor_side =
-            motor.and_then(|motor| motor.tables(&result.effects, mechanics.motor_inertia_kg));
-        let of_table = match motor.filter(|_| motor_side.is_some()) {
+        let motor_kg = mechanics.motor_inertia_kg;
+        let motor_side = motor.map(|motor| motor.tables(&result.effects, motor_kg));
+        let of_table = match motor {
             Some(motor) => motor.left(&result.effects),
             None => result.effects.clone(),
         };
@@ -405,20 +405,24 @@ mod tests {
         let (_, machine) = written_of(&result);
         let actual = &machine.axes[0].actual;
         let motor = actual.motor_side.as_ref().unwrap();
-        let bristle = |stiffness: f64, damping: f64| Law::LuGre {
-            bristle_stiffness_n_per_m: stiffness,
-            bristle_damping_n_s_per_m: damping,
-        };
         assert_eq!(
             (motor.sliding.coulomb_n, actual.sliding.coulomb_n),
             (50.0, 150.0)
         );
+        let parts = |law: &Law| match *law {
+            Law::LuGre {
+                bristle_stiffness_n_per_m,
+                bristle_damping_n_s_per_m,
+            } => [bristle_stiffness_n_per_m, bristle_damping_n_s_per_m],
+            _ => panic!("{law:?}"),
+        };
         for (law, wanted) in [
-            (&motor.law, bristle(50.0 / 4.0e-6, 1.0e3)),
-            (&actual.law, bristle(150.0 / 1.0e-5, 3.0e3)),
+            (&motor.law, [50.0 / 4.0e-6, 1.0e3]),
+            (&actual.law, [150.0 / 1.0e-5, 3.0e3]),
         ] {
-            let (is, should) = (law.stiffness_n_per_m(), wanted.stiffness_n_per_m());
-            assert!((is / should - 1.0).abs() < 1.0e-9, "{law:?} {wanted:?}");
+            for (is, should) in parts(law).into_iter().zip(wanted) {
+                assert!((is / should - 1.0).abs() < 1.0e-9, "{law:?} {wanted:?}");
+            }
         }
     }
 

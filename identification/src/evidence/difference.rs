@@ -222,6 +222,7 @@ fn settled(
     let carried = ways.iter().position(|way| matches!(way, Way::Carried(_)));
     let smallest = Smallest {
         count: dataset.load_resolution,
+        motor_count: dataset.resolution,
         velocity: unit,
     };
     let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place, smallest));
@@ -831,8 +832,10 @@ impl Difference {
     /// Whether the load's motion tells the stiffness that the effort told. Where a loop bounces
     /// between its flanks it does not, and neither is right.
     fn agrees_with(&self, told: &ByTheLoad) -> bool {
+        // With friction of the motor's side or without, as the effort's way had it.
         let stiffness = self.stiffness.map_or(f64::NAN, |known| known.value);
-        (told.unrubbed.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES
+        let mut told = [told.unrubbed, told.stiffness].into_iter();
+        told.any(|told| (told.value / stiffness - 1.0).abs() <= STIFFNESS_AGREES)
     }
 
     /// Takes back what was found where what is declared leaves no more without it. It was found

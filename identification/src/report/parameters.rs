@@ -64,7 +64,9 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
     }
     if let Some(motor) = difference.and_then(|difference| difference.motor_coulomb) {
         let unit = findings.dataset.effort.unit();
-        parameters.share_out_coulomb(about(motor.value, motor.half_width, unit.into()));
+        let told = difference.and_then(|difference| difference.by_the_load.as_ref());
+        let is_seen = told.is_some_and(|told| told.motor_side.is_some());
+        parameters.share_out_coulomb(about(motor.value, motor.half_width, unit.into()), is_seen);
     }
     parameters.widened(WRONG_IN_FORM)
 }
@@ -95,10 +97,11 @@ impl Parameters {
     }
 
     /// The Coulomb friction on either side of a spring, where the motor's own side is seen to have
-    /// some: that, and what is left of the whole for the load.
-    fn share_out_coulomb(&mut self, motor: Estimate) {
+    /// some, as the stiffness was told with it or its interval says: that, and what is left of the
+    /// whole for the load.
+    fn share_out_coulomb(&mut self, motor: Estimate, is_seen: bool) {
         let whole = self.estimates.get("coulomb");
-        let Some(whole) = whole.filter(|_| motor.low > 0.0) else {
+        let Some(whole) = whole.filter(|_| is_seen || motor.low > 0.0) else {
             return;
         };
         let half_width = whole.half_width().hypot(motor.half_width());
@@ -437,16 +440,19 @@ mod tests {
     fn the_load_has_what_the_motors_side_leaves_of_the_friction() {
         let newtons = |value, half_width| about(value, half_width, "N".into());
         let mut all = table([("effort", vec![("coulomb".into(), newtons(25.0, 0.3))])]);
-        all.share_out_coulomb(newtons(10.0, 0.4));
+        all.share_out_coulomb(newtons(10.0, 0.4), false);
         assert_eq!(all.estimates["motor_coulomb"], newtons(10.0, 0.4));
         assert_eq!(all.estimates["load_coulomb"], newtons(15.0, 0.5));
         assert_eq!(all.from["load_coulomb"], ranking::DIFFERENCE);
         // No friction of the motor is seen, or none at all.
         let mut unseen = table([("effort", vec![("coulomb".into(), newtons(25.0, 0.3))])]);
-        unseen.share_out_coulomb(newtons(10.0, 11.0));
+        unseen.share_out_coulomb(newtons(10.0, 11.0), false);
         assert_eq!(unseen.estimates.len(), 1);
+        // The stiffness was told with it, so it is there however uncertain it is.
+        unseen.share_out_coulomb(newtons(10.0, 11.0), true);
+        assert_eq!(unseen.estimates["load_coulomb"].value, 15.0);
         let mut none = table([("effort", Vec::new())]);
-        none.share_out_coulomb(newtons(10.0, 0.4));
+        none.share_out_coulomb(newtons(10.0, 0.4), false);
         assert!(none.estimates.is_empty());
     }
 

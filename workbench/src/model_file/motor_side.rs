@@ -1,18 +1,19 @@
 //! Friction of the motor's own side, as far as identification saw some.
 //!
-//! It has the law of the table's friction with a level and a deflection of its own. Viscous
-//! friction is not told apart: all of it is the table's.
+//! It is a bristle with a level and a deflection of its own, or rigid where the axis has no
+//! presliding. Viscous friction is not told apart: the simulator has all of it at the table.
 
 use axis_model::{Coulomb, Effect, Estimate, Presliding, Stribeck};
 use identification::ParameterTable;
-use plant_sim::axis::SUB_STEP_S;
 use plant_sim::friction::{Law, Sliding};
 use serde::Serialize;
 
+use super::stated::{LEAST_LEVEL_N, stiffest};
+
 /// Deflections in those of the table's friction.
 const DEFLECTIONS: (f64, f64) = (0.05, 5.0);
-/// Stiffest bristles, as a share of M/dt² of the motor.
-const STIFFEST_BRISTLES: f64 = 0.2;
+/// Softest bristle of a machine file, N/m.
+const SOFTEST_BRISTLE: f64 = 1.0e3;
 
 /// Friction of the motor's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,12 +75,12 @@ impl MotorSide {
         }
     }
 
-    /// Its tables beside the effects of both sides and a motor of such a mass; `None` where these
-    /// have no presliding, whose law it takes.
-    pub(super) fn tables(&self, effects: &[Effect<Estimate>], motor_kg: f64) -> Option<Tables> {
+    /// Its tables beside the effects of both sides and a motor of such a mass.
+    pub(super) fn tables(&self, effects: &[Effect<Estimate>], motor_kg: f64) -> Tables {
+        let level_n = self.coulomb_n.max(LEAST_LEVEL_N);
         let mut sliding = Sliding {
-            coulomb_n: self.coulomb_n,
-            static_n: self.coulomb_n,
+            coulomb_n: level_n,
+            static_n: level_n,
             stribeck_velocity_m_per_s: 1.0e-3,
             stribeck_exponent: 2.0,
             stribeck_lag_s: 0.0,
@@ -88,7 +89,7 @@ impl MotorSide {
             viscous_asymmetry: 0.0,
             quadratic_drag_n_s2_per_m2: 0.0,
         };
-        let mut law = None;
+        let mut friction = Law::Coulomb;
         for effect in effects {
             match effect.stated() {
                 Effect::Stribeck(own) => {
@@ -97,18 +98,17 @@ impl MotorSide {
                     sliding.stribeck_exponent = own.exponent.unwrap_or(2.0);
                     sliding.stribeck_lag_s = own.lag.unwrap_or(0.0);
                 }
-                Effect::Presliding(own) => law = Some(self.bristle(own, motor_kg)),
+                Effect::Presliding(own) => friction = self.bristle(own, motor_kg),
                 _ => {}
             }
         }
-        law.map(|friction| Tables { sliding, friction })
+        Tables { sliding, friction }
     }
 
     fn bristle(&self, of_table: Presliding, motor_kg: f64) -> Law {
-        let stiffest = STIFFEST_BRISTLES * motor_kg / SUB_STEP_S.powi(2);
         let stiffness = self.coulomb_n / (self.deflection * of_table.deflection);
         Law::LuGre {
-            bristle_stiffness_n_per_m: stiffness.min(stiffest),
+            bristle_stiffness_n_per_m: stiffness.max(SOFTEST_BRISTLE).min(stiffest(motor_kg)),
             bristle_damping_n_s_per_m: self.share * of_table.damping.unwrap_or(0.0),
         }
     }

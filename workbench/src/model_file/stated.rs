@@ -23,12 +23,12 @@ const SCREW_DAMPING: f64 = 0.1;
 const STIFF: f64 = 0.05;
 /// Softest screw of a machine file, N/m.
 const SOFTEST: f64 = 1.0e4;
-/// Stiffest bristles, as a share of M/dt² of the table.
+/// Stiffest bristles, as a share of M/dt² of their mass.
 const STIFFEST_BRISTLES: f64 = 0.2;
 /// Least moved mass that makes two masses of a machine file, kg.
 const LEAST_MASS_KG: f64 = 2.0e-3;
 /// Least friction level, N: ten times what bristles need.
-const LEAST_LEVEL_N: f64 = 1.0e-2;
+pub(super) const LEAST_LEVEL_N: f64 = 1.0e-2;
 
 /// The parameters of an effect, where it was identified.
 macro_rules! identified {
@@ -184,9 +184,9 @@ pub(super) fn friction(
     })
 }
 
-/// Stiffest bristles that the sub-step carries, N/m.
-fn stiffest(table_kg: f64) -> f64 {
-    STIFFEST_BRISTLES * table_kg / SUB_STEP_S.powi(2)
+/// Stiffest bristles that the sub-step carries on a mass, N/m.
+pub(super) fn stiffest(mass_kg: f64) -> f64 {
+    STIFFEST_BRISTLES * mass_kg / SUB_STEP_S.powi(2)
 }
 
 impl Stated {

@@ -116,7 +116,8 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
 
 /// The model of an axis of whose friction all was taken for the table's: each element is one of the
 /// table and one of the motor's side.
-fn beside_motor(model: &Model, motor: MotorSide) -> Model {
+#[must_use]
+pub fn beside_motor(model: &Model, motor: MotorSide) -> Model {
     let table_share = 1.0 - motor.share;
     let pairs = model.level_n.into_iter().zip(model.slip_m);
     let both = pairs.flat_map(|(level_n, slip_m)| {

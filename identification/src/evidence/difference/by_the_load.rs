@@ -84,6 +84,8 @@ const TIMING: f64 = 4.0e-3;
 pub(super) struct Smallest {
     /// Count of the load's scale.
     pub count: f64,
+    /// Count of the motor's encoder.
+    pub motor_count: f64,
     /// Velocity from which on an axis counts as moving.
     pub velocity: f64,
 }
@@ -99,7 +101,7 @@ pub(super) fn told(
         return None;
     };
     let apart = apart.where_known(ways);
-    let stiffness = motor_side::stiffness(&apart, carried)?;
+    let stiffness = motor_side::stiffness(&apart, carried, smallest.motor_count)?;
     let apart = where_the_load_moves(apart, smallest.velocity);
     let apart = apart.without_strikes(ways);
     let turning = |counts: f64| {
@@ -262,6 +264,7 @@ mod tests {
 
     const SMALLEST: Smallest = Smallest {
         count: 0.0,
+        motor_count: 0.0,
         velocity: UNIT,
     };
 

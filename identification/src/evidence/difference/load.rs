@@ -62,8 +62,9 @@ impl LoadMotion {
     }
 
     /// Of the motor, as if it were the load.
-    pub(super) fn of_motor(motion: &Kinematics, position: &[f64]) -> Self {
-        Self::of(motion, position, &vec![0.0; position.len()], None, 0.0)
+    pub(super) fn of_motor(motion: &Kinematics, position: &[f64], smallest_turn: f64) -> Self {
+        let nothing = vec![0.0; position.len()];
+        Self::of(motion, position, &nothing, None, smallest_turn)
     }
 
     /// The bend and its rate, low-passed.

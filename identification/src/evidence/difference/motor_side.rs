@@ -20,6 +20,8 @@
 //! Motor − load was measured, so noise of the effort does not bias the stiffness.
 //! Units: m or rad, s, unit of the effort.
 
+use std::ops::RangeInclusive;
+
 use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
@@ -40,11 +42,13 @@ const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
 const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
-/// Fall and damping of the motor's part of a friction are taken for those of the load's. Chosen:
-/// they may be another by a fifth of that part.
-const UNLIKE: f64 = 0.2;
-/// Most that is open of a friction that is seen, as a share of it.
-const MOST_OPEN: f64 = 0.95;
+/// Fall and damping of the motor's part of a friction are taken for those of the load's; it may have
+/// none, or twice as much. More than this share of the whole is not open: so much the effort tells.
+const MOST_UNLIKE: f64 = 0.4;
+/// Most that is open of a friction that is seen and of its deflection, as a share of them.
+const MOST_OPEN: f64 = 0.8;
+/// Shares of the friction that may be left to the table where some is the motor's.
+const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
 /// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
 /// friction, offset, rate of the wind-up, wind-up, bend, rate of the bend.
 const VISCOUS: usize = 1;
@@ -88,19 +92,20 @@ impl Stiffness {
     pub(super) fn unlike(&self, coulomb: Known) -> f64 {
         let motor_share = 1.0 - self.known.value / self.of_both(coulomb).value;
         if self.motor_side.is_some() {
-            UNLIKE * motor_share
+            motor_share.min(MOST_UNLIKE)
         } else {
             0.0
         }
     }
 }
 
-/// The stiffness as the effort shows it; `None` where it would be below zero.
-pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness> {
+/// The stiffness as the effort shows it; `None` where it would be below zero. A motor that turns by
+/// less than a count of its encoder does not.
+pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Option<Stiffness> {
     let balance = Balance::of(apart);
     let wound = balance.wound(carried.flanks);
     let rubbing = Rubbing {
-        motor: LoadMotion::of_motor(apart.motion, apart.path.position),
+        motor: LoadMotion::of_motor(apart.motion, apart.path.position, count),
         apart,
         rows: balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
         friction: carried.friction,
@@ -110,26 +115,28 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried) -> Option<Stiffness
     let plain = Blocks::with(&plain, &[]);
     let without = plain.cross_validate();
     let unrubbed = last(&without.coefficients, &plain.half_widths())?;
-    let (with, own, motor_side) = rubbing.at(rubbing.best());
-    let gain = Gain::of(&without, &with);
-    let is_seen = gain.share >= MOTOR_SIDE_SHARE
-        && gain.t >= DIFFERENCE_T
-        && with.coefficients[VISCOUS] >= 0.0
-        && motor_side.coulomb.value > motor_side.coulomb.half_width
-        && own.value > 0.0;
-    let (seen, motor_side) = rubbing.by_its_own_law(own, motor_side);
+    let best = rubbing.best();
+    let by_law = rubbing.at(best);
+    let gain = Gain::of(&without, &by_law.fit);
+    let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best);
     let (seen, motor_side) = if let Law::Slip(_) = carried.friction.law {
         beside_elements(seen, motor_side, unrubbed)
     } else {
         (seen, motor_side)
     };
+    let is_seen = gain.share >= MOTOR_SIDE_SHARE
+        && gain.t >= DIFFERENCE_T
+        && by_law.viscous.value >= -by_law.viscous.half_width
+        && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width
+        && motor_side.coulomb.value > 0.0
+        && TABLE_SHARES.contains(&(seen.value / unrubbed.value));
     let known = if is_seen {
         seen
     } else {
         // As soft as it would be with as much friction of the motor's side as is not seen, which
         // hides best where it turns over as that of the load does.
-        let (_, hidden, _) = rubbing.at(1.0);
-        let softest = [own, hidden].map(|known| known.value - known.half_width);
+        let hidden = rubbing.at(1.0).stiffness;
+        let softest = [by_law.stiffness, hidden].map(|known| known.value - known.half_width);
         let less = unrubbed.value - softest[0].min(softest[1]);
         unrubbed.within(less.max(0.0))
     };
@@ -154,6 +161,15 @@ fn beside_elements(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> 
 
 fn last(values: &[f64], half_widths: &[f64]) -> Option<Known> {
     Some(Known::new(*values.last()?, *half_widths.last()?))
+}
+
+/// What is told by a friction of the motor's side that follows the law of the load's.
+struct ByLaw {
+    fit: Fit,
+    /// Viscous friction of the motor's side.
+    viscous: Known,
+    stiffness: Known,
+    motor_side: MotorSide,
 }
 
 /// The balance beside a friction of the motor's side.
@@ -192,29 +208,45 @@ impl Rubbing<'_> {
     }
 
     /// What holds of a stiffness and a friction of the motor's side that follows the law of the
-    /// load's, whatever law it follows: these, with half of what is otherwise with free bends in
-    /// their intervals, or what is told with those.
-    fn by_its_own_law(&self, stiffness: Known, motor_side: MotorSide) -> (Known, MotorSide) {
+    /// load's, with such a deflection, whatever law it follows: these, with half of what is
+    /// otherwise with free bends in their intervals, or what is told with those. A deflection at an
+    /// end of what was searched, or by a law that does not hold, is hardly known.
+    fn by_its_own_law(&self, by_law: &ByLaw, at: f64) -> (Known, MotorSide) {
+        let ByLaw {
+            stiffness,
+            motor_side:
+                MotorSide {
+                    coulomb,
+                    deflection,
+                },
+            ..
+        } = *by_law;
         let [free_stiffness, free_coulomb] = self.of_any_shape();
         let apart = (free_stiffness.value - stiffness.value).abs();
-        if apart > free_stiffness.half_width {
+        let contradicts = apart > free_stiffness.half_width;
+        let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
+        let deflection = if contradicts || !is_inside {
+            Known::new(deflection.value, MOST_OPEN * deflection.value)
+        } else {
+            deflection
+        };
+        if contradicts {
             let coulomb = free_coulomb;
             return (
                 free_stiffness,
                 MotorSide {
                     coulomb,
-                    ..motor_side
+                    deflection,
                 },
             );
         }
-        let coulomb = motor_side.coulomb;
-        let other = 0.5 * (free_coulomb.value - coulomb.value);
-        let coulomb = coulomb.within(other);
+        let coulomb = coulomb.within(0.5 * (free_coulomb.value - coulomb.value));
+        let stiffness = stiffness.within(0.5 * apart);
         (
-            stiffness.within(0.5 * apart),
+            stiffness,
             MotorSide {
                 coulomb,
-                ..motor_side
+                deflection,
             },
         )
     }
@@ -233,25 +265,28 @@ impl Rubbing<'_> {
         [STIFFNESS, COULOMB].map(|place| Known::new(fit.coefficients[place], half_widths[place]))
     }
 
-    /// The fit at a deflection, the stiffness and what the motor's side has by it, as uncertain as
-    /// that deflection is.
-    fn at(&self, deflection: f64) -> (Fit, Known, MotorSide) {
-        let fit = self.blocks(deflection).cross_validate();
+    /// The fit at a deflection, and what is told by it, as uncertain as that deflection is.
+    fn at(&self, deflection: f64) -> ByLaw {
         let bend = self.bend(deflection);
         let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.bend(by * deflection));
         let pairs = more[0].iter().zip(&less[0]);
         let by_deflection = pairs.map(|(more, less)| (more - less) / (2.0 * LINEAR));
+        let fit = Blocks::with(&self.rows, &bend).cross_validate();
         let columns = [bend, vec![by_deflection.collect()]].concat();
         let half_widths = Blocks::with(&self.rows, &columns).half_widths();
         let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
-        let [stiffness, coulomb] = [STIFFNESS, COULOMB].map(known);
+        let [viscous, stiffness, coulomb] = [VISCOUS, STIFFNESS, COULOMB].map(known);
         let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
         let deflection = Known::new(1.0, share).of(deflection * self.friction.deflection);
-        let motor_side = MotorSide {
-            coulomb,
-            deflection,
-        };
-        (fit, stiffness, motor_side)
+        ByLaw {
+            fit,
+            viscous,
+            stiffness,
+            motor_side: MotorSide {
+                coulomb,
+                deflection,
+            },
+        }
     }
 }
 
@@ -272,7 +307,7 @@ mod tests {
         let Way::Carried(carried) = ways[1] else {
             panic!("{ways:?}")
         };
-        stiffness(&apart.where_known(&ways), carried).unwrap()
+        stiffness(&apart.where_known(&ways), carried, 0.0).unwrap()
     }
 
     #[test]
