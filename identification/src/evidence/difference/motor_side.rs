@@ -43,7 +43,7 @@ const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
 /// Fall and damping of the motor's part of a friction are taken for those of the load's; it may have
-/// none, or twice as much. More than this share of the whole is not open: so much the effort tells.
+/// none, or twice as much. More than this share of the whole is not open: the effort tells so much.
 const MOST_UNLIKE: f64 = 0.4;
 /// Most that is open of a friction that is seen and of its deflection, as a share of them.
 const MOST_OPEN: f64 = 0.8;
