@@ -42,8 +42,9 @@ const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
 const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
-/// Fall and damping of the motor's part of a friction are taken for those of the load's; it may have
-/// none, or twice as much. More than this share of the whole is not open: the effort tells so much.
+/// Fall and damping of the motor's part of a friction are taken for those of the load's; it may
+/// have none, or twice as much. More than this share of the whole is not open: so much the effort
+/// tells.
 const MOST_UNLIKE: f64 = 0.4;
 /// Most that is open of a friction that is seen and of its deflection, as a share of them.
 const MOST_OPEN: f64 = 0.8;
