@@ -10,8 +10,8 @@
 //! Integration: leapfrog (kick at the middle of the drift) with the damping of the screw and the
 //! friction taken implicitly. The screw is integrated at second order, the bristles' coefficients
 //! lag by half a sub-step and make the whole first order: 6·10⁻⁵ of the way at the sub-step that is
-//! used (`tests/mechanics.rs`, against a high-accuracy integration). The friction of the motor's
-//! side is solved for first, with the table as fast as it was; then the brake, then the table.
+//! used (`tests/mechanics.rs`, against a high-accuracy integration). A brake comes first, then the
+//! friction of the motor's side with the table as fast as it was, then the table.
 
 use crate::friction::{Body, Friction, Sides};
 

@@ -15,20 +15,6 @@ fn mechanics() -> Mechanics {
     Machine::reference().axes[0].actual.mechanics
 }
 
-fn dry(coulomb_n: f64) -> Sliding {
-    Sliding {
-        coulomb_n,
-        static_n: coulomb_n,
-        stribeck_velocity_m_per_s: 1.0e-3,
-        stribeck_exponent: 2.0,
-        stribeck_lag_s: 0.0,
-        viscous_n_s_per_m: 0.0,
-        coulomb_asymmetry: 0.0,
-        viscous_asymmetry: 0.0,
-        quadratic_drag_n_s2_per_m2: 0.0,
-    }
-}
-
 fn table(sliding: Sliding, law: Law) -> Sides {
     Friction::new(sliding, law).into()
 }
@@ -58,7 +44,7 @@ fn push(
 #[test]
 fn a_free_mass_accelerates_as_newton_says() {
     let (m, mut motion) = (mechanics(), Motion::default());
-    let mut friction = table(dry(0.0), Law::Coulomb);
+    let mut friction = table(Sliding::dry(0.0), Law::Coulomb);
     push(&m, &mut friction, &mut motion, |_| 500.0, 0.2, SUB_STEP_S);
     let mass = m.motor_inertia_kg + m.table_mass_kg;
     let center = (m.motor_inertia_kg * motion.motor_m + m.table_mass_kg * motion.table_m) / mass;
@@ -76,7 +62,7 @@ fn the_two_masses_ring_at_their_resonance() {
         motor_m: 1.0e-5,
         ..Motion::default()
     };
-    let mut friction = table(dry(0.0), Law::Coulomb);
+    let mut friction = table(Sliding::dry(0.0), Law::Coulomb);
     let (m1, m2) = (m.motor_inertia_kg, m.table_mass_kg);
     let hz = (m.screw_stiffness_n_per_m * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
     let dt = SUB_STEP_S / 4.0;
@@ -101,7 +87,7 @@ fn a_dry_table_sticks_until_the_screw_pulls_harder_than_breakaway() {
     let m = mechanics();
     let sliding = Sliding {
         static_n: 520.0,
-        ..dry(400.0)
+        ..Sliding::dry(400.0)
     };
     let (mut friction, mut motion) = (table(sliding, Law::Coulomb), Motion::default());
     // A slow ramp of the motor force; the table is exactly still before breakaway.
@@ -124,7 +110,7 @@ fn a_dry_table_sticks_until_the_screw_pulls_harder_than_breakaway() {
 #[test]
 fn sliding_comes_to_rest_within_the_way_that_friction_allows_and_stays() {
     let m = mechanics();
-    let mut friction = table(dry(400.0), Law::Coulomb);
+    let mut friction = table(Sliding::dry(400.0), Law::Coulomb);
     let v = 0.1;
     let mut motion = Motion {
         motor_m_per_s: v,
@@ -149,8 +135,8 @@ fn a_motor_that_rubs_slides_as_if_its_friction_were_the_tables_but_winds_nothing
     let m = mechanics();
     let wind_up = |at_table_n: f64, at_motor_n: f64| {
         let mut friction = Sides {
-            table: Friction::new(dry(at_table_n), Law::Coulomb),
-            motor: Some(Friction::new(dry(at_motor_n), Law::Coulomb)),
+            table: Friction::new(Sliding::dry(at_table_n), Law::Coulomb),
+            motor: Some(Friction::new(Sliding::dry(at_motor_n), Law::Coulomb)),
         };
         let mut motion = Motion::default();
         push(&m, &mut friction, &mut motion, |_| 1000.0, 0.5, SUB_STEP_S);
@@ -171,11 +157,11 @@ fn a_motor_that_rubs_holds_itself_up_to_its_breakaway() {
     let m = mechanics();
     let sliding = Sliding {
         static_n: 300.0,
-        ..dry(200.0)
+        ..Sliding::dry(200.0)
     };
     let moved_m = |force_n: f64| {
         let mut friction = Sides {
-            table: Friction::new(dry(0.0), Law::Coulomb),
+            table: Friction::new(Sliding::dry(0.0), Law::Coulomb),
             motor: Some(Friction::new(sliding, Law::Coulomb)),
         };
         let mut motion = Motion::default();
@@ -192,7 +178,7 @@ fn the_motor_crosses_the_gap_in_the_time_of_its_free_flight() {
         backlash_m: 1.0e-4,
         ..mechanics()
     };
-    let mut friction = table(dry(400.0), Law::Coulomb);
+    let mut friction = table(Sliding::dry(400.0), Law::Coulomb);
     // At the back end of the gap.
     let mut motion = Motion {
         motor_m: -0.5e-4,
@@ -227,7 +213,7 @@ fn maxwell_slip_remembers_its_reversal_points() {
         stiffness_n_per_m: stiffness.to_vec(),
         share: vec![0.4, 0.35, 0.25],
     };
-    let mut friction = Friction::new(dry(400.0), law);
+    let mut friction = Friction::new(Sliding::dry(400.0), law);
     // A very heavy table goes where it is told.
     let go = |friction: &mut Friction, velocity: f64, way: f64| {
         let dt_s = 1.0e-5;
@@ -262,7 +248,7 @@ fn maxwell_slip_remembers_its_reversal_points() {
 fn steady_sliding_with_bristles_costs_exactly_the_sliding_level() {
     for n in [16.0, 32.0, 64.0] {
         let law = Machine::reference().axes[0].actual.law.clone();
-        let mut friction = Friction::new(dry(400.0), law);
+        let mut friction = Friction::new(Sliding::dry(400.0), law);
         let dt_s = 1.0e-3 / n;
         let mut next = 0.1;
         // Held at 0.1 m/s: what friction takes off in a sub-step is its force.
@@ -352,7 +338,7 @@ fn rubbing() -> MotorSide {
             static_n: 190.0,
             stribeck_velocity_m_per_s: 4.0e-3,
             viscous_n_s_per_m: 900.0,
-            ..dry(150.0)
+            ..Sliding::dry(150.0)
         },
         law: Law::LuGre {
             bristle_stiffness_n_per_m: 2.0e7,
@@ -474,7 +460,7 @@ fn a_current_loop_without_lag_delivers_the_whole_impulse() {
         force_noise_n: 0.0,
         ..Machine::reference().axes[0].actual.clone()
     };
-    parameters.sliding = dry(0.0);
+    parameters.sliding = Sliding::dry(0.0);
     parameters.law = Law::Coulomb;
     parameters.current_loop_time_constant_s = 0.0;
     let mut axis = Axis::new(parameters.clone(), 1);

@@ -38,6 +38,22 @@ ranged! {
 }
 
 impl Sliding {
+    /// Coulomb friction alone. The Stribeck velocity matters only where there is a fall.
+    #[must_use]
+    pub const fn dry(coulomb_n: f64) -> Self {
+        Self {
+            coulomb_n,
+            static_n: coulomb_n,
+            stribeck_velocity_m_per_s: 1.0e-3,
+            stribeck_exponent: gaussian(),
+            stribeck_lag_s: 0.0,
+            viscous_n_s_per_m: 0.0,
+            coulomb_asymmetry: 0.0,
+            viscous_asymmetry: 0.0,
+            quadratic_drag_n_s2_per_m2: 0.0,
+        }
+    }
+
     /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
     #[must_use]
     pub fn level_n(&self, v: f64) -> f64 {
@@ -139,15 +155,10 @@ mod tests {
     use super::*;
 
     const LAGGING: Sliding = Sliding {
-        coulomb_n: 100.0,
         static_n: 150.0,
         stribeck_velocity_m_per_s: 1.0e-2,
-        stribeck_exponent: 2.0,
         stribeck_lag_s: 5.0e-3,
-        viscous_n_s_per_m: 0.0,
-        coulomb_asymmetry: 0.0,
-        viscous_asymmetry: 0.0,
-        quadratic_drag_n_s2_per_m2: 0.0,
+        ..Sliding::dry(100.0)
     };
 
     /// Level after so many sub-steps in all of 5 ms at a velocity, from a state.

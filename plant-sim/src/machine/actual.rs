@@ -32,19 +32,6 @@ pub(super) struct Side {
     pub law_at: Start,
 }
 
-/// A curve without any friction; the velocity matters only where there is a Stribeck fall.
-const FRICTIONLESS: Sliding = Sliding {
-    coulomb_n: 0.0,
-    static_n: 0.0,
-    stribeck_velocity_m_per_s: 1.0e-3,
-    stribeck_exponent: 2.0,
-    stribeck_lag_s: 0.0,
-    viscous_n_s_per_m: 0.0,
-    coulomb_asymmetry: 0.0,
-    viscous_asymmetry: 0.0,
-    quadratic_drag_n_s2_per_m2: 0.0,
-};
-
 /// Reads `[axis.actual]`; `None` where it states no friction.
 pub(super) fn read(
     source: Source<'_>,
@@ -175,7 +162,7 @@ impl Stated {
 
 /// The sliding curve of its effects; Coulomb friction comes before the Stribeck fall.
 fn curve(effects: &[Effect]) -> Sliding {
-    let mut curve = FRICTIONLESS;
+    let mut curve = Sliding::dry(0.0);
     for effect in effects {
         match effect {
             Effect::Coulomb(own) => {

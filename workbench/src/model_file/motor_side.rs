@@ -77,18 +77,7 @@ impl MotorSide {
 
     /// Its tables beside the effects of both sides and a motor of such a mass.
     pub(super) fn tables(&self, effects: &[Effect<Estimate>], motor_kg: f64) -> Tables {
-        let level_n = self.coulomb_n.max(LEAST_LEVEL_N);
-        let mut sliding = Sliding {
-            coulomb_n: level_n,
-            static_n: level_n,
-            stribeck_velocity_m_per_s: 1.0e-3,
-            stribeck_exponent: 2.0,
-            stribeck_lag_s: 0.0,
-            viscous_n_s_per_m: 0.0,
-            coulomb_asymmetry: 0.0,
-            viscous_asymmetry: 0.0,
-            quadratic_drag_n_s2_per_m2: 0.0,
-        };
+        let mut sliding = Sliding::dry(self.coulomb_n.max(LEAST_LEVEL_N));
         let mut friction = Law::Coulomb;
         for effect in effects {
             match effect.stated() {

@@ -189,9 +189,7 @@ impl<'a> Balance<'a> {
 
     /// Columns beside some of the motor's own side, by their places.
     fn blocks_beside(&self, own: &[usize], columns: &[Vec<f64>]) -> Blocks {
-        let own = own.iter().map(|place| self.own[*place].as_slice());
-        let all: Vec<&[f64]> = own.chain(columns.iter().map(Vec::as_slice)).collect();
-        Blocks::new(&all, self.effort, &self.mask, self.motion.period_s)
+        Blocks::with(&self.rows(own, columns, &self.mask), &[])
     }
 
     /// Width of a gap and stiffness of its flanks with their intervals, the edges linearised.

@@ -119,32 +119,29 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Opti
     let best = rubbing.best();
     let by_law = rubbing.at(best);
     let gain = Gain::of(&without, &by_law.fit);
-    let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best);
-    let (seen, motor_side) = if let Law::Slip(_) = carried.friction.law {
-        beside_elements(seen, motor_side, unrubbed)
-    } else {
-        (seen, motor_side)
-    };
-    let is_seen = gain.share >= MOTOR_SIDE_SHARE
+    let is_clear = gain.share >= MOTOR_SIDE_SHARE
         && gain.t >= DIFFERENCE_T
         && by_law.viscous.value >= -by_law.viscous.half_width
-        && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width
-        && motor_side.coulomb.value > 0.0
-        && TABLE_SHARES.contains(&(seen.value / unrubbed.value));
-    let known = if is_seen {
-        seen
-    } else {
-        // As soft as it would be with as much friction of the motor's side as is not seen, which
-        // hides best where it turns over as that of the load does.
-        let hidden = rubbing.at(1.0).stiffness;
-        let softest = [by_law.stiffness, hidden].map(|known| known.value - known.half_width);
-        let less = unrubbed.value - softest[0].min(softest[1]);
-        unrubbed.within(less.max(0.0))
-    };
+        && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width;
+    let seen = is_clear.then(|| {
+        let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best);
+        match carried.friction.law {
+            Law::Slip(_) => beside_elements(seen, motor_side, unrubbed),
+            Law::Dahl => (seen, motor_side),
+        }
+    });
+    let seen = seen.filter(|(known, motor_side)| {
+        let table_share = known.value / unrubbed.value;
+        motor_side.coulomb.value > 0.0 && TABLE_SHARES.contains(&table_share)
+    });
+    let known = seen.map_or_else(
+        || rubbing.hiding(unrubbed, by_law.stiffness),
+        |(known, _)| known,
+    );
     (unrubbed.value > 0.0).then_some(Stiffness {
         known,
         unrubbed,
-        motor_side: is_seen.then_some(motor_side),
+        motor_side: seen.map(|(_, motor_side)| motor_side),
     })
 }
 
@@ -206,6 +203,15 @@ impl Rubbing<'_> {
         let begin = smallest(&DEFLECTIONS, &left).unwrap_or(1.0);
         let range = (DEFLECTIONS[0], DEFLECTIONS[DEFLECTIONS.len() - 1]);
         descend(begin, STEP * begin, range, &left)
+    }
+
+    /// A stiffness where no friction of the motor's side is seen: as soft as it would be with as
+    /// much of it as could hide, which hides best where it turns over as that of the load does.
+    fn hiding(&self, unrubbed: Known, by_law: Known) -> Known {
+        let hidden = self.at(1.0).stiffness;
+        let softest = [by_law, hidden].map(|known| known.value - known.half_width);
+        let less = unrubbed.value - softest[0].min(softest[1]);
+        unrubbed.within(less.max(0.0))
     }
 
     /// What holds of a stiffness and a friction of the motor's side that follows the law of the
