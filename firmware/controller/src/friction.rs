@@ -2,37 +2,41 @@
 //!
 //! ```text
 //! x(k+1) ─▶ elements ─▶ F(k+1) ─┬─▶ ahead of the reference ─▶ F when the torque acts ─▶ torque
-//!                               └─▶ change of F · compliance ─▶ wind-up ─▶ speed of the motor
+//!                               └─▶ wind-up, gap ─▶ its change ─▶ speed of the motor
 //! ```
 //!
 //! **Elements.** Friction is the sum of Maxwell-slip elements (springs that slip at a level), as in
 //! Al-Bender, Lampaert, Swevers, "The generalized Maxwell-slip model", IEEE TAC 50 (2005) 1883. In
 //! presliding they follow Masing's rules by themselves; sliding, their levels follow the speed
-//! ([`LevelCurve`]), the place ([`LevelPlace`]) and what turns have told ([`LevelTuning`]). Their
-//! only input is the way of the reference. There is no event, so nothing chatters: a setpoint that
-//! flips one count moves a spring by one count.
+//! ([`LevelCurve`]), the place ([`LevelPlace`]), the direction ([`ByDirection`]) and what turns
+//! have told ([`LevelTuning`]). Their only input is the way of the reference. There is no event, so
+//! nothing chatters: a setpoint that flips one count moves a spring by one count.
 //!
-//! **Wind-up.** The screw transmits the friction of the table and is wound up by it, `F / K`. When
-//! friction changes sign the motor has to go that way in addition: its change belongs to the speed
-//! setpoint, in time with the encoders, and its acceleration takes torque.
+//! **Wind-up.** The screw transmits the friction of the table and is wound up by it, `F / K`; that
+//! of the motor's own side winds nothing up. When friction changes sign the motor has to go that
+//! way in addition, and across the gap where there is one ([`Screw`]): its change belongs to the
+//! speed setpoint, in time with the encoders, and its acceleration takes torque.
 //!
 //! **Time.** The elements stand at x(k+1), the newest setpoint. What acts later, from k + 1 to
 //! k + 2 and after the lag of the current loop, is taken from a look ahead along the reference's
 //! velocity and acceleration ([`Ahead`]), which leaves the elements where they are.
 
-use fixed::types::{I4F28, I8F24, I20F12, I24F8, I30F2, I40F24};
+use fixed::types::{I8F24, I20F12, I24F8, I30F2, I40F24};
 
 use crate::reference::Reference;
 use crate::units::{
     Acceleration, AccelerationGain, Position, PositionError, Torque, Velocity, VelocityGain,
 };
 
+mod by_direction;
 mod element;
 mod levels;
 mod path;
 mod place;
+mod screw;
 mod tuning;
 
+pub use by_direction::ByDirection;
 pub use element::Element;
 use element::Strain;
 use levels::{Factor, times, within_way};
@@ -40,6 +44,7 @@ pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
 pub use place::LevelPlace;
+pub use screw::Screw;
 use tuning::Tuner;
 pub use tuning::{LevelTuning, Progress};
 
@@ -59,6 +64,8 @@ pub struct FrictionConfig {
     pub lag_per_way: I8F24,
     /// Levels along the travel.
     pub place: LevelPlace,
+    /// Levels and ways by direction.
+    pub by_direction: ByDirection,
     /// How they are refined.
     pub tuning: LevelTuning,
     /// Viscous torque per velocity.
@@ -71,8 +78,8 @@ pub struct FrictionConfig {
     pub torque_after: Ahead,
     /// Friction has a damping in presliding: its rate of change counts so many cycles.
     pub damping_cycles: I8F24,
-    /// Wind-up of the screw per torque of friction, 10 nm per µN·m.
-    pub compliance: I4F28,
+    /// How much farther than the table the motor stands.
+    pub screw: Screw,
     /// The wind-up follows the rate of change of friction, so many cycles of it; the damping of
     /// presliding makes them more, that of the screw less.
     pub windup_cycles: I8F24,
@@ -97,22 +104,36 @@ pub struct FrictionState {
     at: Option<Position>,
     strains: Strains,
     /// What they hold.
-    held: Torque,
+    held: Force,
     /// Factor on the levels; `None`: that of the speed.
     factor: Option<Factor>,
     recent: Option<Recent>,
     tuner: Tuner,
 }
 
-/// Friction of the last cycles.
+/// Friction of both sides of the screw, and what of it is the table's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Force {
+    all: Torque,
+    table: Torque,
+}
+
+/// Friction of both sides, and how much farther than the table the motor stands with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Push {
+    all: Torque,
+    ahead: Velocity,
+}
+
+/// The last cycles: how much farther than the table the motor stood, and what acted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Recent {
-    before: Torque,
-    present: Torque,
-    next: Torque,
-    acting: Torque,
-    /// Second difference of what acts.
-    turn: Torque,
+    before: Velocity,
+    present: Velocity,
+    next: Velocity,
+    acting: Push,
+    /// Second difference of the way that acted.
+    turn: Velocity,
 }
 
 /// What the model adds.
@@ -137,21 +158,27 @@ impl FrictionState {
         let way = self
             .at
             .map_or(Velocity::ZERO, |before| next_position.step_from(before));
-        let path = Path::between(begin, at_next, I8F24::ONE, way);
+        let path = Path::between(begin, at_next, I8F24::ONE, way).by(config.by_direction);
         let scale = self.scale(config, next_position);
         self.move_along(config, &path, next_position, (at_next, scale));
-        let next = self.held().plus(config.viscous_torque(at_next));
-        let [acting, after] = [&config.torque, &config.torque_after]
-            .map(|ahead| self.ahead(config, ahead, (velocity, acceleration), scale));
+        let next = self.held.plus(config.viscous_torque(at_next));
+        let next = config.screw.way(next.table, acceleration);
+        let [acting, after] = [&config.torque, &config.torque_after].map(|ahead| {
+            let force = self.ahead(config, ahead, (velocity, acceleration), scale);
+            Push {
+                all: force.all,
+                ahead: config.screw.way(force.table, acceleration),
+            }
+        });
         let before = self.recent.unwrap_or(Recent {
             before: next,
             present: next,
             next,
-            // As if it had changed as it does now.
-            acting: acting.plus(acting).minus(after),
-            turn: Torque::ZERO,
+            acting: acting.before(after),
+            turn: Velocity::ZERO,
         });
-        let turn = after.minus(acting).minus(acting.minus(before.acting));
+        let rise = acting.ahead.minus(before.acting.ahead);
+        let turn = after.ahead.minus(acting.ahead).minus(rise);
         self.recent = Some(Recent {
             before: before.present,
             present: before.next,
@@ -163,19 +190,19 @@ impl FrictionState {
         let bend = next
             .minus(before.next)
             .minus(before.present.minus(before.before));
-        let windup = change.plus(damping(config.windup_cycles, bend));
         // The wind-up is ahead of what acts.
         let turning = turn.minus(before.turn);
-        let turn = turn.plus(damping(config.windup_cycles, turning.plus(turning)));
-        let inertia = config
-            .motor_inertia
-            .times(Acceleration(wound(config.compliance, turn)));
+        let turn = turn.plus(advanced(config.windup_cycles, turning.plus(turning)));
+        let turn = turn.limited(config.screw.acceleration_limit);
+        let inertia = config.motor_inertia.times(Acceleration(turn.0));
+        let rate = after.all.minus(before.acting.all);
         Feedforward {
             torque: acting
-                .plus(damping(config.damping_cycles, after.minus(before.acting)))
+                .all
+                .plus(damping(config.damping_cycles, rate))
                 .plus(inertia),
-            velocity: Velocity(wound(config.compliance, windup)),
-            offset: offset(config.compliance, before.next),
+            velocity: change.plus(advanced(config.windup_cycles, bend)),
+            offset: PositionError(I24F8::saturating_from_num(before.next.0)),
         }
     }
 
@@ -185,12 +212,8 @@ impl FrictionState {
             .at
             .map_or(Velocity::ZERO, |before| measured.step_from(before));
         let scale = self.scale(config, measured);
-        self.move_along(
-            config,
-            &Path::straight(velocity),
-            measured,
-            (velocity, scale),
-        );
+        let path = Path::straight(velocity).by(config.by_direction);
+        self.move_along(config, &path, measured, (velocity, scale));
         (self.recent, self.tuner) = (None, self.tuner.at_rest());
     }
 
@@ -238,7 +261,7 @@ impl FrictionState {
     ) {
         let factor = self.factor_after(config, path.length(), pace, config.lag);
         self.strains = self.strained(config, path, factor);
-        self.held = torque(config, &self.strains);
+        self.held = force(config, &self.strains, factor, pace.1);
         (self.at, self.factor) = (Some(to), Some(factor));
     }
 
@@ -277,7 +300,7 @@ impl FrictionState {
     /// What the elements hold.
     #[must_use]
     pub const fn held(&self) -> Torque {
-        self.held
+        self.held.all
     }
 
     fn ahead(
@@ -286,26 +309,55 @@ impl FrictionState {
         ahead: &Ahead,
         (velocity, acceleration): (Velocity, Acceleration),
         scale: I8F24,
-    ) -> Torque {
+    ) -> Force {
         let way = ahead.way(velocity, acceleration);
         let there = velocity
             .0
             .saturating_add(scaled(acceleration.0, ahead.velocity_by_acceleration));
         let there = Velocity(there);
         let begin = velocity.plus(half(acceleration));
-        let path = Path::between(begin, there, ahead.cycles, way);
+        let path = Path::between(begin, there, ahead.cycles, way).by(config.by_direction);
         let factor = self.factor_after(config, path.length(), (there, scale), ahead.lag);
-        torque(config, &self.strained(config, &path, factor)).plus(config.viscous_torque(there))
+        let strains = self.strained(config, &path, factor);
+        force(config, &strains, factor, scale).plus(config.viscous_torque(there))
     }
 }
 
-/// The torque of all elements; from 29 to 24 fractional bits.
-fn torque(config: &FrictionConfig, strains: &Strains) -> Torque {
+impl Force {
+    /// With a torque that the table has too.
+    fn plus(self, torque: Torque) -> Self {
+        Self {
+            all: self.all.plus(torque),
+            table: self.table.plus(torque),
+        }
+    }
+}
+
+impl Push {
+    /// What was before this, where it changes evenly to another.
+    fn before(self, after: Self) -> Self {
+        Self {
+            all: self.all.plus(self.all).minus(after.all),
+            ahead: self.ahead.plus(self.ahead).minus(after.ahead),
+        }
+    }
+}
+
+/// The force of all elements, and what their levels have by direction beyond that at rest; from 29
+/// to 24 fractional bits.
+fn force(config: &FrictionConfig, strains: &Strains, factor: Factor, scale: I8F24) -> Force {
     let strains = strains.iter().zip(&config.elements);
-    let sum = strains.fold(0_i64, |sum, (strain, element)| {
-        sum.wrapping_add(element.torque(*strain))
+    let [all, table] = strains.fold([0_i64, 0_i64], |[all, table], (strain, element)| {
+        let [own, of_table] = element.torque(*strain);
+        [all.wrapping_add(own), table.wrapping_add(of_table)]
     });
-    Torque(I40F24::from_bits(sum.wrapping_shr(5)))
+    let [all, table] = [all, table].map(|sum| Torque(I40F24::from_bits(sum.wrapping_shr(5))));
+    let at_rest = times(config.levels.at_rest(), scale);
+    let by_direction = config.by_direction.torque(factor.acting, at_rest);
+    Force {
+        all: all.plus(by_direction),
+        table,
+    }
 }
 
 /// A velocity or its change times a factor, saturated.
@@ -317,7 +369,7 @@ fn half(acceleration: Acceleration) -> Velocity {
     Velocity(I20F12::from_bits(acceleration.0.to_bits().wrapping_shr(1)))
 }
 
-/// A torque in a quarter of µN·m: 30.2 bits times 4.28 bits are 34.30 bits, exact.
+/// A torque in a quarter of µN·m.
 fn coarse(torque: Torque) -> I30F2 {
     I30F2::saturating_from_num(torque.0)
 }
@@ -329,12 +381,9 @@ fn damping(cycles: I8F24, change: Torque) -> Torque {
     Torque(I40F24::from_bits(product.wrapping_shr(3)))
 }
 
-fn wound(compliance: I4F28, change: Torque) -> I20F12 {
-    I20F12::saturating_from_num(coarse(change).wide_mul(compliance))
-}
-
-fn offset(compliance: I4F28, torque: Torque) -> PositionError {
-    PositionError(I24F8::saturating_from_num(
-        coarse(torque).wide_mul(compliance),
+/// Half of a change over two cycles times a number of them.
+fn advanced(cycles: I8F24, change: Velocity) -> Velocity {
+    Velocity(I20F12::from_bits(
+        scaled(change.0, cycles).to_bits().wrapping_shr(1),
     ))
 }

@@ -8,8 +8,8 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::friction::{
-    Ahead, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS, LevelCurve,
-    LevelLag, LevelPlace, LevelTuning,
+    Ahead, ByDirection, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS,
+    LevelCurve, LevelLag, LevelPlace, LevelTuning, Screw,
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
@@ -18,7 +18,7 @@ use controller::units::{
     Acceleration, AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain,
 };
 use controller::{Config, Input, PositionSource, State};
-use fixed::types::{I2F30, I4F28, I8F24, I20F12, I56F8};
+use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8};
 use proptest::prelude::*;
 
 /// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
@@ -74,17 +74,26 @@ const LAG_PER_WAY: f64 = 1.0 / 1300.0;
 const LAG_CYCLES: f64 = 6.0;
 /// Level along the travel, per 2²⁴ counts: at most a tenth on these paths.
 const PLACE: [f64; 2] = [0.8, -0.3];
+/// Levels are higher forward by this share, and ways longer.
+const BY_DIRECTION: f64 = 0.12;
+/// Share of each element that is the table's.
+const TABLE: f64 = 0.7;
 const AHEAD: f64 = 1.0;
 const DAMPING: f64 = 0.75;
 const WINDUP_CYCLES: f64 = 0.58;
 const COMPLIANCE: f64 = 5.2e-4;
 const INERTIA: f64 = 10_050.0;
+/// Half a gap, the torque within which it is crossed, and the inertia behind it.
+const HALF_GAP: f64 = 250.0;
+const CROSSING: f64 = 0.2 * LEVEL;
+const TABLE_INERTIA: f64 = 4800.0;
 
 fn config() -> FrictionConfig {
     FrictionConfig {
         elements: elements().map(|(level, way)| Element {
             per_way: I8F24::from_num(1.0 / way),
             level_micro_nm: level as i32,
+            table_micro_nm: (TABLE * level) as i32,
         }),
         levels: LevelCurve {
             intervals_per_velocity: I8F24::from_num(PER_VELOCITY),
@@ -96,15 +105,38 @@ fn config() -> FrictionConfig {
             linear: I8F24::from_num(PLACE[0]),
             quadratic: I8F24::from_num(PLACE[1]),
         },
+        by_direction: ByDirection {
+            forward: I8F24::from_num(1.0 / (1.0 + BY_DIRECTION)),
+            backward: I8F24::from_num(1.0 / (1.0 - BY_DIRECTION)),
+            level_micro_nm: (BY_DIRECTION * LEVEL) as i32,
+        },
         tuning: LevelTuning::default(),
         viscous: VelocityGain(I20F12::from_num(VISCOUS)),
         viscous_asymmetry: VelocityGain(I20F12::from_num(ASYMMETRY)),
         torque: ahead(AHEAD),
         torque_after: ahead(AHEAD + 1.0),
         damping_cycles: I8F24::from_num(DAMPING),
-        compliance: I4F28::from_num(COMPLIANCE),
+        screw: Screw {
+            compliance: I4F28::from_num(COMPLIANCE),
+            acceleration_limit: Velocity(I20F12::MAX),
+            ..Screw::default()
+        },
         windup_cycles: I8F24::from_num(WINDUP_CYCLES),
-        motor_inertia: AccelerationGain(fixed::types::I24F8::from_num(INERTIA)),
+        motor_inertia: AccelerationGain(I24F8::from_num(INERTIA)),
+    }
+}
+
+/// The same with a gap behind the screw.
+fn with_gap() -> FrictionConfig {
+    let config = config();
+    FrictionConfig {
+        screw: Screw {
+            half_gap: I20F12::from_num(HALF_GAP),
+            gap_per_torque: I4F28::from_num(HALF_GAP / CROSSING),
+            table_inertia: AccelerationGain(I24F8::from_num(TABLE_INERTIA)),
+            ..config.screw
+        },
+        ..config
     }
 }
 
@@ -126,23 +158,28 @@ fn reference(at: impl Fn(f64) -> f64, cycle: u32) -> Reference {
 
 #[derive(Default)]
 struct Twin {
+    half_gap: f64,
     at: Option<f64>,
     place: f64,
     elements: [f64; ELEMENTS],
     /// That of the speed, behind it by the time, and behind that by the way.
     factor: Option<[f64; 3]>,
-    /// Friction of the last cycles, and the second difference of what acts.
-    recent: Option<[f64; 5]>,
+    /// How much farther the motor stood in the last cycles, what acted of friction and of that way,
+    /// and the second difference of the latter.
+    recent: Option<[f64; 6]>,
 }
 
 impl Twin {
-    fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 3] {
+    fn scale(&self) -> f64 {
         let x = self.place / f64::from(1 << 24);
-        let scale = 1.0 + x * (PLACE[0] + x * PLACE[1]);
+        1.0 + x * (PLACE[0] + x * PLACE[1])
+    }
+
+    fn level(&self, way: f64, velocity: f64, cycles: f64) -> [f64; 3] {
         let place = (velocity.abs() * PER_VELOCITY).min(16.0);
         let (from, factors) = ((place.floor() as usize).min(15), factors());
         let aim = factors[from] + (factors[from + 1] - factors[from]) * (place - from as f64);
-        let aim = scale * aim;
+        let aim = self.scale() * aim;
         let [aimed, before, acting] = self.factor.unwrap_or([aim; 3]);
         let [come, ramp] = shares(cycles);
         let level = before + come * (aimed - before) + ramp * (aim - aimed);
@@ -165,10 +202,12 @@ impl Twin {
         } else {
             way
         };
-        let factor = self.level(on.abs() + (way - on).abs(), end, cycles);
+        let counts = |way: f64| way / (1.0 + BY_DIRECTION * way.signum());
+        let (on, back) = (counts(on), counts(way - on));
+        let factor = self.level(on.abs() + back.abs(), end, cycles);
         let mut torques = self.elements;
         for (torque, (level, slip)) in torques.iter_mut().zip(elements()) {
-            for part in [on, way - on] {
+            for part in [on, back] {
                 let limit = level * factor[2];
                 *torque = (*torque + level / slip * part).clamp(-limit, limit);
             }
@@ -186,25 +225,44 @@ impl Twin {
         let (torques, factor) = self.passed(v - 0.5 * a, v + 0.5 * a, 1.0, way);
         (self.elements, self.factor, self.at) = (torques, Some(factor), Some(position + v));
         let viscous = |v: f64| VISCOUS * v + ASYMMETRY * v.abs();
-        let next = torques.iter().sum::<f64>() + viscous(v + 0.5 * a);
+        let scale = self.scale();
+        // Of both sides, and of the table alone.
+        let held = |(torques, factor): ([f64; ELEMENTS], [f64; 3])| {
+            let at_rest = scale * factors()[0];
+            let by_direction = BY_DIRECTION * LEVEL * (factor[2] - at_rest);
+            let sum = torques.iter().sum::<f64>();
+            [sum + by_direction, TABLE * sum]
+        };
+        // How much farther than the table the motor stands.
+        let ahead = |table: f64| {
+            let across = (table + TABLE_INERTIA * a) / CROSSING;
+            COMPLIANCE * table + self.half_gap * across.clamp(-1.0, 1.0)
+        };
+        let next = ahead(held((torques, factor))[1] + viscous(v + 0.5 * a));
         let acting = |cycles: f64| {
             let way = v * cycles + 0.5 * a * cycles * (cycles + 1.0);
             let there = v + a * (cycles + 0.5);
-            let (torques, _) = self.passed(v + 0.5 * a, there, cycles, way);
-            torques.iter().sum::<f64>() + viscous(there)
+            let [all, table] = held(self.passed(v + 0.5 * a, there, cycles, way));
+            [all + viscous(there), ahead(table + viscous(there))]
         };
-        let (now, after) = (acting(AHEAD), acting(AHEAD + 1.0));
-        let [before, present, last, acted, turned] =
-            self.recent
-                .unwrap_or([next, next, next, 2.0 * now - after, 0.0]);
-        let turn = after - 2.0 * now + acted;
-        self.recent = Some([present, last, next, now, turn]);
+        let ([now, now_way], [after, after_way]) = (acting(AHEAD), acting(AHEAD + 1.0));
+        let even = |now: f64, after: f64| 2.0 * now - after;
+        let [before, present, last, acted, acted_way, turned] = self.recent.unwrap_or([
+            next,
+            next,
+            next,
+            even(now, after),
+            even(now_way, after_way),
+            0.0,
+        ]);
+        let turn = after_way - 2.0 * now_way + acted_way;
+        self.recent = Some([present, last, next, now, now_way, turn]);
         let bend = next - last - (present - before);
         let turn = turn + WINDUP_CYCLES * (turn - turned);
         [
-            now + 0.5 * DAMPING * (after - acted) + INERTIA * COMPLIANCE * turn,
-            COMPLIANCE * (last - present + 0.5 * WINDUP_CYCLES * bend),
-            COMPLIANCE * last,
+            now + 0.5 * DAMPING * (after - acted) + INERTIA * turn,
+            last - present + 0.5 * WINDUP_CYCLES * bend,
+            last,
         ]
     }
 }
@@ -217,35 +275,89 @@ fn said(feedforward: &Feedforward) -> [f64; 3] {
     ]
 }
 
-proptest! {
-    #[test]
-    fn the_law_follows_its_twin(
-        amplitude in 10.0_f64..1.0e6, period in 100.0_f64..5000.0, second in 0.0_f64..0.3, phase in 0.0_f64..6.0,
-    ) {
-        // No faster than 2000 counts per cycle, no harder than 200 per cycle².
-        let turn = std::f64::consts::TAU / period;
-        let amplitude = amplitude.min(2000.0 / turn).min(200.0 / (turn * turn));
-        let at = |time: f64| amplitude * ((turn * time).sin() + second * (2.7 * turn * time + phase).sin());
-        let (mut law, mut twin, config) = (FrictionState::default(), Twin::default(), config());
-        for cycle in 2..3000 {
-            let reference = reference(at, cycle);
-            let [torque, windup, offset] = said(&law.step(&config, &reference));
-            let [torque_there, velocity_there, offset_there] = twin.step(&reference);
-            // Ahead of the newest setpoint by two cycles and a half; what another 64th has bent
-            // is slid away soon after.
-            let forward = |cycle: u32| at(f64::from(cycle) + 1.0) > at(f64::from(cycle));
-            let about = cycle.saturating_sub(20)..cycle + 5;
-            let turns = about.clone().any(|other| forward(other) != forward(about.start));
-            let bound = if turns { BOUND_AT_TURN_MICRO_NM } else { BOUND_MICRO_NM };
-            prop_assert!((torque - torque_there).abs() < bound, "cycle {cycle}: {torque} {torque_there}");
-            prop_assert!((windup - velocity_there).abs() < BOUND_VELOCITY, "cycle {cycle}: {windup} {velocity_there}");
-            prop_assert!((offset - offset_there).abs() < BOUND_VELOCITY * 2.0, "cycle {cycle}: {offset} {offset_there}");
-        }
+/// A path of two sines in counts, no faster than 2000 per cycle, no harder than 200 per cycle².
+#[derive(Clone, Debug)]
+struct TwoSines {
+    turn: f64,
+    amplitude: f64,
+    second: f64,
+    phase: f64,
+}
+
+impl TwoSines {
+    fn at(&self, time: f64) -> f64 {
+        let second = (2.7 * self.turn * time + self.phase).sin();
+        self.amplitude * ((self.turn * time).sin() + self.second * second)
     }
 
-    /// Whatever comes: its torque is at most that of all levels at their highest factor (1.3 by the
-    /// speed, 1.33 within these 84 mm) and the damping and inertia of their change from one side to
-    /// the other.
+    /// Whether it turns round in what the law looks at in a cycle: ahead of the newest setpoint by
+    /// two cycles and a half; what another 64th has bent is slid away soon after.
+    fn turns_about(&self, cycle: u32) -> bool {
+        let forward = |cycle: u32| self.at(f64::from(cycle) + 1.0) > self.at(f64::from(cycle));
+        let mut about = cycle.saturating_sub(20)..cycle + 5;
+        let first = forward(about.start);
+        about.any(|other| forward(other) != first)
+    }
+}
+
+prop_compose! {
+    fn two_sines()(
+        amplitude in 10.0_f64..1.0e6, period in 100.0_f64..5000.0, second in 0.0_f64..0.3, phase in 0.0_f64..6.0,
+    ) -> TwoSines {
+        let turn = std::f64::consts::TAU / period;
+        let amplitude = amplitude.min(2000.0 / turn).min(200.0 / (turn * turn));
+        TwoSines { turn, amplitude, second, phase }
+    }
+}
+
+/// The law beside its twin along a path: how far torque, velocity and offset may be apart, times
+/// their bounds.
+fn beside(
+    config: &FrictionConfig,
+    half_gap: f64,
+    path: &TwoSines,
+    most: f64,
+) -> Result<(), TestCaseError> {
+    let mut law = FrictionState::default();
+    let mut twin = Twin {
+        half_gap,
+        ..Twin::default()
+    };
+    for cycle in 2..3000 {
+        let reference = reference(|time| path.at(time), cycle);
+        let own = said(&law.step(config, &reference));
+        let there = twin.step(&reference);
+        let torque = if path.turns_about(cycle) {
+            BOUND_AT_TURN_MICRO_NM
+        } else {
+            BOUND_MICRO_NM
+        };
+        let bounds = [torque, BOUND_VELOCITY, 2.0 * BOUND_VELOCITY];
+        for ((own, there), bound) in own.into_iter().zip(there).zip(bounds) {
+            prop_assert!(
+                (own - there).abs() < most * bound,
+                "cycle {cycle}: {own} {there}"
+            );
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn the_law_follows_its_twin(path in two_sines()) {
+        beside(&config(), 0.0, &path, 1.0)?;
+    }
+
+    /// Across a gap a force counts that is known to a part of the band, and the motor has to be
+    /// accelerated.
+    #[test]
+    fn the_law_follows_its_twin_across_a_gap(path in two_sines()) {
+        beside(&with_gap(), HALF_GAP, &path, 4.0)?;
+    }
+
+    /// Whatever comes: what it holds is at most all levels at their highest factor (1.3 by the
+    /// speed, 1.33 within these 84 mm), and what they have by direction.
     #[test]
     fn no_reference_makes_it_panic_or_lets_an_element_pass_its_level(
         cycles in proptest::collection::vec((any::<i32>(), any::<i32>(), any::<i32>()), 1..60),
@@ -258,7 +370,7 @@ proptest! {
                 acceleration: Acceleration(I20F12::from_bits(acceleration)),
                 ..Reference::default()
             });
-            prop_assert!(law.held().0.to_num::<f64>().abs() <= 1.75 * LEVEL + 20.0);
+            prop_assert!(law.held().0.to_num::<f64>().abs() <= (1.75 + 1.3 * BY_DIRECTION) * LEVEL + 20.0);
         }
     }
 }
@@ -274,43 +386,57 @@ fn along(law: &mut FrictionState, config: &FrictionConfig, positions: &[f64]) ->
         .collect()
 }
 
-#[test]
-fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
+/// Torques while a setpoint flips by a count every 100 cycles, ten times there and back, each
+/// beyond what was held before; and the stiffness of all elements.
+fn flipping(by_direction: ByDirection) -> (Vec<f64>, f64) {
+    const END: f64 = 3999.0;
     let config = FrictionConfig {
         damping_cycles: I8F24::ZERO,
-        compliance: I4F28::ZERO,
+        screw: Screw::default(),
         viscous: VelocityGain::default(),
         viscous_asymmetry: VelocityGain::default(),
+        by_direction,
         ..config()
     };
     let mut law = FrictionState::default();
-    let there: Vec<f64> = (0..3000).map(f64::from).collect();
+    let there: Vec<f64> = (0..=END as u32).map(f64::from).collect();
     along(&mut law, &config, &there);
     let held: f64 = law.held().0.to_num();
     assert!(held > 0.99 * LEVEL, "it slides: {held}");
-    let flips: Vec<f64> = (0..2000)
-        .map(|cycle| {
-            2999.0
-                - if cycle / 100 % 2 == 0 {
-                    0.0
-                } else {
-                    1.0 / 256.0
-                }
-        })
-        .collect();
+    let is_back = |cycle: u32| cycle / 100 % 2 == 1;
+    let flip = |cycle: u32| END - f64::from(u8::from(is_back(cycle))) / 256.0;
+    let flips: Vec<f64> = (0..2000).map(flip).collect();
     let stiffness: f64 = elements().iter().map(|(level, way)| level / way).sum();
-    for torque in along(&mut law, &config, &flips) {
+    let torques = along(&mut law, &config, &flips);
+    let changes = torques.into_iter().map(|torque| torque - held);
+    (changes.collect(), stiffness)
+}
+
+#[test]
+fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
+    let (changes, stiffness) = flipping(ByDirection::default());
+    for change in changes {
         // Factor 1.3 at standstill may raise a level that is passed only by way.
-        assert!(
-            (torque - held).abs() < 4.0 * stiffness / 256.0 + 1.0,
-            "{torque}"
-        );
+        assert!(change.abs() < 4.0 * stiffness / 256.0 + 1.0, "{change}");
+    }
+}
+
+/// A bristle whose ways differ by direction comes off its level a little with each flip, as it does
+/// on the axis: by less than half a count.
+#[test]
+fn a_setpoint_that_flips_lets_a_bristle_by_direction_creep() {
+    let (changes, stiffness) = flipping(config().by_direction);
+    for (cycle, change) in changes.into_iter().enumerate() {
+        let pairs = (cycle / 200 + 1) as f64;
+        let most = (4.0 + 0.6 * pairs) * stiffness / 256.0;
+        assert!(change.abs() < most, "{cycle}: {change}");
     }
 }
 
 #[test]
 fn a_loop_within_presliding_closes_where_it_began() {
     let config = FrictionConfig {
+        by_direction: ByDirection::default(),
         lag: LevelLag::NONE,
         lag_per_way: I8F24::ZERO,
         levels: LevelCurve::default(),

@@ -20,7 +20,8 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
-    Ahead, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
+    Ahead, ByDirection, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag,
+    LevelPlace, LevelTuning, Screw,
 };
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::ripple::{RippleConfig, Wave};
@@ -328,37 +329,53 @@ impl Reading<'_> {
         if !(Parameter::FRICTION_LEVELS.iter().any(says) || says(&Parameter::ViscousTorque)) {
             return Ok(None);
         }
-        let mut elements = [Element::default(); ELEMENTS];
-        for ((element, level), way) in elements
-            .iter_mut()
-            .zip(Parameter::FRICTION_LEVELS)
-            .zip(Parameter::FRICTION_WAYS)
-        {
-            *element = Element {
-                per_way: self.per_way(way)?,
-                level_micro_nm: self.raw(level),
-            };
-        }
         let ahead = self.cycles(Parameter::FrictionAhead)?;
         let torque = ahead.saturating_add(HALF_A_CYCLE);
         Ok(Some(FrictionConfig {
-            elements,
+            elements: self.elements()?,
             levels: self.levels()?,
             lag: self.level_lag(I8F24::ONE),
             lag_per_way: self.lag_per_way()?,
             place: self.level_place(),
+            by_direction: self.by_direction(),
             tuning: self.level_tuning()?,
             viscous: self.viscous(Parameter::ViscousTorque)?,
             viscous_asymmetry: self.viscous(Parameter::ViscousAsymmetry)?,
             torque: self.ahead_by(torque),
             torque_after: self.ahead_by(torque.saturating_add(I8F24::ONE)),
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
-            compliance: self.compliance()?,
+            screw: self.screw()?,
             windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
             motor_inertia: AccelerationGain(I24F8::from_bits(
                 self.inertia_gain(Parameter::MotorInertia, (1, 1))?,
             )),
         }))
+    }
+
+    fn elements(&self) -> Result<[Element; ELEMENTS], SetError> {
+        let mut elements = [Element::default(); ELEMENTS];
+        for (((element, level), way), on_motor) in elements
+            .iter_mut()
+            .zip(Parameter::FRICTION_LEVELS)
+            .zip(Parameter::FRICTION_WAYS)
+            .zip(Parameter::FRICTION_ON_MOTOR)
+        {
+            *element = Element {
+                per_way: self.per_way(way)?,
+                level_micro_nm: self.raw(level),
+                table_micro_nm: self.left_at_table(level, on_motor),
+            };
+        }
+        Ok(elements)
+    }
+
+    /// What of a level is the table's: the level at most. Below 2³¹ · 2²⁰.
+    fn left_at_table(&self, level: Parameter, on_motor: Parameter) -> i32 {
+        let whole = on_motor.unit().per_si;
+        let left = whole.saturating_sub(self.steps(on_motor));
+        let level = Fraction::new(&[self.steps(level), left], &[whole]).and_then(Fraction::nearest);
+        let level = level.and_then(|level| i32::try_from(level).ok());
+        level.unwrap_or_default()
     }
 
     /// One over a way, per count.
@@ -445,6 +462,31 @@ impl Reading<'_> {
             Ok(I8F24::ZERO)
         } else {
             self.per_way(way)
+        }
+    }
+
+    /// Ways count 1 / (1 ± a) times, where they are so much longer: ten times at most.
+    fn by_direction(&self) -> ByDirection {
+        let asymmetry = Parameter::WayAsymmetry;
+        let (whole, share) = (asymmetry.unit().per_si, self.steps(asymmetry));
+        let counts = |longer: u64| {
+            let bits = Fraction::new(&[whole, Q24], &[longer]).and_then(Fraction::nearest);
+            let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+            bits.map_or(I8F24::ONE, I8F24::from_bits)
+        };
+        let (longer, shorter) = (
+            counts(whole.saturating_add(share)),
+            counts(whole.saturating_sub(share)),
+        );
+        let (forward, backward) = if self.raw(asymmetry) < 0 {
+            (shorter, longer)
+        } else {
+            (longer, shorter)
+        };
+        ByDirection {
+            forward,
+            backward,
+            level_micro_nm: self.raw(Parameter::LevelAsymmetry),
         }
     }
 
@@ -555,15 +597,29 @@ impl Reading<'_> {
         self.signed(phase, i32::from_le_bytes([a, b, c, d]))
     }
 
-    /// Counts of 10 nm per µN·m. Below 2³¹ · 10⁸ · 2²⁸.
-    fn compliance(&self) -> Result<I4F28, SetError> {
-        let parameter = Parameter::Windup;
-        let bits = Self::held(
-            parameter,
-            &[self.steps(parameter), COUNTS_PER_M, Q28],
-            &[parameter.unit().per_si, MICROS],
+    /// Counts of 10 nm, and counts per µN·m. Below 2³¹ · 10⁸ · 2²⁸ and 2²⁴ · 10⁸ · 2²⁸.
+    fn screw(&self) -> Result<Screw, SetError> {
+        let (windup, width, torque) =
+            (Parameter::Windup, Parameter::GapWidth, Parameter::GapTorque);
+        let compliance = Self::held(
+            windup,
+            &[self.steps(windup), COUNTS_PER_M, Q28],
+            &[windup.unit().per_si, MICROS],
         )?;
-        Ok(I4F28::from_bits(bits))
+        let gap_per_torque = Self::held(
+            width,
+            &[self.steps(width), COUNTS_PER_M, Q28],
+            &[width.unit().per_si, 2, self.steps(torque)],
+        )?;
+        Ok(Screw {
+            compliance: I4F28::from_bits(compliance),
+            half_gap: I20F12::saturating_from_num(self.length(width, 2)?.0),
+            gap_per_torque: I4F28::from_bits(gap_per_torque),
+            table_inertia: AccelerationGain(I24F8::from_bits(
+                self.inertia_gain(Parameter::TableInertia, (1, 1))?,
+            )),
+            acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
+        })
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {

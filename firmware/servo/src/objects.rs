@@ -207,6 +207,20 @@ macro_rules! parameters {
                 Self::FrictionWay10,
             ];
 
+            /// Shares of the friction elements that are on the motor's side.
+            pub const FRICTION_ON_MOTOR: [Self; 10] = [
+                Self::FrictionOnMotor1,
+                Self::FrictionOnMotor2,
+                Self::FrictionOnMotor3,
+                Self::FrictionOnMotor4,
+                Self::FrictionOnMotor5,
+                Self::FrictionOnMotor6,
+                Self::FrictionOnMotor7,
+                Self::FrictionOnMotor8,
+                Self::FrictionOnMotor9,
+                Self::FrictionOnMotor10,
+            ];
+
             /// Amplitude, period and phase of each ripple.
             pub const RIPPLES: [[Self; 3]; 2] = [
                 [Self::RippleTorque1, Self::RipplePeriod1, Self::RipplePhase1],
@@ -396,6 +410,9 @@ parameters! {
     FrictionDamping = (0x2155, 3), "damping of presliding over its stiffness", MICROSECOND, (0, 100_000), 0;
     Windup = (0x2156, 1), "wind-up of the screw per torque of friction", WINDUP, POSITIVE, 0;
     MotorInertia = (0x2156, 2), "inertia of the motor alone, for the wind-up", INERTIA, POSITIVE, 0;
+    GapWidth = (0x2156, 3), "gap that the axis crosses where the torque behind it changes sign (0: none)", TENTH_NANOMETRE, (0, 10_000_000), 0;
+    GapTorque = (0x2156, 4), "torque within which it is crossed, to either side", MICRO_NM, (1, TORQUE), 100_000;
+    TableInertia = (0x2156, 5), "inertia of the table alone, for the gap", INERTIA, POSITIVE, 0;
     LevelSlope = (0x2158, 1), "friction levels change along the travel, per way from position zero", MILLIONTH_PER_M, SLOPE, 0;
     LevelBend = (0x2158, 2), "and per square of that way", MILLIONTH_PER_M2, (-i32::MAX, i32::MAX), 0;
     LevelTuning = (0x2159, 1), "share of what a turn tells that the friction level is refined by (0 off)", MILLIONTH, (0, 1_000_000), 0;
@@ -408,6 +425,18 @@ parameters! {
     RipplePeriod2 = (0x215A, 5), "ripple 2, way from one period to the next", TENTH_NANOMETRE, (10_000, i32::MAX), 100_000_000;
     RipplePhase2 = (0x215A, 6), "ripple 2, phase at position zero, of a turn", MILLIONTH, TURN, 0;
     ViscousAsymmetry = (0x215B, 0), "viscous feedforward, how much more forward than backward, halved", VISCOUS, (-i32::MAX, i32::MAX), 0;
+    LevelAsymmetry = (0x215C, 1), "friction levels, how much higher forward than backward, halved", MICRO_NM, SIGNED_TORQUE, 0;
+    WayAsymmetry = (0x215C, 2), "ways after which elements slip, by which share longer forward, shorter backward", MILLIONTH, (-900_000, 900_000), 0;
+    FrictionOnMotor1 = (0x215D, 1), "friction element 1, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor2 = (0x215D, 2), "friction element 2, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor3 = (0x215D, 3), "friction element 3, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor4 = (0x215D, 4), "friction element 4, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor5 = (0x215D, 5), "friction element 5, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor6 = (0x215D, 6), "friction element 6, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor7 = (0x215D, 7), "friction element 7, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor8 = (0x215D, 8), "friction element 8, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor9 = (0x215D, 9), "friction element 9, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
+    FrictionOnMotor10 = (0x215D, 10), "friction element 10, share of it on the motor's side, which winds nothing up", MILLIONTH, (0, 1_000_000), 0;
     VelocityLimit = (0x607F, 0), "velocity limit of the axis", MICROMETRE_PER_S, POSITIVE, 0;
     AccelerationLimit = (0x60C5, 0), "acceleration limit of the axis", MICROMETRE_PER_S2, POSITIVE, 0;
     SlowDownDeceleration = (0x6084, 0), "deceleration of the slow-down ramp", MICROMETRE_PER_S2, DECELERATION, 5_000_000;

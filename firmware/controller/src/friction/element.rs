@@ -14,6 +14,8 @@ pub struct Element {
     pub per_way: I8F24,
     /// Level at which it slips, µN·m; below 2²⁸.
     pub level_micro_nm: i32,
+    /// What of it is the table's, and winds the screw up.
+    pub table_micro_nm: i32,
 }
 
 /// Torque over level.
@@ -31,9 +33,11 @@ impl Element {
         Strain::wrapping_from_num(I35F29::from_bits(kept))
     }
 
-    /// Its torque, µN·m with 29 fractional bits: below 2⁵⁹, so that ten of them have room.
-    pub(super) fn torque(self, strain: Strain) -> i64 {
-        i64::from(self.level_micro_nm).wrapping_mul(i64::from(strain.to_bits()))
+    /// Its torque and what of it is the table's, µN·m with 29 fractional bits: below 2⁵⁹, so that
+    /// ten of them have room.
+    pub(super) fn torque(self, strain: Strain) -> [i64; 2] {
+        let of = |level: i32| i64::from(level).wrapping_mul(i64::from(strain.to_bits()));
+        [of(self.level_micro_nm), of(self.table_micro_nm)]
     }
 }
 

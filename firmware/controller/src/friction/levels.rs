@@ -29,6 +29,12 @@ impl Default for LevelCurve {
 }
 
 impl LevelCurve {
+    /// The factor at standstill.
+    pub(super) fn at_rest(&self) -> I8F24 {
+        let [first, ..] = self.factors;
+        first
+    }
+
     pub(super) fn at(&self, velocity: Velocity) -> I8F24 {
         // 20.12 times 8.24 bits: 28.36 bits. The whole part is the interval.
         let place = velocity

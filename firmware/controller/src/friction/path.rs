@@ -2,6 +2,7 @@
 
 use fixed::types::{I8F24, I20F12};
 
+use super::by_direction::ByDirection;
 use super::levels::LevelLag;
 use super::scaled;
 use crate::units::{Acceleration, Velocity};
@@ -60,6 +61,14 @@ impl Path {
         Self {
             on,
             back: Some(way.minus(on)),
+        }
+    }
+
+    /// The same as elements have it that differ by direction.
+    pub(super) fn by(self, direction: ByDirection) -> Self {
+        Self {
+            on: direction.way(self.on),
+            back: self.back.map(|back| direction.way(back)),
         }
     }
 
