@@ -57,6 +57,13 @@ impl Estimate {
         Self::about(self.value + times * other.value, half_width, &self.unit)
     }
 
+    /// The product with another one that errs apart from this one.
+    #[must_use]
+    pub fn times(&self, other: &Self, unit: &str) -> Self {
+        let half_width = (self.half_width() * other.value).hypot(self.value * other.half_width());
+        Self::about(self.value * other.value, half_width, unit)
+    }
+
     /// The share of another one that errs apart from this one.
     #[must_use]
     pub fn over(&self, other: &Self, unit: &str) -> Self {

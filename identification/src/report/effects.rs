@@ -23,6 +23,7 @@ use crate::evidence::thresholds::MOST_EFFECTS;
 use crate::model::effects::curve;
 use crate::model::effects::position_dependent_friction::knot_name;
 use crate::report::forms::Report;
+use crate::report::parameters::COULOMB_ASYMMETRY;
 
 /// Parameters by the name that a report gives them.
 type Table = BTreeMap<String, Estimate>;
@@ -38,7 +39,7 @@ pub(crate) struct Travel {
 
 /// The effects of a report.
 pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> {
-    let table = in_shares(&report.parameters.known, travel);
+    let table = in_shares(&used(report), travel);
     let mut effects = Vec::new();
     for name in EffectName::ALL {
         let each = (1..=MOST_TIMES).filter_map(|times| assemble(*name, times, &table));
@@ -46,6 +47,24 @@ pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> 
     }
     effects.extend(at_reversals(report));
     effects
+}
+
+/// What is between motor and load: where a record knows of it only that it is in some interval
+/// above zero, the middle of that is nearer than a screw that is rigid, and is used with that
+/// interval.
+const USED_AS_AN_INTERVAL: [&str; 3] = ["compliance_stiffness", "compliance_damping", LOAD_INERTIA];
+
+/// The parameters that are known, and those that are used though they are not.
+fn used(report: &Report) -> Table {
+    let mut table = report.parameters.known.clone();
+    for key in USED_AS_AN_INTERVAL {
+        let unknown = report.parameters.unknown.get(key);
+        if let Some(own) = unknown.filter(|own| own.low > 0.0) {
+            let (middle, half) = (0.5 * (own.low + own.high), 0.5 * (own.high - own.low));
+            table.insert(key.into(), Estimate::about(middle, half, &own.unit));
+        }
+    }
+    table
 }
 
 /// The most that one effect is found. One of them may have a size that nobody knows.
@@ -115,11 +134,20 @@ const BY_DIRECTION: [&str; 2] = [
 ];
 
 /// A fall or a drift that differs by direction says of an offset that it is an asymmetry of the
-/// friction.
+/// friction. Where the load's motion tells how large that is, the rest is a constant force.
 fn by_direction(table: &mut Table, coulomb: Option<&Estimate>) {
     let differs = BY_DIRECTION.map(|key| table.remove(key).is_some());
-    if differs.contains(&true) {
-        share(table, "offset", "coulomb_asymmetry", coulomb);
+    let told = table.get(COULOMB_ASYMMETRY).cloned();
+    if let (Some(told), Some(coulomb)) = (told, coulomb) {
+        // Whether friction of the motor's own side differs by direction as well, nobody says.
+        let on_motor = table.get("motor_coulomb").map_or(0.0, |own| own.value);
+        if let Some(offset) = table.get_mut("offset") {
+            let rest = offset.plus(-1.0, &told.times(coulomb, &offset.unit));
+            let half_width = rest.half_width().hypot(told.value * on_motor);
+            *offset = Estimate::about(rest.value, half_width, &rest.unit);
+        }
+    } else if differs.contains(&true) {
+        share(table, "offset", COULOMB_ASYMMETRY, coulomb);
     }
 }
 
@@ -221,7 +249,7 @@ fn at_reversals(report: &Report) -> Vec<Effect<Estimate>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::forms::{ParameterTable, RippleOrder, SlowRipple};
+    use crate::report::forms::{ParameterTable, RippleOrder, SlowRipple, UnknownParameter};
 
     const fn travel(middle: f64, half: f64) -> Travel {
         Travel {
@@ -273,6 +301,46 @@ mod tests {
                 (value - wanted).abs() < 1.0e-9 * wanted.abs(),
                 "{key} = {value}"
             );
+        }
+    }
+
+    #[test]
+    fn a_screw_of_which_only_an_interval_is_known_is_used_amid_it() {
+        let mut report = report(&[("coulomb", 100.0)]);
+        let unknown = |low: f64, unit: &str| UnknownParameter {
+            unknown: true,
+            unit: unit.into(),
+            low,
+            high: 9.0e7,
+            record: "",
+        };
+        let key = "compliance_stiffness";
+        let found = |report: &Report| effects(report, travel(0.0, 0.1)).len();
+        for (low, count) in [(-1.0, 1), (5.0e7, 2)] {
+            let own = unknown(low, "N/m");
+            report.parameters.unknown.insert(key.into(), own);
+            assert_eq!(found(&report), count);
+        }
+        let screw = only(&effects(&report, travel(0.0, 0.1)), EffectName::Compliance);
+        assert_near(&screw, &[(key, 7.0e7)]);
+        let other = unknown(1.0, "N");
+        report.parameters.unknown.insert("offset".into(), other);
+        assert_eq!(found(&report), 2);
+    }
+
+    #[test]
+    fn what_the_load_tells_of_an_offset_is_an_asymmetry_and_the_rest_a_force() {
+        let parameters = [
+            ("coulomb", 100.0),
+            ("offset", -20.0),
+            (COULOMB_ASYMMETRY, 0.15),
+        ];
+        for more in [&[][..], &[(BY_DIRECTION[1], 3.0)]] {
+            let parameters = [&parameters[..], more].concat();
+            let found = effects(&report(&parameters), travel(0.0, 0.1));
+            assert_near(&only(&found, EffectName::Offset), &[("offset", -35.0)]);
+            let asymmetry = only(&found, EffectName::CoulombAsymmetry);
+            assert_near(&asymmetry, &[(COULOMB_ASYMMETRY, 0.15)]);
         }
     }
 

@@ -25,6 +25,9 @@ use crate::report::ranking;
 /// What the vocabulary calls the deflection of a bristle.
 const DEFLECTION: &str = "presliding_deflection";
 
+/// What the vocabulary calls Coulomb friction by direction.
+pub(crate) const COULOMB_ASYMMETRY: &str = "coulomb_asymmetry";
+
 /// A parameter with its name.
 type Entry = (String, Estimate);
 
@@ -139,6 +142,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
     let deflection = told.motor_side.map(|motor| motor.deflection);
     own.extend(deflection.map(|deflection| ("motor_deflection", estimate(deflection, length))));
     own.extend(bristle_of_the_load(findings, told));
+    own.extend(asymmetry_of_the_load(findings, told));
     own.extend(sliding_of_the_load(findings, told));
     own
 }
@@ -160,6 +164,18 @@ fn bristle_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         .then(|| ("presliding_damping", estimate(damping, &unit)));
     let deflection = (DEFLECTION, estimate(told.deflection, length));
     [Some(deflection), damping].into_iter().flatten().collect()
+}
+
+/// By which share the Coulomb level differs by direction, where that is certain and the model has
+/// the constant force that goes with it.
+fn asymmetry_of_the_load(
+    findings: &Findings<'_>,
+    told: &ByTheLoad,
+) -> Option<(&'static str, Estimate)> {
+    let own = told.coulomb_asymmetry?;
+    let has_offset = findings.models.extended.fitted.of(EffectName::Offset);
+    let is_certain = own.value.abs() > WRONG_IN_FORM * own.half_width;
+    (is_certain && has_offset.is_some()).then(|| (COULOMB_ASYMMETRY, estimate(own, "")))
 }
 
 /// Friction of a load that slides. Along the travel the Coulomb level of the model is another one
@@ -189,7 +205,7 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     }
     own.push(("viscous", estimate(told.viscous, &damping)));
     let has_both = fitted.of(EffectName::ViscousAsymmetry).is_some();
-    let asymmetry = told.asymmetry.filter(|_| has_both);
+    let asymmetry = told.viscous_asymmetry.filter(|_| has_both);
     own.extend(asymmetry.map(|asymmetry| ("viscous_asymmetry", estimate(asymmetry, &damping))));
     own
 }

@@ -11,6 +11,7 @@ use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
 use crate::report::figures;
 use crate::report::forms::{ParameterTable, UnknownParameter};
+use crate::report::parameters::COULOMB_ASYMMETRY;
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
 mod beyond;
@@ -44,7 +45,13 @@ pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> V
     list.extend(is_vague.then(|| VAGUE_STIFFNESS.to_owned()));
     let fitted = &findings.models.extended.fitted;
     let found = findings.found.names();
-    list.extend(directions::of_an_offset(dataset, found, fitted));
+    let by_the_load = parameters.get(COULOMB_ASYMMETRY).map(|own| own.value);
+    list.extend(directions::of_an_offset(
+        dataset,
+        found,
+        fitted,
+        by_the_load,
+    ));
     list.extend(parameters.unknown.iter().map(of_an_unknown));
     list.extend(excitation::warnings(dataset, findings.motion));
     list

@@ -17,7 +17,7 @@ use super::linearised::Linearised;
 use super::load::{Carried, More, where_it_moves};
 use super::motor_side::{self, MotorSide, Stiffness};
 use super::refined::stepped;
-use super::rubbing::LoadFriction;
+use super::rubbing::{ALIKE, LoadFriction};
 use super::slipping;
 use crate::evidence::reversal::slip::Elements;
 use crate::evidence::thresholds::METHOD;
@@ -42,7 +42,9 @@ pub(crate) struct ByTheLoad {
     /// Viscous friction of both sides.
     pub viscous: Known,
     /// How much more of that it has forward than backward, halved, where that is told apart.
-    pub asymmetry: Option<Known>,
+    pub viscous_asymmetry: Option<Known>,
+    /// By which share the Coulomb level is higher forward and lower backward, where it is seen to.
+    pub coulomb_asymmetry: Option<Known>,
     /// Deflection of its bristle: Coulomb level over its stiffness.
     pub deflection: Known,
     /// Elements that slip, where they take the place of its bristle.
@@ -158,7 +160,10 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         more: carried.more,
         coulomb,
         viscous: known[Carried::VISCOUS].times(of_both),
-        asymmetry: (carried.more.by_direction).then(|| known[Carried::BY_DIRECTION].times(of_both)),
+        viscous_asymmetry: (carried.more.by_direction)
+            .then(|| known[Carried::BY_DIRECTION].times(of_both)),
+        coulomb_asymmetry: of_friction(friction.forward.into(), LoadFriction::FORWARD)
+            .map(|forward| Known::new(forward.value - f64::from(ALIKE), forward.half_width)),
         deflection,
         elements: None,
         bristle_damping: (bent.times(deflection.inverse())).within_share(unlike),
@@ -197,7 +202,8 @@ impl ByTheLoad {
             more: self.more,
             coulomb: known(self.coulomb),
             viscous: known(self.viscous),
-            asymmetry: self.asymmetry.map(known),
+            viscous_asymmetry: self.viscous_asymmetry.map(known),
+            coulomb_asymmetry: self.coulomb_asymmetry,
             deflection: known(self.deflection),
             elements: self.elements,
             bristle_damping: known(self.bristle_damping),
@@ -224,7 +230,8 @@ impl ByTheLoad {
             pair.map_or(own, |(own, other)| Some(own.beside(other)))
         };
         Self {
-            asymmetry: both(self.asymmetry, other.asymmetry),
+            viscous_asymmetry: both(self.viscous_asymmetry, other.viscous_asymmetry),
+            coulomb_asymmetry: both(self.coulomb_asymmetry, other.coulomb_asymmetry),
             damping: self.damping.beside(other.damping),
             mass: self.mass.beside(other.mass),
             coulomb: self.coulomb.beside(other.coulomb),

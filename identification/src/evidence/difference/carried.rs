@@ -15,7 +15,7 @@ use super::flanks::Balance;
 use super::is_clear;
 use super::load::{Carried, LoadMotion, More};
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::{Law, LoadFriction};
+use super::rubbing::{ALIKE, Law, LoadFriction};
 use super::slipping::by_another_law;
 use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::rows::Rows;
@@ -78,6 +78,7 @@ fn start(unit: f64, left: &(dyn Fn(LoadFriction) -> f64 + Sync)) -> LoadFriction
             velocity: velocity * unit,
             lag_s: 0.0,
             exponent: GAUSS,
+            forward: ALIKE,
             law: Law::Dahl,
         })
     };
@@ -142,7 +143,7 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64, enough: f64) -
 /// Whether the effort has a wind-up in it: as well as each of its parts were it free.
 fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
     let fitted = apart.fit(ways);
-    let Some((way, own)) = fitted.at(place) else {
+    let Some((way @ Way::Carried(carried), own)) = fitted.at(place) else {
         return false;
     };
     if own[Carried::MASS] <= 0.0 || own[Carried::FRICTION] <= 0.0 {
@@ -150,7 +151,9 @@ fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
     }
     let balance = Balance::of(apart);
     let free = balance.left_by_all(&apart.columns(way));
-    let tied = balance.left_by(&apart.predicted(way, own));
+    let motor = LoadMotion::of_motor(apart.motion, apart.path.position, 0.0);
+    let bend = motor.rubbed(apart.motion, carried.friction).swap_remove(0);
+    let tied = balance.left_by(&apart.predicted(way, own), &bend);
     free >= TIED_PART * tied
 }
 
@@ -170,6 +173,7 @@ pub(super) mod tests {
         velocity: 4.0e-3,
         lag_s: 0.0,
         exponent: GAUSS,
+        forward: ALIKE,
         law: Law::Dahl,
     };
     pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;

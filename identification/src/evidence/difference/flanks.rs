@@ -137,15 +137,24 @@ impl<'a> Balance<'a> {
         self.blocks(&self.at_efforts(columns)).fit().sse
     }
 
-    /// The same of one column, that of the wind-up. Friction of the motor's own side only holds
-    /// back: where it would have to push, there is none.
-    pub(super) fn left_by(&self, wound: &[f64]) -> f64 {
+    /// The same of one column, that of the wind-up, beside friction of the motor's own side that is
+    /// rigid or bends like this, whichever leaves less. It only holds back: where it would have to
+    /// push, there is none.
+    pub(super) fn left_by(&self, wound: &[f64], bend: &[f64]) -> f64 {
         let held = [self.held(|row| wound[row])];
-        let fit = self.blocks(&held).fit();
-        if fit.coefficients[OWN_FRICTION] >= 0.0 {
-            return fit.sse;
-        }
-        self.blocks_beside(&OWN_WITHOUT_COULOMB, &held).fit().sse
+        let rigid = self.blocks(&held).fit();
+        let bent = self.at_efforts(&[wound.to_vec(), bend.to_vec()]);
+        let bent = self.blocks_beside(&OWN_WITHOUT_COULOMB, &bent).fit();
+        let holds_back = [
+            (rigid.coefficients.get(OWN_FRICTION), rigid.sse),
+            (bent.coefficients.last(), bent.sse),
+        ];
+        let left = holds_back
+            .into_iter()
+            .filter(|(own, _)| own.is_some_and(|own| *own >= 0.0))
+            .map(|(_, sse)| sse)
+            .min_by(f64::total_cmp);
+        left.unwrap_or_else(|| self.blocks_beside(&OWN_WITHOUT_COULOMB, &held).fit().sse)
     }
 
     /// Columns of what is wound up, between flanks or without a gap: its rate in contact, itself.

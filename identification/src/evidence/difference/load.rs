@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
-use super::rubbing::{Law, LoadFriction};
+use super::rubbing::{ALIKE, Law, LoadFriction};
 use crate::model::effects::stribeck::GAUSS;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
@@ -216,10 +216,11 @@ impl Carried {
             law,
             lag_s,
             exponent,
+            forward,
             ..
         } = self.friction;
-        let falls_as_usual = lag_s == 0.0 && exponent == GAUSS;
-        law == Law::Dahl && falls_as_usual && self.more == More::default()
+        let is_usual = lag_s == 0.0 && exponent == GAUSS && forward == ALIKE;
+        law == Law::Dahl && is_usual && self.more == More::default()
     }
 
     /// The load's motion on a record.

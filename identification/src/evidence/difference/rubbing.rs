@@ -6,6 +6,9 @@
 //! z = Σ shareᵢ zᵢ     dzᵢ/dx2 = 1/δᵢ within ±g     Σ shareᵢ/δᵢ = 1/δ
 //! ```
 //!
+//! Levels may differ by direction: g is then (1 ± a) times as high, and a bristle comes to it
+//! within as much longer a way.
+//!
 //! Units: m or rad, s.
 
 use super::between_rows::Steps;
@@ -54,12 +57,19 @@ pub(crate) struct LoadFriction {
     pub lag_s: f64,
     /// Exponent p of the fall: 2 with Gauss.
     pub exponent: f64,
+    /// Level forward, 1 + a, where that of both directions is one: [`ALIKE`] where it is the same.
+    /// In single precision as the elements are.
+    pub forward: f32,
     /// How the force builds up.
     pub law: Law,
 }
 
+/// Level forward where it is the same either way.
+pub(super) const ALIKE: f32 = 1.0;
 /// Range of an exponent that is searched.
 const EXPONENTS: (f64, f64) = (0.4, 2.5);
+/// Range of a level forward that is searched.
+const FORWARD: (f64, f64) = (0.1, 1.9);
 
 /// What is left of the rise along a path.
 #[derive(Clone, Copy)]
@@ -94,31 +104,41 @@ impl Left {
 }
 
 impl LoadFriction {
-    /// Most quantities that are searched: deflection, rise, velocity, lag, exponent.
-    pub(super) const MOST_SEARCHED: usize = 5;
+    /// Most quantities that are searched: deflection, rise, velocity, lag, exponent, level forward.
+    pub(super) const MOST_SEARCHED: usize = 6;
     /// Place of the lag among them.
     pub(super) const LAG: usize = 3;
     /// Place of the exponent.
     pub(super) const EXPONENT: usize = 4;
+    /// Place of the level forward.
+    pub(super) const FORWARD: usize = 5;
 
-    /// Places of those that are: the lag and the exponent where they are not the usual ones.
+    /// Places of those that are: the last three where they are not the usual ones.
     pub(super) fn searched(self) -> Vec<usize> {
         let lag = (self.lag_s > 0.0).then_some(Self::LAG);
         let exponent = (self.exponent != GAUSS).then_some(Self::EXPONENT);
-        (0..Self::LAG).chain(lag).chain(exponent).collect()
+        let forward = (self.forward != ALIKE).then_some(Self::FORWARD);
+        let unusual = lag.into_iter().chain(exponent).chain(forward);
+        (0..Self::LAG).chain(unusual).collect()
     }
 
     /// The same with each of them times a factor.
     pub(super) fn scaled(self, factors: [f64; Self::MOST_SEARCHED]) -> Self {
-        let [deflection, rise, velocity, lag, exponent] = factors;
+        let [deflection, rise, velocity, lag, exponent, forward] = factors;
         Self {
             deflection: self.deflection * deflection,
             rise: self.rise * rise,
             velocity: self.velocity * velocity,
             lag_s: self.lag_s * lag,
             exponent: (self.exponent * exponent).clamp(EXPONENTS.0, EXPONENTS.1),
+            forward: (f64::from(self.forward) * forward).clamp(FORWARD.0, FORWARD.1) as f32,
             law: self.law,
         }
+    }
+
+    /// The level of a step's direction, in those of both.
+    fn towards(self, step: f64) -> f64 {
+        f64::from(ALIKE) + f64::from(self.forward - ALIKE) * step.signum()
     }
 
     /// Travel after which it is no matter how far all was bent at the start.
@@ -175,7 +195,7 @@ impl LoadFriction {
         let mut sum = vec![0.0; path.len()];
         let levels = self.levels(path);
         for (at, share) in self.elements() {
-            let own = element(path, &levels, at);
+            let own = self.element(path, &levels, at);
             sum.iter_mut()
                 .zip(own)
                 .for_each(|(sum, own)| *sum += share * own);
@@ -187,6 +207,7 @@ impl LoadFriction {
         let (mut bend, mut left) = (0.0_f64, Left::along(self, path));
         path.followed(|step, velocity| {
             let [level, _] = left.levels(velocity);
+            let level = level * self.towards(step);
             if step != 0.0 {
                 bend = level * bend_after(bend / level, step, self.deflection * level);
             }
@@ -197,7 +218,9 @@ impl LoadFriction {
     /// Bends of elements that slip after such ways, in Coulomb levels.
     pub(super) fn bends(self, path: &Steps, at: &[f64]) -> Vec<Vec<f64>> {
         let levels = self.levels(path);
-        at.iter().map(|at| element(path, &levels, *at)).collect()
+        at.iter()
+            .map(|at| self.element(path, &levels, *at))
+            .collect()
     }
 
     /// Levels at the end of each part of each row, in Coulomb levels: they are the same for all
@@ -211,18 +234,19 @@ impl LoadFriction {
         });
         levels
     }
-}
 
-/// Bend of one element that slips after a way under such levels, in Coulomb levels.
-fn element(path: &Steps, levels: &[f64], at: f64) -> Vec<f64> {
-    let (mut bend, mut levels) = (0.0_f64, levels.iter());
-    path.followed(|step, _| {
-        let level = levels.next().copied().unwrap_or(1.0);
-        if step != 0.0 {
-            bend = (bend + step / at).clamp(-level, level);
-        }
-        bend
-    })
+    /// Bend of one element that slips after a way under such levels, in Coulomb levels.
+    fn element(self, path: &Steps, levels: &[f64], at: f64) -> Vec<f64> {
+        let [up, down] = [1.0, -1.0].map(|step| self.towards(step));
+        let (mut bend, mut levels) = (0.0_f64, levels.iter());
+        path.followed(|step, _| {
+            let level = levels.next().copied().unwrap_or(1.0);
+            if step != 0.0 {
+                bend = (bend + step / at).clamp(-level * down, level * up);
+            }
+            bend
+        })
+    }
 }
 
 #[cfg(test)]
@@ -235,6 +259,7 @@ mod tests {
         velocity: 1.0,
         lag_s: 0.0,
         exponent: GAUSS,
+        forward: ALIKE,
         law: Law::Dahl,
     };
 
@@ -245,7 +270,7 @@ mod tests {
             .unwrap();
         // 0.75/2 + 0.25/8.
         assert!((1.0 / slipping.deflection - 0.40625).abs() < 1.0e-12);
-        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0, 1.0]).elements();
+        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]).elements();
         for (element, wanted) in twice.iter().zip([(4.0, 0.75), (16.0, 0.25)]) {
             assert!((element.0 - wanted.0).abs() < 1.0e-5, "{element:?}");
             assert!((element.1 - wanted.1).abs() < 1.0e-6, "{element:?}");

@@ -9,7 +9,7 @@ use super::is_clear;
 use super::linearised::Linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
-use super::rubbing::LoadFriction;
+use super::rubbing::{ALIKE, LoadFriction};
 use crate::evidence::reversal::slip::{Elements, grid_about};
 use crate::fit::blocks::{Blocks, Gain};
 use crate::model::effects::geometric;
@@ -32,76 +32,93 @@ const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 const LAGS: (f64, f64, u32) = (5.0e-4, 6.4e-2, 8);
 /// Exponents of its fall that are tried.
 const EXPONENTS: [f64; 5] = [0.5, 0.75, 1.0, 1.25, 1.5];
+/// Levels forward that are tried, in those of both directions: steps go on from there.
+const FORWARD: [f32; 2] = [0.95, 1.05];
 
 /// The same ways with a wind-up whose friction has another law than a bristle alone, where that
-/// leaves less on held-out blocks. A lag or an exponent that is not needed beside the rest goes
-/// again.
+/// leaves less on held-out blocks. A lag, an exponent or a level of its own forward that is not
+/// needed beside the rest goes again.
 pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
     let apart = &apart.without_strikes(&ways);
-    let ways = falling_otherwise(apart, ways, place);
+    let ways = levelled_otherwise(apart, ways, place);
     let ways = with_elements_and_more(apart, ways, place);
-    let usual = [Fall::Lag(0.0), Fall::Exponent(GAUSS)].into_iter();
-    usual.fold(ways, |ways, usual| {
-        let plain = with_fall(apart, &ways, place, usual);
+    let usual = [
+        Level::Lag(0.0),
+        Level::Exponent(GAUSS),
+        Level::Forward(ALIKE),
+    ];
+    usual.into_iter().fold(ways, |ways, usual| {
+        let plain = with_level(apart, &ways, place, usual);
         plain
             .filter(|plain| !is_better(apart, plain, &ways))
             .unwrap_or(ways)
     })
 }
 
-/// How the level falls.
+/// What a level does beside falling.
 #[derive(Clone, Copy)]
-enum Fall {
-    /// With such a lag, s.
+enum Level {
+    /// It falls with such a lag, s.
     Lag(f64),
-    /// By such an exponent.
+    /// It falls by such an exponent.
     Exponent(f64),
+    /// It is so high forward.
+    Forward(f32),
 }
 
-/// The same ways with another lag and another exponent of the falling level, the one that leaves
-/// less first.
-fn falling_otherwise(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
+/// The same ways with another lag and another exponent of the falling level, and another level
+/// forward, the one that leaves least first.
+fn levelled_otherwise(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
     while let Some(better) =
-        with_another_fall(apart, &ways, place).filter(|better| is_better(apart, &ways, better))
+        with_another_level(apart, &ways, place).filter(|better| is_better(apart, &ways, better))
     {
         ways = better;
     }
     ways
 }
 
-/// The same ways with the lag or the exponent of the falling level that leaves least, of what it
-/// has not yet.
-fn with_another_fall(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
-    let LoadFriction {
-        lag_s, exponent, ..
-    } = carried(ways, place)?.friction;
+/// The same ways with the lag, the exponent or the level forward that leaves least, of what it has
+/// not yet.
+fn with_another_level(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let own = carried(ways, place)?.friction;
     let (from, to, count) = LAGS;
-    let lags = geometric(from, to, count).into_iter().map(Fall::Lag);
-    let exponents = EXPONENTS.into_iter().map(Fall::Exponent);
-    let lags = lags.filter(|_| lag_s == 0.0);
-    let tried = lags.chain(exponents.filter(|_| exponent == GAUSS));
-    let tried = tried.filter_map(|fall| {
-        let changed = with_fall(apart, ways, place, fall)?;
+    let lags = geometric(from, to, count).into_iter().map(Level::Lag);
+    let exponents = EXPONENTS.into_iter().map(Level::Exponent);
+    let forward = FORWARD.into_iter().map(Level::Forward);
+    let lags = lags.filter(|_| own.lag_s == 0.0);
+    let exponents = exponents.filter(|_| own.exponent == GAUSS);
+    let forward = forward.filter(|_| own.forward == ALIKE);
+    let tried = lags.chain(exponents).chain(forward).filter_map(|level| {
+        let changed = with_level(apart, ways, place, level)?;
         Some((apart.blocks(&changed).fit().sse, changed))
     });
     let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, changed)| changed)
 }
 
-/// The same ways with a level that falls otherwise; `None` where it does not fall, or so already.
-fn with_fall(apart: &Apart<'_>, ways: &[Way], place: usize, fall: Fall) -> Option<Vec<Way>> {
+/// The same ways with such a level; `None` where it is so already, or would fall otherwise and does
+/// not fall.
+fn with_level(apart: &Apart<'_>, ways: &[Way], place: usize, level: Level) -> Option<Vec<Way>> {
     let own = carried(ways, place)?;
-    let friction = match fall {
-        Fall::Lag(lag_s) => LoadFriction {
-            lag_s,
-            ..own.friction
-        },
-        Fall::Exponent(exponent) => LoadFriction {
-            exponent,
-            ..own.friction
-        },
+    let friction = own.friction;
+    let (friction, falls) = match level {
+        Level::Lag(lag_s) => (LoadFriction { lag_s, ..friction }, true),
+        Level::Exponent(exponent) => (
+            LoadFriction {
+                exponent,
+                ..friction
+            },
+            true,
+        ),
+        Level::Forward(forward) => (
+            LoadFriction {
+                forward,
+                ..friction
+            },
+            false,
+        ),
     };
-    (friction != own.friction && friction.rise > 0.0).then(|| {
+    (friction != own.friction && (friction.rise > 0.0 || !falls)).then(|| {
         let changed = instead(ways, place, Carried { friction, ..own });
         stepped(apart, changed, place)
     })
@@ -147,7 +164,7 @@ fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Wa
         let changed = instead(ways, place, Carried { more, ..carried });
         stepped(apart, between_refined_flanks(apart, changed), place)
     });
-    let falling = std::iter::once_with(|| with_another_fall(apart, ways, place));
+    let falling = std::iter::once_with(|| with_another_level(apart, ways, place));
     let mut changed = changed.chain(falling.flatten());
     changed.find(|changed| is_better(apart, ways, changed))
 }
@@ -274,6 +291,22 @@ mod tests {
             assert!((found.exponent / exponent - 1.0).abs() < 0.1, "{found:?}");
             assert!((found.lag_s - lag_s).abs() <= 0.1 * lag_s, "{found:?}");
             assert!((found.rise / 0.4 - 1.0).abs() < 0.1, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_level_that_differs_by_direction_is_found_for_bristles_and_elements() {
+        let at = [4.0e-6, 20.0e-6, 60.0e-6];
+        let slips = FRICTION.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
+        for (friction, forward) in [(FRICTION, 1.12), (FRICTION, 0.9), (slips, 0.88)] {
+            let truth = LoadFriction {
+                forward,
+                ..friction
+            };
+            let axis = rubbed(truth, 0.0, |_| 0.0);
+            let ways = carried_instead(&apart(&axis), &WAYS, UNIT, 0.0).unwrap();
+            let found = carried(&ways, 1).unwrap().friction;
+            assert!((found.forward - forward).abs() < 0.01, "{found:?}");
         }
     }
 

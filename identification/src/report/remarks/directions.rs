@@ -12,17 +12,19 @@ const SAME_FORCE: &str = "offset and coulomb_asymmetry are the same force (a con
                           as in motion): no record tells them apart, and offset stands for both";
 
 /// What an offset may be: only friction that falls or drifts by direction tells an asymmetry from a
-/// force.
+/// force, and the motion of a load, which says how large it is.
 pub(super) fn of_an_offset(
     dataset: &Dataset,
     found: &[EffectName],
     fitted: &Fitted,
+    by_the_load: Option<f64>,
 ) -> Option<String> {
     let has = |name: EffectName| found.contains(&name) || dataset.declares(name);
     if !has(Offset) && !has(CoulombAsymmetry) {
         return None;
     }
-    let Some((what_differs, share)) = share_by_direction(fitted) else {
+    let by_the_load = by_the_load.map(|share| ("load's friction about reversals", share));
+    let Some((what_differs, share)) = by_the_load.or_else(|| share_by_direction(fitted)) else {
         return Some(SAME_FORCE.to_owned());
     };
     let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
@@ -67,7 +69,7 @@ mod tests {
                 Fitted::new(usual.with_form(2, form), &[100.0, offset, 50.0, size])
             }
         };
-        of_an_offset(&dataset, &[Offset], &fitted)
+        of_an_offset(&dataset, &[Offset], &fitted, None)
     }
 
     #[test]
@@ -78,9 +80,22 @@ mod tests {
             .with(found(FrictionDrift, 3.0))
             .with_form(2, drift);
         let fitted = Fitted::new(model, &[100.0, 25.0, -40.0, 1.0, -10.0]);
-        let said = of_an_offset(&dataset, &[Offset], &fitted).unwrap();
+        let said = of_an_offset(&dataset, &[Offset], &fitted, None).unwrap();
         assert!(
             said.starts_with("offset is coulomb_asymmetry: the friction drift"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn a_load_that_turns_over_otherwise_each_way_tells_an_asymmetry() {
+        let dataset = axis(usual).dataset;
+        let fitted = Fitted::new(model(&[Coulomb, Offset]), &[100.0, 12.0]);
+        let said = of_an_offset(&dataset, &[Offset], &fitted, Some(0.11)).unwrap();
+        assert!(
+            said.starts_with("offset is coulomb_asymmetry: the load's friction about reversals")
+                && said.contains("+11 %")
+                && said.contains("+12 %"),
             "{said}"
         );
     }
