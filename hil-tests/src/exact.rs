@@ -5,38 +5,27 @@
 use std::f64::consts::TAU;
 
 use axis_model::{
-    Compliance, Coulomb, Effect, Estimate, Inertia, Presliding, Stribeck, TorqueRipple, Viscous,
-    ViscousAsymmetry,
+    Backlash, Compliance, Coulomb, CoulombAsymmetry, Effect, Estimate, Inertia, Presliding,
+    Stribeck, TorqueRipple, Viscous, ViscousAsymmetry,
 };
 use plant_sim::friction::{Law, Sliding};
 use plant_sim::machine::MachineAxis;
-use workbench::compensation::{AxisCompensation, Compensation, Model};
+use workbench::compensation::{AxisCompensation, Compensation};
 use workbench::model_file::{Known, MotorSide};
 use workbench::tuning::friction_model;
+use workbench::tuning::springs::{Spring, Springs};
 
 /// The compensation of an axis; none where it has no friction. Friction over position is not in it.
 #[must_use]
 pub fn model(axis: &MachineAxis, period_s: f64) -> AxisCompensation {
     let known = Known::of_machine(axis, period_s);
-    let model = friction_model::of_effects(&known, &effects(axis), &elements(axis));
-    let model = model.map(|model| match bristle_of_motor(axis) {
-        Some(motor) => friction_model::beside_motor(&model, motor),
-        None => Model {
-            table_share: table_share(axis),
-            ..model
-        },
-    });
+    let (slipping, motor) = (slipping(axis), bristle_of_motor(axis));
+    let model = friction_model::of_effects(&known, &effects(axis), slipping, motor);
     let model = model.map(|model| Compensation::Model(Box::new(model)));
     AxisCompensation {
         reversal: model.unwrap_or_default(),
         backlash_m: 0.0,
     }
-}
-
-fn table_share(axis: &MachineAxis) -> f64 {
-    let motor = axis.actual.motor_side.as_ref();
-    let motor_n = motor.map_or(0.0, |own| own.sliding.coulomb_n);
-    1.0 - motor_n / coulomb_n(axis).max(motor_n)
 }
 
 /// The motor's friction beside that of the table, where both are bristles.
@@ -50,7 +39,7 @@ fn bristle_of_motor(axis: &MachineAxis) -> Option<MotorSide> {
     let of_table_m = deflection_m(&axis.actual.sliding, &axis.actual.law)?;
     Some(MotorSide {
         coulomb_n: own.sliding.coulomb_n,
-        share: 1.0 - table_share(axis),
+        share: own.sliding.coulomb_n / coulomb_n(axis),
         deflection: own_m / of_table_m,
     })
 }
@@ -103,6 +92,9 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
         Effect::Viscous(Viscous {
             viscous: known(of_both(axis, |sliding, _| sliding.viscous_n_s_per_m)),
         }),
+        Effect::CoulombAsymmetry(CoulombAsymmetry {
+            coulomb_asymmetry: known(sliding.coulomb_asymmetry),
+        }),
         Effect::ViscousAsymmetry(ViscousAsymmetry {
             viscous_asymmetry: known(sliding.viscous_asymmetry),
         }),
@@ -117,6 +109,14 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
             damping: Some(known(mechanics.screw_damping_n_s_per_m)),
         }),
     ];
+    if mechanics.backlash_m > 0.0 {
+        effects.push(Effect::Backlash(Backlash {
+            gap: known(mechanics.backlash_m),
+            motor_friction: None,
+            restitution: None,
+            load_share: None,
+        }));
+    }
     if stiffness_n_per_m > 0.0 {
         effects.push(Effect::Presliding(Presliding {
             deflection: known(sliding.coulomb_n / stiffness_n_per_m),
@@ -145,10 +145,9 @@ fn ripple(own: &TorqueRipple<f64>) -> TorqueRipple<Estimate> {
     }
 }
 
-/// Shares and ways from rest of Maxwell slip.
-fn elements(axis: &MachineAxis) -> Vec<(f64, f64)> {
-    let all_n = coulomb_n(axis);
-    let of_side = |(sliding, law): (&Sliding, &Law)| {
+/// Springs of Maxwell slip, where the axis has such.
+fn slipping(axis: &MachineAxis) -> Option<Springs> {
+    let of_side = |(sliding, law): &(&Sliding, &Law)| {
         let Law::MaxwellSlip {
             stiffness_n_per_m,
             share,
@@ -156,12 +155,23 @@ fn elements(axis: &MachineAxis) -> Vec<(f64, f64)> {
         else {
             return Vec::new();
         };
-        let level_n = sliding.coulomb_n;
-        let pairs = share.iter().zip(stiffness_n_per_m);
-        let element = |(share, stiffness): (&f64, &f64)| {
-            (share * level_n / all_n, share * level_n / stiffness)
+        let spring = |(share, stiffness): (&f64, &f64)| {
+            let level_n = share * sliding.coulomb_n;
+            Spring {
+                level_n,
+                way_m: level_n / stiffness,
+            }
         };
-        pairs.map(element).collect()
+        share.iter().zip(stiffness_n_per_m).map(spring).collect()
     };
-    sides(axis).into_iter().flat_map(of_side).collect()
+    let mut each = sides(axis)
+        .iter()
+        .map(of_side)
+        .collect::<Vec<_>>()
+        .into_iter();
+    let springs = Springs {
+        table: each.next().unwrap_or_default(),
+        motor: each.next().unwrap_or_default(),
+    };
+    (springs != Springs::default()).then_some(springs)
 }

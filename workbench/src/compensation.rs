@@ -20,11 +20,13 @@ pub const LEVELS: usize = Parameter::LEVEL_FACTORS.len();
 pub const SLOPES_PER_M: RangeInclusive<f64> = -700.0..=700.0;
 /// And of its bend, per m².
 pub const BENDS_PER_M2: RangeInclusive<f64> = -2000.0..=2000.0;
+/// And of the share by which ways are longer one way, shorter the other.
+pub const WAY_ASYMMETRIES: RangeInclusive<f64> = -0.9..=0.9;
 /// And of the period of a ripple, m.
 pub const PERIODS_M: RangeInclusive<f64> = 1.0e-6..=0.2;
 /// Ways after which an element may slip, m.
-const SHORTEST_SLIP_M: f64 = 1.0e-9;
-const LONGEST_SLIP_M: f64 = 1.0e-3;
+pub(crate) const SHORTEST_SLIP_M: f64 = 1.0e-9;
+pub(crate) const LONGEST_SLIP_M: f64 = 1.0e-3;
 
 /// The paper's pulse in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +57,9 @@ pub struct Model {
     pub level_n: [f64; ELEMENTS],
     /// Ways after which they slip, m.
     pub slip_m: [f64; ELEMENTS],
+    /// Shares of them that are of the motor's own side, which winds nothing up.
+    #[serde(default)]
+    pub motor_share: [f64; ELEMENTS],
     /// Factors on the levels at speeds from standstill to the span.
     pub factor: [f64; LEVELS],
     /// Speed of the last factor.
@@ -65,11 +70,17 @@ pub struct Model {
     pub lag_s: f64,
     /// Viscous friction.
     pub viscous_n_s_per_m: f64,
-    /// Stiffness of the screw that the friction of the table winds up.
+    /// Stiffness of the screw that friction of the table winds up.
     pub stiffness_n_per_m: f64,
-    /// Share of the friction that is the table's: that of the motor's own side winds nothing up.
-    #[serde(default = "whole")]
-    pub table_share: f64,
+    /// Gap behind the motor, m; zero: none.
+    #[serde(default)]
+    pub gap_m: f64,
+    /// Force within which it is crossed, to either side.
+    #[serde(default = "crossing_force_n")]
+    pub gap_force_n: f64,
+    /// What of the inertia is behind the gap.
+    #[serde(default)]
+    pub table_mass_kg: f64,
     /// What of the inertia is the motor's.
     pub motor_inertia_kg: f64,
     /// From the begin of its cycle until the torque acts as friction does.
@@ -90,14 +101,20 @@ pub struct Model {
     /// How much more viscous friction there is forward than backward, halved.
     #[serde(default)]
     pub viscous_asymmetry_n_s_per_m: f64,
+    /// How much higher levels are forward than backward, halved.
+    #[serde(default)]
+    pub level_asymmetry_n: f64,
+    /// By which share elements slip after a longer way forward, and after a shorter one backward.
+    #[serde(default)]
+    pub way_asymmetry: f64,
     /// Ripple of the force.
     #[serde(default)]
     pub ripple: [Ripple; RIPPLES],
 }
 
-/// All friction is the table's where no file says otherwise.
-const fn whole() -> f64 {
-    1.0
+/// A force within which a gap is crossed, where no file says otherwise.
+const fn crossing_force_n() -> f64 {
+    50.0
 }
 
 /// Waves of the force over the position that the drive has.
@@ -141,6 +158,18 @@ impl Model {
         self.level_n.iter().sum()
     }
 
+    /// Share of that which is of the motor's own side.
+    #[must_use]
+    pub fn on_motor(&self) -> f64 {
+        let pairs = self.level_n.iter().zip(&self.motor_share);
+        let motor_n: f64 = pairs.map(|(level_n, share)| level_n * share).sum();
+        if motor_n > 0.0 {
+            motor_n / self.level_n()
+        } else {
+            0.0
+        }
+    }
+
     /// The same with all levels times a factor, and springs as stiff as before.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
@@ -148,6 +177,7 @@ impl Model {
         Self {
             level_n: self.level_n.map(|level_n| factor * level_n),
             slip_m: self.slip_m.map(slip_m),
+            level_asymmetry_n: factor * self.level_asymmetry_n,
             ..*self
         }
     }
@@ -156,13 +186,16 @@ impl Model {
     pub const OFF: Self = Self {
         level_n: [0.0; ELEMENTS],
         slip_m: [1.0e-5; ELEMENTS],
+        motor_share: [0.0; ELEMENTS],
         factor: [1.0; LEVELS],
         span_m_per_s: 0.0,
         lag_m: 0.0,
         lag_s: 0.0,
         viscous_n_s_per_m: 0.0,
         stiffness_n_per_m: f64::INFINITY,
-        table_share: whole(),
+        gap_m: 0.0,
+        gap_force_n: crossing_force_n(),
+        table_mass_kg: 0.0,
         motor_inertia_kg: 0.0,
         ahead_s: 0.0,
         damping_s: 0.0,
@@ -171,6 +204,8 @@ impl Model {
         bend_per_m2: 0.0,
         self_tuning: 0.0,
         viscous_asymmetry_n_s_per_m: 0.0,
+        level_asymmetry_n: 0.0,
+        way_asymmetry: 0.0,
         ripple: [Ripple::NONE; RIPPLES],
     };
 }
@@ -334,54 +369,75 @@ fn check_pulse(pulse: Pulse) -> Result<(), Wrong> {
     )
 }
 
+/// Whether each of some values lies in a range.
+fn each(
+    key: &'static str,
+    wanted: &'static str,
+    values: &[f64],
+    range: RangeInclusive<f64>,
+) -> Result<(), Wrong> {
+    let wrong = values.iter().find(|value| !range.contains(*value));
+    wrong.map_or(Ok(()), |value| Err(Wrong(key, wanted, *value)))
+}
+
 fn check_model(model: &Model) -> Result<(), Wrong> {
-    let each = |key, wanted, values: &[f64], range: std::ops::RangeInclusive<f64>| {
-        let wrong = values.iter().find(|value| !range.contains(*value));
-        wrong.map_or(Ok(()), |value| Err(Wrong(key, wanted, *value)))
-    };
-    each("level_n", "0 to 1e6 N", &model.level_n, 0.0..=1.0e6)?;
     let slips_m = SHORTEST_SLIP_M..=LONGEST_SLIP_M;
+    each("level_n", "0 to 1e6 N", &model.level_n, 0.0..=1.0e6)?;
     each("slip_m", "1e-9 to 1e-3 m", &model.slip_m, slips_m)?;
+    each("motor_share", "0 to 1", &model.motor_share, 0.0..=1.0)?;
+    each("ahead_s", "0 to 0.1 s", &[model.ahead_s], 0.0..=0.1)?;
+    each("damping_s", "0 to 0.1 s", &[model.damping_s], 0.0..=0.1)?;
+    each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)?;
+    check_levels(model)?;
+    check_screw(model)?;
+    check_ripple(&model.ripple)
+}
+
+fn check_levels(model: &Model) -> Result<(), Wrong> {
     each("factor", "0 to 3.9", &model.factor, 0.0..=3.9)?;
     let [span, viscous] = [model.span_m_per_s, model.viscous_n_s_per_m];
     each("span_m_per_s", "0 to 10 m/s", &[span], 0.0..=10.0)?;
-    each(
-        "viscous_n_s_per_m",
-        "0 to 1e7 N s/m",
-        &[viscous],
-        0.0..=1.0e7,
-    )?;
+    let wanted = "0 to 1e7 N s/m";
+    each("viscous_n_s_per_m", wanted, &[viscous], 0.0..=1.0e7)?;
     each("lag_m", "0 to 1e-3 m", &[model.lag_m], 0.0..=1.0e-3)?;
     each("lag_s", "0 to 1 s", &[model.lag_s], 0.0..=1.0)?;
+    let (slope, bend) = (model.slope_per_m, model.bend_per_m2);
+    each("slope_per_m", "-700 to 700 /m", &[slope], SLOPES_PER_M)?;
+    each("bend_per_m2", "-2000 to 2000 /m2", &[bend], BENDS_PER_M2)?;
+    let (wanted, viscous) = ("-1e7 to 1e7 N s/m", model.viscous_asymmetry_n_s_per_m);
+    each(
+        "viscous_asymmetry_n_s_per_m",
+        wanted,
+        &[viscous],
+        -1.0e7..=1.0e7,
+    )?;
+    let (wanted, level) = ("-1e6 to 1e6 N", model.level_asymmetry_n);
+    each("level_asymmetry_n", wanted, &[level], -1.0e6..=1.0e6)?;
+    let way = model.way_asymmetry;
+    each("way_asymmetry", "-0.9 to 0.9", &[way], WAY_ASYMMETRIES)
+}
+
+fn check_screw(model: &Model) -> Result<(), Wrong> {
     let stiffness = model.stiffness_n_per_m;
     expect(
         stiffness > 0.0,
         Wrong("stiffness_n_per_m", "above zero", stiffness),
     )?;
-    each("table_share", "0 to 1", &[model.table_share], 0.0..=1.0)?;
-    let inertia = model.motor_inertia_kg;
-    each("motor_inertia_kg", "0 to 1e6 kg", &[inertia], 0.0..=1.0e6)?;
-    each("ahead_s", "0 to 0.1 s", &[model.ahead_s], 0.0..=0.1)?;
-    let damping = model.damping_s;
-    each("damping_s", "0 to 0.1 s", &[damping], 0.0..=0.1)?;
     let ahead = model.windup_ahead_s;
     each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)?;
-    let slope = model.slope_per_m;
-    each("slope_per_m", "-700 to 700 /m", &[slope], SLOPES_PER_M)?;
-    let bend = model.bend_per_m2;
-    each("bend_per_m2", "-2000 to 2000 /m2", &[bend], BENDS_PER_M2)?;
-    each("self_tuning", "0 to 1", &[model.self_tuning], 0.0..=1.0)?;
-    let asymmetry = model.viscous_asymmetry_n_s_per_m;
-    each(
-        "viscous_asymmetry_n_s_per_m",
-        "-1e7 to 1e7 N s/m",
-        &[asymmetry],
-        -1.0e7..=1.0e7,
-    )?;
+    each("gap_m", "0 to 1e-3 m", &[model.gap_m], 0.0..=1.0e-3)?;
+    let force = model.gap_force_n;
+    each("gap_force_n", "1 to 1e6 N", &[force], 1.0..=1.0e6)?;
+    let (table, motor) = (model.table_mass_kg, model.motor_inertia_kg);
+    each("table_mass_kg", "0 to 1e6 kg", &[table], 0.0..=1.0e6)?;
+    each("motor_inertia_kg", "0 to 1e6 kg", &[motor], 0.0..=1.0e6)
+}
+
+fn check_ripple(ripple: &[Ripple; RIPPLES]) -> Result<(), Wrong> {
     let [amplitudes, periods, phases] = [
-        model.ripple.map(|own| own.amplitude_n),
-        model.ripple.map(|own| own.period_m),
-        model.ripple.map(|own| own.phase_turns),
+        ripple.map(|own| own.amplitude_n),
+        ripple.map(|own| own.period_m),
+        ripple.map(|own| own.phase_turns),
     ];
     each("amplitude_n", "0 to 1e6 N", &amplitudes, 0.0..=1.0e6)?;
     each("period_m", "1e-6 to 0.2 m", &periods, PERIODS_M)?;

@@ -74,16 +74,16 @@ fn parameters(reversal: &Compensation) -> String {
             model.level_n() * model.factor[0],
             model.viscous_n_s_per_m,
             1.0e-6 * model.stiffness_n_per_m,
-            table_share(model)
+            on_motor(model)
         ),
     }
 }
 
-/// How much of the friction is the table's, where that is not all.
-fn table_share(model: &Model) -> String {
-    let share = 100.0 * model.table_share;
-    if share < 100.0 {
-        format!(", {share:.0} % of the friction at the table")
+/// How much of the friction is of the motor's own side, where some is.
+fn on_motor(model: &Model) -> String {
+    let share = 100.0 * model.on_motor();
+    if share > 0.0 {
+        format!(", {share:.0} % of the friction on the motor's side")
     } else {
         String::new()
     }

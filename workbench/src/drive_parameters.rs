@@ -287,9 +287,33 @@ impl Set {
 
     fn model(&mut self, model: &Model) -> Outcome<()> {
         self.elements(model)?;
+        self.all(&[
+            (Parameter::FrictionAhead, "model ahead_s", model.ahead_s),
+            (
+                Parameter::FrictionDamping,
+                "model damping_s",
+                model.damping_s,
+            ),
+            (
+                Parameter::LevelTuning,
+                "model self_tuning",
+                model.self_tuning,
+            ),
+        ])?;
+        self.levels(model)?;
+        self.screw(model)?;
+        self.ripple(model)
+    }
+
+    fn all(&mut self, values: &[(Parameter, &'static str, f64)]) -> Outcome<()> {
+        let mut each = values.iter();
+        each.try_for_each(|(place, key, value)| self.put(*place, key, *value))
+    }
+
+    /// What levels of friction go with, and the viscous part.
+    fn levels(&mut self, model: &Model) -> Outcome<()> {
         let per_newton = self.torque_per_newton;
-        let windup = model.table_share / model.stiffness_n_per_m / per_newton;
-        for (place, key, value) in [
+        self.all(&[
             (
                 Parameter::LevelSpan,
                 "model span_m_per_s",
@@ -298,47 +322,65 @@ impl Set {
             (Parameter::LevelLagWay, "model lag_m", model.lag_m),
             (Parameter::LevelLagTime, "model lag_s", model.lag_s),
             (
-                Parameter::ViscousTorque,
-                "model viscous_n_s_per_m",
-                model.viscous_n_s_per_m * per_newton,
-            ),
-            (Parameter::FrictionAhead, "model ahead_s", model.ahead_s),
-            (
-                Parameter::FrictionDamping,
-                "model damping_s",
-                model.damping_s,
-            ),
-            (
-                Parameter::WindupAhead,
-                "model windup_ahead_s",
-                model.windup_ahead_s,
-            ),
-            (Parameter::Windup, "model stiffness_n_per_m", windup),
-            (
-                Parameter::MotorInertia,
-                "model motor_inertia_kg",
-                model.motor_inertia_kg * per_newton,
-            ),
-            (
                 Parameter::LevelSlope,
                 "model slope_per_m",
                 model.slope_per_m,
             ),
             (Parameter::LevelBend, "model bend_per_m2", model.bend_per_m2),
             (
-                Parameter::LevelTuning,
-                "model self_tuning",
-                model.self_tuning,
+                Parameter::LevelAsymmetry,
+                "model level_asymmetry_n",
+                model.level_asymmetry_n * per_newton,
+            ),
+            (
+                Parameter::WayAsymmetry,
+                "model way_asymmetry",
+                model.way_asymmetry,
+            ),
+            (
+                Parameter::ViscousTorque,
+                "model viscous_n_s_per_m",
+                model.viscous_n_s_per_m * per_newton,
             ),
             (
                 Parameter::ViscousAsymmetry,
                 "model viscous_asymmetry_n_s_per_m",
                 model.viscous_asymmetry_n_s_per_m * per_newton,
             ),
-        ] {
-            self.put(place, key, value)?;
-        }
-        self.ripple(model)
+        ])
+    }
+
+    /// What is between motor and table.
+    fn screw(&mut self, model: &Model) -> Outcome<()> {
+        let per_newton = self.torque_per_newton;
+        self.all(&[
+            (
+                Parameter::Windup,
+                "model stiffness_n_per_m",
+                1.0 / model.stiffness_n_per_m / per_newton,
+            ),
+            (
+                Parameter::WindupAhead,
+                "model windup_ahead_s",
+                model.windup_ahead_s,
+            ),
+            (
+                Parameter::MotorInertia,
+                "model motor_inertia_kg",
+                model.motor_inertia_kg * per_newton,
+            ),
+            (Parameter::GapWidth, "model gap_m", model.gap_m),
+            (
+                Parameter::GapTorque,
+                "model gap_force_n",
+                model.gap_force_n * per_newton,
+            ),
+            (
+                Parameter::TableInertia,
+                "model table_mass_kg",
+                model.table_mass_kg * per_newton,
+            ),
+        ])
     }
 
     /// Elements and the levels over the speed.
@@ -349,6 +391,10 @@ impl Set {
         }
         for (place, slip_m) in Parameter::FRICTION_WAYS.into_iter().zip(model.slip_m) {
             self.put(place, "model slip_m", slip_m)?;
+        }
+        let on_motor = Parameter::FRICTION_ON_MOTOR.into_iter();
+        for (place, share) in on_motor.zip(model.motor_share) {
+            self.put(place, "model motor_share", share)?;
         }
         for (place, factor) in Parameter::LEVEL_FACTORS.into_iter().zip(model.factor) {
             self.put(place, "model factor", factor)?;
@@ -489,6 +535,9 @@ mod tests {
         let model = Model {
             level_n: [40.0; crate::compensation::ELEMENTS],
             viscous_asymmetry_n_s_per_m: -500.0,
+            motor_share: [0.25; crate::compensation::ELEMENTS],
+            level_asymmetry_n: -60.0,
+            way_asymmetry: -0.2,
             slope_per_m: -0.8,
             bend_per_m2: 2.5,
             self_tuning: 0.25,
@@ -512,6 +561,15 @@ mod tests {
         let per_velocity = newton * 1.0e-3 / COUNT_M;
         let asymmetry = friction.viscous_asymmetry.0.to_num::<f64>() * per_velocity;
         assert!((asymmetry + 500.0).abs() < 0.02, "{asymmetry}");
+        let [first, ..] = friction.elements;
+        let of_table = f64::from(first.table_micro_nm) / f64::from(first.level_micro_nm);
+        // To a µN·m of 64 mN·m.
+        assert!((of_table - 0.75).abs() < 2.0e-5, "{of_table}");
+        let by_direction = friction.by_direction;
+        let level_n = f64::from(by_direction.level_micro_nm) * newton;
+        assert!((level_n + 60.0).abs() < newton, "{level_n}");
+        assert_same("forward", by_direction.forward.to_num(), 1.25);
+        assert_same("backward", by_direction.backward.to_num(), 1.0 / 1.2);
         let unit_m = COUNT_M * 2.0_f64.powi(24);
         let linear = friction.place.linear.to_num::<f64>() / unit_m;
         let quadratic = friction.place.quadratic.to_num::<f64>() / unit_m / unit_m;

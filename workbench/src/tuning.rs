@@ -13,6 +13,7 @@ pub mod coulomb_force;
 pub mod friction_model;
 mod pulse_response;
 pub mod self_tuning;
+pub mod springs;
 mod start_values;
 mod tuning_circles;
 mod valley;

@@ -88,6 +88,7 @@ impl MotorSide {
                     sliding.stribeck_lag_s = own.lag.unwrap_or(0.0);
                 }
                 Effect::Presliding(own) => friction = self.bristle(own, motor_kg),
+                Effect::CoulombAsymmetry(own) => sliding.coulomb_asymmetry = own.coulomb_asymmetry,
                 _ => {}
             }
         }

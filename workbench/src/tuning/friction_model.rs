@@ -5,22 +5,21 @@
 //! position_dependent_friction ─▶ levels along the travel
 //! ```
 //!
-//! Elements have ways from rest: after a reversal a spring goes twice as far until it slips the
-//! other way (Masing). Elements that were identified are taken as they are. A bristle (Dahl) comes
-//! off its level within its deflection δ after a reversal, so from rest its curve is
-//! `V(x) = F (1 − exp(−2 x / δ))`, and is cut into elements: those that slip between a and b carry
-//! `[V − x V']` from a to b and have the stiffness `V'(a) − V'(b)`.
+//! Presliding comes as springs that slip, of both sides of the screw ([`Springs`]): those that were
+//! identified as they are, or those of a bristle (Dahl).
 
 use std::f64::consts::TAU;
 
 use axis_model::{
-    Compliance, Coulomb, Effect, Estimate, Inertia, PositionDependentFriction, Presliding,
-    Stribeck, TorqueRipple, Viscous,
+    Backlash, Compliance, Coulomb, Effect, Estimate, Inertia, PositionDependentFriction,
+    Presliding, Stribeck, TorqueRipple, Viscous,
 };
-use identification::Identification;
+use identification::{Identification, SlipElement};
 
+use super::springs::{Spring, Springs, of_bristle};
 use crate::compensation::{
-    BENDS_PER_M2, ELEMENTS, LEVELS, Model, PERIODS_M, RIPPLES, Ripple, SLOPES_PER_M,
+    BENDS_PER_M2, LEVELS, LONGEST_SLIP_M, Model, PERIODS_M, RIPPLES, Ripple, SHORTEST_SLIP_M,
+    SLOPES_PER_M, WAY_ASYMMETRIES,
 };
 use crate::model_file::{Known, MotorSide};
 
@@ -28,6 +27,12 @@ use crate::model_file::{Known, MotorSide};
 const RIGID_M: f64 = 1.0e-6;
 /// The factors end where the Stribeck fall has come down to this share of itself.
 const END_OF_FALL: f64 = 2.0e-3;
+
+/// A gap is crossed while the force behind it goes from this share of the Coulomb level one way to
+/// as much the other. Within less the motor would have to be accelerated harder: with a fiftieth
+/// the machine 106 of `--bench drawn` was left 20 µm at F 8000 (2.9 with a tenth), with a third the
+/// others are left half as much again (2026-11-27).
+const CROSSING: f64 = 0.2;
 
 /// What was identified of an axis, one effect by one.
 struct Found<'a> {
@@ -37,8 +42,10 @@ struct Found<'a> {
     stribeck: Option<&'a Stribeck<Estimate>>,
     presliding: Option<&'a Presliding<Estimate>>,
     compliance: Option<&'a Compliance<Estimate>>,
+    gap: Option<&'a Backlash<Estimate>>,
     over_position: Option<&'a PositionDependentFriction<Estimate>>,
-    asymmetry: f64,
+    viscous_asymmetry: f64,
+    coulomb_asymmetry: f64,
     ripples: Vec<&'a TorqueRipple<Estimate>>,
 }
 
@@ -51,8 +58,10 @@ impl<'a> Found<'a> {
             stribeck: None,
             presliding: None,
             compliance: None,
+            gap: None,
             over_position: None,
-            asymmetry: 0.0,
+            viscous_asymmetry: 0.0,
+            coulomb_asymmetry: 0.0,
             ripples: Vec::new(),
         };
         for effect in effects {
@@ -63,8 +72,14 @@ impl<'a> Found<'a> {
                 Effect::Stribeck(own) => found.stribeck = Some(own),
                 Effect::Presliding(own) => found.presliding = Some(own),
                 Effect::Compliance(own) => found.compliance = Some(own),
+                Effect::Backlash(own) => found.gap = Some(own),
                 Effect::PositionDependentFriction(own) => found.over_position = Some(own),
-                Effect::ViscousAsymmetry(own) => found.asymmetry = own.viscous_asymmetry.value,
+                Effect::ViscousAsymmetry(own) => {
+                    found.viscous_asymmetry = own.viscous_asymmetry.value;
+                }
+                Effect::CoulombAsymmetry(own) => {
+                    found.coulomb_asymmetry = own.coulomb_asymmetry.value;
+                }
                 Effect::TorqueRipple(own) => found.ripples.push(own),
                 _ => {}
             }
@@ -81,6 +96,20 @@ impl<'a> Found<'a> {
     fn bristle_m(&self) -> Option<f64> {
         let own = self.presliding?;
         Some(own.deflection.value.max(RIGID_M))
+    }
+
+    /// Those of bristles; where there are none, of friction that gives way at once.
+    fn springs(&self, motor: Option<MotorSide>) -> Springs {
+        let bristle_m = self.bristle_m();
+        Springs::of_sides(self.coulomb_n, motor, |level_n, deflection| {
+            let rigid = || {
+                vec![Spring {
+                    level_n,
+                    way_m: RIGID_M,
+                }]
+            };
+            bristle_m.map_or_else(rigid, |own_m| of_bristle(level_n, deflection * own_m))
+        })
     }
 
     fn factors(&self) -> ([f64; LEVELS], f64) {
@@ -101,87 +130,63 @@ impl<'a> Found<'a> {
 /// The model of an axis; `None` where no friction was identified.
 #[must_use]
 pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
+    let found = Found::of(&result.effects);
+    let motor = MotorSide::of(&result.report.parameters);
     let curve = result.report.presliding.as_ref();
     let elements = curve.map_or(&[][..], |curve| &curve.elements);
-    let slipping: Vec<(f64, f64)> = elements
-        .iter()
-        .map(|own| (own.share, own.deflection))
-        .collect();
-    let model = of_effects(known, &result.effects, &slipping)?;
-    Some(match MotorSide::of(&result.report.parameters) {
-        Some(motor) => beside_motor(&model, motor),
-        None => model,
-    })
-}
-
-/// The model of an axis of whose friction all was taken for the table's: each element is one of the
-/// table and one of the motor's side.
-#[must_use]
-pub fn beside_motor(model: &Model, motor: MotorSide) -> Model {
-    let table_share = 1.0 - motor.share;
-    let pairs = model.level_n.into_iter().zip(model.slip_m);
-    let both = pairs.flat_map(|(level_n, slip_m)| {
-        let of_motor = (motor.share * level_n, motor.deflection * slip_m);
-        [(table_share * level_n, slip_m), of_motor]
-    });
-    Model {
-        table_share,
-        ..with_elements(model, few(both.collect()))
-    }
-}
-
-fn with_elements(model: &Model, elements: Vec<(f64, f64)>) -> Model {
-    let mut model = Model {
-        level_n: Model::OFF.level_n,
-        slip_m: Model::OFF.slip_m,
-        ..*model
+    let slip = |level_n: f64, deflection: f64| -> Vec<Spring> {
+        let spring = |own: &SlipElement| Spring {
+            level_n: own.share * level_n,
+            way_m: deflection * own.deflection,
+        };
+        elements.iter().map(spring).collect()
     };
-    for (place, (level_n, slip_m)) in elements.into_iter().enumerate().take(ELEMENTS) {
-        (model.level_n[place], model.slip_m[place]) = (level_n, slip_m);
-    }
-    model
+    let slips = !elements.is_empty() && found.presliding.is_some();
+    let slipping = slips.then(|| Springs::of_sides(found.coulomb_n, motor, slip));
+    of_effects(known, &result.effects, slipping, motor)
 }
 
-/// The model of what is known of an axis, with the elements of its presliding: shares of the level
-/// and ways from rest, m; none of a bristle. All friction is the table's.
+/// The model of what is known of an axis: with springs that slip where it has such, else with a
+/// bristle on the table and one of the motor's side.
 #[must_use]
 pub fn of_effects(
     known: &Known,
     effects: &[Effect<Estimate>],
-    elements: &[(f64, f64)],
+    slipping: Option<Springs>,
+    motor: Option<MotorSide>,
 ) -> Option<Model> {
     let found = Found::of(effects);
     if found.coulomb_n <= 0.0 {
         return None;
     }
-    let slips = !elements.is_empty();
-    let elements = match found.bristle_m() {
-        Some(_) if slips => {
-            let own = elements.iter();
-            few(own
-                .map(|(share, way_m)| (share * found.coulomb_n, *way_m))
-                .collect())
-        }
-        Some(bristle_m) => of_bristle(found.coulomb_n, bristle_m),
-        None => vec![(found.coulomb_n, RIGID_M)],
-    };
     let (factor, span_m_per_s) = found.factors();
     let mut model = Model {
         factor,
         span_m_per_s,
         viscous_n_s_per_m: found.viscous,
+        viscous_asymmetry_n_s_per_m: found.viscous * found.viscous_asymmetry,
+        level_asymmetry_n: found.coulomb_n * found.coulomb_asymmetry,
+        lag_s: found.stribeck.map_or(0.0, lag_s),
         ahead_s: known.lag_s,
         ..Model::OFF
     };
-    model = with_elements(&model, elements);
-    model.lag_s = found.stribeck.map_or(0.0, lag_s);
-    if let (false, Some(bristle_m)) = (slips, found.bristle_m()) {
+    if let (None, Some(bristle_m)) = (&slipping, found.bristle_m()) {
         give_bristle(&mut model, &found, bristle_m);
     }
     give_screw(&mut model, &found, known);
-    model.viscous_asymmetry_n_s_per_m = found.viscous * found.asymmetry;
+    let springs = slipping.unwrap_or_else(|| found.springs(motor));
+    give_elements(&mut model, springs);
     give_places(&mut model, &found, known);
     Some(model)
+}
+
+fn give_elements(model: &mut Model, springs: Springs) {
+    let elements = springs.elements(model.stiffness_n_per_m);
+    for (place, own) in elements.into_iter().enumerate() {
+        model.level_n[place] = own.level_n;
+        model.slip_m[place] = own.slip_m.clamp(SHORTEST_SLIP_M, LONGEST_SLIP_M);
+        model.motor_share[place] = own.motor_n / own.level_n;
+    }
 }
 
 /// What goes with the position: levels along the travel and ripple. Records have the position of
@@ -238,8 +243,11 @@ fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {
     stribeck.lag.as_ref().map_or(0.0, |lag| lag.value.max(0.0))
 }
 
-/// A bristle comes to another level within its deflection, and has a damping.
+/// A bristle comes to another level within its deflection, and has a damping. The way within which
+/// it comes to its level is as different by direction as that.
 fn give_bristle(model: &mut Model, found: &Found<'_>, bristle_m: f64) {
+    let (least, most) = WAY_ASYMMETRIES.into_inner();
+    model.way_asymmetry = found.coulomb_asymmetry.clamp(least, most);
     model.lag_m = bristle_m * (1.0 + found.rise());
     let damping = found.presliding.and_then(|own| own.damping.as_ref());
     let damping = damping.map_or(0.0, |own| own.value.max(0.0));
@@ -260,99 +268,15 @@ fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
     model.stiffness_n_per_m = stiffness;
     model.motor_inertia_kg = (all_kg - load.value).max(0.0);
     model.windup_ahead_s = model.damping_s - damping / stiffness;
-}
-
-/// A bristle as elements, cut where `V'` has come down to (1 − i / n)² of its begin: the tail is as
-/// long as the begin is steep.
-fn of_bristle(level_n: f64, deflection_m: f64) -> Vec<(f64, f64)> {
-    let scale_m = 0.5 * deflection_m;
-    // With e = exp(−x / scale), V' is e level / scale and V − x V' is level (1 − e (1 − ln e)).
-    let carried = |e: f64| 1.0 - if e > 0.0 { e * (1.0 - e.ln()) } else { 0.0 };
-    let cut = |place: usize| (1.0 - place as f64 / ELEMENTS as f64).powi(2);
-    let element = |place: usize| {
-        let (from, to) = (cut(place), cut(place + 1));
-        let level = carried(to) - carried(from);
-        (level_n * level, scale_m * level / (from - to))
-    };
-    (0..ELEMENTS).map(element).collect()
-}
-
-/// As many elements as the drive has, at most: the two nearest become one, as stiff and as strong.
-fn few(elements: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let mut elements: Vec<(f64, f64)> = elements
-        .into_iter()
-        .filter(|(level, _)| *level > 0.0)
-        .collect();
-    elements.sort_by(|one, other| one.1.total_cmp(&other.1));
-    while elements.len() > ELEMENTS {
-        let ratio = |place: &usize| elements[place + 1].1 / elements[*place].1;
-        let nearest = (0..elements.len() - 1).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
-        let place = nearest.unwrap_or(0);
-        let (one, other) = (elements[place], elements.remove(place + 1));
-        let level = one.0 + other.0;
-        elements[place] = (level, level / (one.0 / one.1 + other.0 / other.1));
-    }
-    elements
+    model.gap_m = found.gap.map_or(0.0, |own| own.gap.value.max(0.0));
+    model.gap_force_n = (CROSSING * found.coulomb_n).max(1.0);
+    model.table_mass_kg = load.value;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn force(elements: &[(f64, f64)], way_m: f64) -> f64 {
-        let of = |(level, slip): &(f64, f64)| level * (way_m / slip).min(1.0);
-        elements.iter().map(of).sum()
-    }
-
-    #[test]
-    fn elements_of_a_bristle_follow_its_curve_to_a_hundredth_of_the_level() {
-        let elements = of_bristle(400.0, 1.0e-5);
-        assert!(
-            (force(&elements, 1.0) - 400.0).abs() < 1.0e-9,
-            "the whole level"
-        );
-        for place in 0..400 {
-            let way_m = 1.0e-7 * f64::from(place);
-            let curve = 400.0 * (1.0 - (-2.0 * way_m / 1.0e-5).exp());
-            let off = force(&elements, way_m) - curve;
-            assert!(off.abs() < 4.0, "{off} N at {way_m} m");
-        }
-    }
-
-    #[test]
-    fn more_elements_than_the_drive_has_become_fewer_with_the_same_level_and_stiffness() {
-        let many: Vec<(f64, f64)> = (1..=14)
-            .map(|place| (10.0 * f64::from(place % 4), 1.0e-6 * f64::from(place)))
-            .collect();
-        let fewer = few(many.clone());
-        assert_eq!(fewer.len(), ELEMENTS);
-        let stiffness = |elements: &[(f64, f64)]| force(elements, 1.0e-9);
-        assert!((force(&fewer, 1.0) - force(&many, 1.0)).abs() < 1.0e-9);
-        assert!((stiffness(&fewer) / stiffness(&many) - 1.0).abs() < 1.0e-9);
-    }
-
-    #[test]
-    fn friction_of_the_motors_side_is_beside_the_tables_and_winds_nothing_up() {
-        let model = with_elements(&Model::OFF, of_bristle(400.0, 1.0e-5));
-        let motor = MotorSide {
-            coulomb_n: 100.0,
-            share: 0.25,
-            deflection: 0.4,
-        };
-        let both = beside_motor(&model, motor);
-        assert_eq!(both.table_share, 0.75);
-        assert!((both.level_n() - 400.0).abs() < 1.0e-9);
-        let elements: Vec<_> = both.level_n.into_iter().zip(both.slip_m).collect();
-        for place in 0..40 {
-            let way_m = 1.0e-6 * f64::from(place);
-            let bristle = |level_n: f64, deflection_m: f64| {
-                level_n * (1.0 - (-2.0 * way_m / deflection_m).exp())
-            };
-            let wanted = bristle(300.0, 1.0e-5) + bristle(100.0, 4.0e-6);
-            let off = force(&elements, way_m) - wanted;
-            assert!(off.abs() < 8.0, "{off} N at {way_m} m");
-        }
-    }
+    use crate::compensation::ELEMENTS;
 
     fn about(value: f64) -> Estimate {
         Estimate::about(value, 0.0, "")
