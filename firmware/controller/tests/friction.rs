@@ -1,8 +1,8 @@
 //! The friction model beside a floating-point twin, and what its torque must never do.
 //!
 //! The twin is written from the equations of the module docs in `f64`; the time of a turn is
-//! rounded to a 64th of the look ahead there too, since that is the law's and no rounding of its
-//! numbers.
+//! rounded to a 64th of the look ahead there too, by the same velocities, since that is the law's
+//! and no rounding of its numbers.
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
@@ -24,9 +24,10 @@ use proptest::prelude::*;
 /// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
 const LEVEL: f64 = 636_620.0;
 /// Largest difference of the torques, µN·m: half a percent of that level; where the reference turns
-/// round in the look ahead, and rounding may choose another 64th of it, 5 %.
+/// round in the look ahead, and rounding may choose another 64th of it, 5 % of ways as they are, and
+/// more of those that count more in one direction.
 const BOUND_MICRO_NM: f64 = 0.005 * LEVEL;
-const BOUND_AT_TURN_MICRO_NM: f64 = 0.05 * LEVEL;
+const BOUND_AT_TURN_MICRO_NM: f64 = 0.05 * LEVEL / (1.0 - BY_DIRECTION);
 /// Largest difference of the velocities of the wind-up, 10 nm per cycle.
 const BOUND_VELOCITY: f64 = 1.0;
 
@@ -169,6 +170,11 @@ struct Twin {
     recent: Option<[f64; 6]>,
 }
 
+/// A velocity as the law rounds it, so that both turn round in the same 64th of the time.
+fn rounded_down(velocity: f64) -> f64 {
+    (4096.0 * velocity).floor() / 4096.0
+}
+
 impl Twin {
     fn scale(&self) -> f64 {
         let x = self.place / f64::from(1 << 24);
@@ -197,8 +203,10 @@ impl Twin {
     /// The elements after a path between two velocities, and the factor on their levels.
     fn passed(&self, begin: f64, end: f64, cycles: f64, way: f64) -> ([f64; ELEMENTS], [f64; 3]) {
         let on = if begin * end < 0.0 {
-            let share = begin.abs() / (begin.abs() + end.abs());
-            0.5 * begin * cycles * (64.0 * share).floor() / 64.0
+            // In whole numbers: a quotient of floats may be a 64th less where it is one.
+            let [begin_size, end_size] = [begin, end].map(|v| (4096.0 * v.abs()) as u64);
+            let sixty_fourths = 64 * begin_size / (begin_size + end_size);
+            0.5 * begin * cycles * sixty_fourths as f64 / 64.0
         } else {
             way
         };
@@ -222,7 +230,8 @@ impl Twin {
         let a: f64 = reference.acceleration.0.to_num();
         let way = self.at.map_or(0.0, |at| position + v - at);
         self.place = position + v;
-        let (torques, factor) = self.passed(v - 0.5 * a, v + 0.5 * a, 1.0, way);
+        let half = rounded_down(0.5 * a);
+        let (torques, factor) = self.passed(v - half, v + half, 1.0, way);
         (self.elements, self.factor, self.at) = (torques, Some(factor), Some(position + v));
         let viscous = |v: f64| VISCOUS * v + ASYMMETRY * v.abs();
         let scale = self.scale();
@@ -241,8 +250,8 @@ impl Twin {
         let next = ahead(held((torques, factor))[1] + viscous(v + 0.5 * a));
         let acting = |cycles: f64| {
             let way = v * cycles + 0.5 * a * cycles * (cycles + 1.0);
-            let there = v + a * (cycles + 0.5);
-            let [all, table] = held(self.passed(v + 0.5 * a, there, cycles, way));
+            let there = v + rounded_down(a * (cycles + 0.5));
+            let [all, table] = held(self.passed(v + half, there, cycles, way));
             [all + viscous(there), ahead(table + viscous(there))]
         };
         let ([now, now_way], [after, after_way]) = (acting(AHEAD), acting(AHEAD + 1.0));
