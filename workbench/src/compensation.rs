@@ -22,6 +22,8 @@ pub const SLOPES_PER_M: RangeInclusive<f64> = -700.0..=700.0;
 pub const BENDS_PER_M2: RangeInclusive<f64> = -2000.0..=2000.0;
 /// And of the share by which ways are longer one way, shorter the other.
 pub const WAY_ASYMMETRIES: RangeInclusive<f64> = -0.9..=0.9;
+/// And of a gap, m.
+pub const GAPS_M: RangeInclusive<f64> = 0.0..=1.0e-3;
 /// And of the period of a ripple, m.
 pub const PERIODS_M: RangeInclusive<f64> = 1.0e-6..=0.2;
 /// Ways after which an element may slip, m.
@@ -425,7 +427,7 @@ fn check_screw(model: &Model) -> Result<(), Wrong> {
     )?;
     let ahead = model.windup_ahead_s;
     each("windup_ahead_s", "-0.1 to 0.1 s", &[ahead], -0.1..=0.1)?;
-    each("gap_m", "0 to 1e-3 m", &[model.gap_m], 0.0..=1.0e-3)?;
+    each("gap_m", "0 to 1e-3 m", &[model.gap_m], GAPS_M)?;
     let force = model.gap_force_n;
     each("gap_force_n", "1 to 1e6 N", &[force], 1.0..=1.0e6)?;
     let (table, motor) = (model.table_mass_kg, model.motor_inertia_kg);

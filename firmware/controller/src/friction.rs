@@ -193,7 +193,7 @@ impl FrictionState {
         // The wind-up is ahead of what acts.
         let turning = turn.minus(before.turn);
         let turn = turn.plus(advanced(config.windup_cycles, turning.plus(turning)));
-        let turn = turn.limited(config.screw.acceleration_limit);
+        let turn = config.screw.within_limit(turn);
         let inertia = config.motor_inertia.times(Acceleration(turn.0));
         let rate = after.all.minus(before.acting.all);
         Feedforward {
@@ -212,7 +212,8 @@ impl FrictionState {
             .at
             .map_or(Velocity::ZERO, |before| measured.step_from(before));
         let scale = self.scale(config, measured);
-        let path = Path::straight(velocity).by(config.by_direction);
+        // A count that flickers would let ways that differ by direction creep.
+        let path = Path::straight(velocity);
         self.move_along(config, &path, measured, (velocity, scale));
         (self.recent, self.tuner) = (None, self.tuner.at_rest());
     }

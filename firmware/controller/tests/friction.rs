@@ -24,8 +24,8 @@ use proptest::prelude::*;
 /// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
 const LEVEL: f64 = 636_620.0;
 /// Largest difference of the torques, µN·m: half a percent of that level; where the reference turns
-/// round in the look ahead, and rounding may choose another 64th of it, 5 % of ways as they are, and
-/// more of those that count more in one direction.
+/// round in the look ahead, and rounding may choose another 64th of it, 5 % of ways as they are,
+/// and more of those that count more in one direction.
 const BOUND_MICRO_NM: f64 = 0.005 * LEVEL;
 const BOUND_AT_TURN_MICRO_NM: f64 = 0.05 * LEVEL / (1.0 - BY_DIRECTION);
 /// Largest difference of the velocities of the wind-up, 10 nm per cycle.
@@ -430,8 +430,8 @@ fn a_setpoint_that_flips_by_a_count_moves_springs_and_starts_nothing() {
     }
 }
 
-/// A bristle whose ways differ by direction comes off its level a little with each flip, as it does
-/// on the axis: by less than half a count.
+/// Ways that differ by direction let the elements come off their level a little with each flip: by
+/// less than half a count. A bristle relaxes to no force with that, elements would go on.
 #[test]
 fn a_setpoint_that_flips_lets_a_bristle_by_direction_creep() {
     let (changes, stiffness) = flipping(config().by_direction);

@@ -21,11 +21,21 @@ pub struct Screw {
     pub gap_per_torque: I4F28,
     /// Torque per acceleration of the table.
     pub table_inertia: AccelerationGain,
-    /// The motor gets torque for no more acceleration than the axis may have.
+    /// Across a gap the motor gets torque for no more acceleration than the axis may have.
     pub acceleration_limit: Velocity,
 }
 
 impl Screw {
+    /// An acceleration of the motor beside that of the table, within the limit where it crosses a
+    /// gap.
+    pub(super) fn within_limit(&self, acceleration: Velocity) -> Velocity {
+        if self.half_gap > I20F12::ZERO {
+            acceleration.limited(self.acceleration_limit)
+        } else {
+            acceleration
+        }
+    }
+
     /// The way at a torque of friction of the table and an acceleration.
     pub(super) fn way(&self, friction: Torque, acceleration: Acceleration) -> Velocity {
         let wound = wound(self.compliance, friction);
