@@ -164,11 +164,8 @@ fn slipping(axis: &MachineAxis) -> Option<Springs> {
         };
         share.iter().zip(stiffness_n_per_m).map(spring).collect()
     };
-    let mut each = sides(axis)
-        .iter()
-        .map(of_side)
-        .collect::<Vec<_>>()
-        .into_iter();
+    let sides = sides(axis);
+    let mut each = sides.iter().map(of_side);
     let springs = Springs {
         table: each.next().unwrap_or_default(),
         motor: each.next().unwrap_or_default(),

@@ -38,22 +38,17 @@ impl Screw {
 
     /// The way at a torque of friction of the table and an acceleration.
     pub(super) fn way(&self, friction: Torque, acceleration: Acceleration) -> Velocity {
-        let wound = wound(self.compliance, friction);
+        let wound = wound_by(self.compliance, friction);
         if self.half_gap <= I20F12::ZERO {
             return Velocity(wound);
         }
         let transmitted = friction.plus(self.table_inertia.times(acceleration));
-        let across = wound_within(self.gap_per_torque, transmitted, self.half_gap);
-        Velocity(wound.saturating_add(across))
+        let across = Velocity(wound_by(self.gap_per_torque, transmitted));
+        Velocity(wound).plus(across.limited(Velocity(self.half_gap)))
     }
 }
 
 /// 30.2 bits times 4.28 bits are 34.30 bits, exact.
-fn wound(compliance: I4F28, torque: Torque) -> I20F12 {
-    I20F12::saturating_from_num(coarse(torque).wide_mul(compliance))
-}
-
-fn wound_within(per_torque: I4F28, torque: Torque, most: I20F12) -> I20F12 {
-    let way = wound(per_torque, torque);
-    way.min(most).max(most.saturating_neg())
+fn wound_by(per_torque: I4F28, torque: Torque) -> I20F12 {
+    I20F12::saturating_from_num(coarse(torque).wide_mul(per_torque))
 }
