@@ -13,11 +13,11 @@
 //! Anti-windup acts against the torque that is really commanded, after every limit: the integral
 //! stands still while the torque is at its limit and the error would push it further.
 
-use fixed::FixedI64;
 use fixed::types::{I2F30, I20F12};
 
 use crate::units::{
     Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain,
+    narrowed,
 };
 
 /// Gains of the cascade.
@@ -147,12 +147,12 @@ pub struct Proposal {
 }
 
 fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
-    // 20.12 times 2.30 bits: 22.42 bits, exact; to nearest, as in `PositionGain::times`.
-    let step = new.minus(before).0.wide_mul(share);
-    let half = FixedI64::from_bits(1 << 29);
-    before.plus(Velocity(I20F12::saturating_from_num(
-        step.saturating_add(half),
-    )))
+    // 20.12 times 2.30 bits: 22.42 bits, exact, below 2⁶²; to nearest, as in
+    // `PositionGain::times`.
+    let step = new.minus(before).0.wide_mul(share).to_bits();
+    let half = 1_i64 << 29;
+    let step = I20F12::from_bits(narrowed::<30>(step.wrapping_add(half)));
+    before.plus(Velocity(step))
 }
 
 #[cfg(test)]

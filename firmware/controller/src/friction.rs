@@ -21,11 +21,12 @@
 //! k + 2 and after the lag of the current loop, is taken from a look ahead along the reference's
 //! velocity and acceleration ([`Ahead`]), which leaves the elements where they are.
 
-use fixed::types::{I8F24, I20F12, I24F8, I30F2, I40F24};
+use fixed::types::{I8F24, I24F8, I40F24};
 
 use crate::reference::Reference;
 use crate::units::{
     Acceleration, AccelerationGain, Position, PositionError, Torque, Velocity, VelocityGain,
+    narrowed,
 };
 
 mod by_direction;
@@ -37,9 +38,10 @@ mod screw;
 mod tuning;
 
 pub use by_direction::ByDirection;
-pub use element::Element;
-use element::Strain;
-use levels::{Factor, times, within_way};
+use by_direction::of_direction;
+use element::{Bends, Coarse};
+pub use element::{ELEMENTS, STIFFNESS_BITS, SlipWays, Stiffnesses};
+use levels::{Factor, HIGHEST, times, within_way};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
 use path::Path;
@@ -48,14 +50,15 @@ pub use screw::Screw;
 use tuning::Tuner;
 pub use tuning::{LevelTuning, Progress};
 
-/// Elements of the model.
-pub const ELEMENTS: usize = 10;
-
 /// What the model says of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
-    /// Elements; the sum of their levels is the Coulomb torque.
-    pub elements: [Element; ELEMENTS],
+    /// Ways after which elements slip.
+    pub ways: SlipWays,
+    /// Stiffnesses of elements; the sum of their levels, stiffness times way, is the Coulomb torque.
+    pub stiffnesses: Stiffnesses,
+    /// What of them is the table's, and winds the screw up.
+    pub of_table: Stiffnesses,
     /// Levels over the speed.
     pub levels: LevelCurve,
     /// How they fall behind it within a time, over a cycle.
@@ -68,13 +71,11 @@ pub struct FrictionConfig {
     pub by_direction: ByDirection,
     /// How they are refined.
     pub tuning: LevelTuning,
-    /// Viscous torque per velocity.
-    pub viscous: VelocityGain,
-    /// How much more of it there is forward than backward, halved.
-    pub viscous_asymmetry: VelocityGain,
+    /// Viscous torque per velocity, forward and backward.
+    pub viscous: [VelocityGain; 2],
     /// From x(k+1) to when the torque acts.
     pub torque: Ahead,
-    /// The same one cycle later.
+    /// The same one cycle later; its way and velocity follow from that.
     pub torque_after: Ahead,
     /// Friction has a damping in presliding: its rate of change counts so many cycles.
     pub damping_cycles: I8F24,
@@ -88,40 +89,44 @@ pub struct FrictionConfig {
 }
 
 impl FrictionConfig {
-    fn viscous_torque(&self, velocity: Velocity) -> Torque {
-        let speed = Velocity(velocity.0.saturating_abs());
-        let alike = self.viscous.times(velocity);
-        alike.plus(self.viscous_asymmetry.times(speed))
+    fn viscous(&self, velocity: Velocity) -> Coarse {
+        let gain = of_direction(&self.viscous, velocity);
+        // 40.24 bits.
+        Coarse::from_bits(narrowed::<22>(gain.times(velocity).0.to_bits()))
     }
 }
-
-type Strains = [Strain; ELEMENTS];
 
 /// Where the elements stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionState {
     /// Where they were last; `None`: nothing is known of them, and they begin where the axis is.
     at: Option<Position>,
-    strains: Strains,
+    stand: Stand,
+    recent: Option<Recent>,
+    tuner: Tuner,
+}
+
+/// How the elements stand somewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Stand {
+    bends: Bends,
     /// What they hold.
     held: Force,
     /// Factor on the levels; `None`: that of the speed.
     factor: Option<Factor>,
-    recent: Option<Recent>,
-    tuner: Tuner,
 }
 
 /// Friction of both sides of the screw, and what of it is the table's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Force {
-    all: Torque,
-    table: Torque,
+    all: Coarse,
+    table: Coarse,
 }
 
 /// Friction of both sides, and how much farther than the table the motor stands with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Push {
-    all: Torque,
+    all: Coarse,
     ahead: Velocity,
 }
 
@@ -134,6 +139,27 @@ struct Recent {
     acting: Push,
     /// Second difference of the way that acted.
     turn: Velocity,
+}
+
+/// What a cycle is at, wherever it looks.
+#[derive(Clone, Copy, Debug)]
+struct Cycle {
+    /// Factor on the levels of the place and of what turns have told.
+    scale: I8F24,
+    /// Factor on the levels at standstill.
+    at_rest: I8F24,
+    /// What the screw transmits beside friction.
+    beside: Coarse,
+}
+
+/// A way from where the elements stand.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    path: Path,
+    /// Velocity at its end.
+    end: Velocity,
+    /// How the levels fall behind on it.
+    lag: LevelLag,
 }
 
 /// What the model adds.
@@ -152,31 +178,44 @@ impl FrictionState {
     pub fn step(&mut self, config: &FrictionConfig, reference: &Reference) -> Feedforward {
         let velocity = reference.next_velocity;
         let acceleration = reference.acceleration;
-        let next_position = reference.position.after(velocity);
-        let at_next = velocity.plus(half(acceleration));
-        let begin = velocity.minus(half(acceleration));
-        let way = self
-            .at
-            .map_or(Velocity::ZERO, |before| next_position.step_from(before));
-        let path = Path::between(begin, at_next, I8F24::ONE, way).by(config.by_direction);
-        let scale = self.scale(config, next_position);
-        self.move_along(config, &path, next_position, (at_next, scale));
-        let next = self.held.plus(config.viscous_torque(at_next));
-        let next = config.screw.way(next.table, acceleration);
-        let [acting, after] = [&config.torque, &config.torque_after].map(|ahead| {
-            let force = self.ahead(config, ahead, (velocity, acceleration), scale);
-            Push {
-                all: force.all,
-                ahead: config.screw.way(force.table, acceleration),
-            }
-        });
-        let before = self.recent.unwrap_or(Recent {
-            before: next,
-            present: next,
-            next,
-            acting: acting.before(after),
-            turn: Velocity::ZERO,
-        });
+        let position = reference.position.after(velocity);
+        let cycle = self.cycle(config, position, acceleration);
+        let half = Velocity(acceleration.0).halved();
+        let (begin, end) = (velocity.minus(half), velocity.plus(half));
+        let way = self.way_to(position);
+        let direction = &config.by_direction;
+        let path = Path::between(direction, begin, end, I8F24::ONE, way);
+        let lag = config.lag;
+        self.at = Some(position);
+        self.stand.go(config, &cycle, &Look { path, end, lag });
+        let next = self.stand.push(config, &cycle, end).ahead;
+        let look = |ahead: &Ahead, way: Velocity, there: Velocity| {
+            let path = Path::between(direction, end, there, ahead.cycles, way);
+            let (mut stand, lag) = (self.stand, ahead.lag);
+            let end = there;
+            stand.go(config, &cycle, &Look { path, end, lag });
+            stand.push(config, &cycle, end)
+        };
+        let way = config.torque.way(velocity, acceleration);
+        let there = config.torque.velocity(velocity, acceleration);
+        let acting = look(&config.torque, way, there);
+        let way = way.plus(there).plus(half);
+        let there = there.plus(Velocity(acceleration.0));
+        let after = look(&config.torque_after, way, there);
+        self.feedforward(config, next, [acting, after])
+    }
+
+    /// What is fed forward with the way of the motor in the next cycle, and what acts then and one
+    /// cycle later.
+    fn feedforward(
+        &mut self,
+        config: &FrictionConfig,
+        next: Velocity,
+        [acting, after]: [Push; 2],
+    ) -> Feedforward {
+        let before = self
+            .recent
+            .unwrap_or_else(|| Recent::steady(next, acting, after));
         let rise = acting.ahead.minus(before.acting.ahead);
         let turn = after.ahead.minus(acting.ahead).minus(rise);
         self.recent = Some(Recent {
@@ -192,29 +231,31 @@ impl FrictionState {
             .minus(before.present.minus(before.before));
         // The wind-up is ahead of what acts.
         let turning = turn.minus(before.turn);
-        let turn = turn.plus(advanced(config.windup_cycles, turning.plus(turning)));
+        let turn = turn.plus(turning.scaled(config.windup_cycles));
         let turn = config.screw.within_limit(turn);
-        let inertia = config.motor_inertia.times(Acceleration(turn.0));
-        let rate = after.all.minus(before.acting.all);
+        let inertia = coarse(config.motor_inertia, turn);
+        let rate = after.all.saturating_sub(before.acting.all);
+        let damping = damping(config.damping_cycles, rate);
+        let torque = acting.all.saturating_add(damping).saturating_add(inertia);
         Feedforward {
-            torque: acting
-                .all
-                .plus(damping(config.damping_cycles, rate))
-                .plus(inertia),
-            velocity: change.plus(advanced(config.windup_cycles, bend)),
-            offset: PositionError(I24F8::saturating_from_num(before.next.0)),
+            torque: Torque(I40F24::from_num(torque)),
+            velocity: change.plus(bend.scaled(config.windup_cycles).halved()),
+            offset: PositionError(I24F8::wrapping_from_num(before.next.0)),
         }
     }
 
     /// One cycle of an axis that is moved by others: the elements go along with what is measured.
     pub fn follow(&mut self, config: &FrictionConfig, measured: Position) {
-        let velocity = self
-            .at
-            .map_or(Velocity::ZERO, |before| measured.step_from(before));
-        let scale = self.scale(config, measured);
-        // A count that flickers would let ways that differ by direction creep.
-        let path = Path::straight(velocity);
-        self.move_along(config, &path, measured, (velocity, scale));
+        let cycle = self.cycle(config, measured, Acceleration::default());
+        let way = self.way_to(measured);
+        let look = Look {
+            // A count that flickers would let ways that differ by direction creep.
+            path: Path::straight(way),
+            end: way,
+            lag: config.lag,
+        };
+        self.at = Some(measured);
+        self.stand.go(config, &cycle, &look);
         (self.recent, self.tuner) = (None, self.tuner.at_rest());
     }
 
@@ -248,36 +289,24 @@ impl FrictionState {
         self.tuner.factor()
     }
 
-    /// The factor on the levels at a position.
-    fn scale(&self, config: &FrictionConfig, position: Position) -> I8F24 {
-        times(config.place.at(position), self.tuner.factor())
+    fn way_to(&self, position: Position) -> Velocity {
+        self.at
+            .map_or(Velocity::ZERO, |before| position.step_from(before))
     }
 
-    fn move_along(
-        &mut self,
-        config: &FrictionConfig,
-        path: &Path,
-        to: Position,
-        pace: (Velocity, I8F24),
-    ) {
-        let factor = self.factor_after(config, path.length(), pace, config.lag);
-        self.strains = self.strained(config, path, factor);
-        self.held = force(config, &self.strains, factor, pace.1);
-        (self.at, self.factor) = (Some(to), Some(factor));
-    }
-
-    /// The factor on the levels a way and the cycles of a lag later, at a velocity there and with a
-    /// factor on those of that velocity.
-    fn factor_after(
+    fn cycle(
         &self,
         config: &FrictionConfig,
-        way: Velocity,
-        (velocity, scale): (Velocity, I8F24),
-        lag: LevelLag,
-    ) -> Factor {
-        let aim = times(config.levels.at(velocity), scale);
-        let before = self.factor.unwrap_or(Factor::at(aim));
-        before.passed(lag, within_way(way, config.lag_per_way), aim)
+        position: Position,
+        acceleration: Acceleration,
+    ) -> Cycle {
+        let place = config.place.at(position).min(HIGHEST);
+        let scale = times(place, self.tuner.factor()).min(HIGHEST);
+        Cycle {
+            scale,
+            at_rest: times(config.levels.at_rest(), scale).min(HIGHEST),
+            beside: config.screw.beside_friction(acceleration),
+        }
     }
 
     /// Whether anything is known of the elements.
@@ -286,50 +315,40 @@ impl FrictionState {
         self.at.is_some()
     }
 
-    /// The strains after a path.
-    fn strained(&self, config: &FrictionConfig, path: &Path, factor: Factor) -> Strains {
-        let limit = element::limit(factor.acting);
-        let mut strains = self.strains;
-        for way in [Some(path.on), path.back].into_iter().flatten() {
-            for (strain, element) in strains.iter_mut().zip(&config.elements) {
-                *strain = element.moved(*strain, way, limit);
-            }
-        }
-        strains
-    }
-
     /// What the elements hold.
     #[must_use]
-    pub const fn held(&self) -> Torque {
-        self.held.all
-    }
-
-    fn ahead(
-        &self,
-        config: &FrictionConfig,
-        ahead: &Ahead,
-        (velocity, acceleration): (Velocity, Acceleration),
-        scale: I8F24,
-    ) -> Force {
-        let way = ahead.way(velocity, acceleration);
-        let there = velocity
-            .0
-            .saturating_add(scaled(acceleration.0, ahead.velocity_by_acceleration));
-        let there = Velocity(there);
-        let begin = velocity.plus(half(acceleration));
-        let path = Path::between(begin, there, ahead.cycles, way).by(config.by_direction);
-        let factor = self.factor_after(config, path.length(), (there, scale), ahead.lag);
-        let strains = self.strained(config, &path, factor);
-        force(config, &strains, factor, scale).plus(config.viscous_torque(there))
+    pub fn held(&self) -> Torque {
+        Torque(I40F24::from_num(self.stand.held.all))
     }
 }
 
-impl Force {
-    /// With a torque that the table has too.
-    fn plus(self, torque: Torque) -> Self {
-        Self {
-            all: self.all.plus(torque),
-            table: self.table.plus(torque),
+impl Stand {
+    /// It goes a way: the elements and what they hold, and what their levels have by direction
+    /// beyond that at rest.
+    #[inline(never)]
+    fn go(&mut self, config: &FrictionConfig, cycle: &Cycle, look: &Look) {
+        let aim = times(config.levels.at(look.end), cycle.scale).min(HIGHEST);
+        let before = self.factor.unwrap_or(Factor::at(aim));
+        let way = within_way(look.path.length(), config.lag_per_way);
+        let factor = before.passed(look.lag, way, aim);
+        self.factor = Some(factor);
+        let times = factor.on_levels();
+        self.bends.take(&config.ways, &look.path, times);
+        let all = self.bends.torque(&config.stiffnesses);
+        let by_direction = config.by_direction.torque(factor.acting, cycle.at_rest);
+        self.held = Force {
+            all: all.saturating_add(by_direction),
+            table: self.bends.torque(&config.of_table),
+        };
+    }
+
+    /// What it takes there at a velocity.
+    fn push(&self, config: &FrictionConfig, cycle: &Cycle, velocity: Velocity) -> Push {
+        let viscous = config.viscous(velocity);
+        let table = self.held.table.saturating_add(viscous);
+        Push {
+            all: self.held.all.saturating_add(viscous),
+            ahead: config.screw.way(table, cycle.beside),
         }
     }
 }
@@ -337,54 +356,35 @@ impl Force {
 impl Push {
     /// What was before this, where it changes evenly to another.
     fn before(self, after: Self) -> Self {
+        let twice = self.all.saturating_add(self.all);
         Self {
-            all: self.all.plus(self.all).minus(after.all),
+            all: twice.saturating_sub(after.all),
             ahead: self.ahead.plus(self.ahead).minus(after.ahead),
         }
     }
 }
 
-/// The force of all elements, and what their levels have by direction beyond that at rest; from 29
-/// to 24 fractional bits.
-fn force(config: &FrictionConfig, strains: &Strains, factor: Factor, scale: I8F24) -> Force {
-    let strains = strains.iter().zip(&config.elements);
-    let [all, table] = strains.fold([0_i64, 0_i64], |[all, table], (strain, element)| {
-        let [own, of_table] = element.torque(*strain);
-        [all.wrapping_add(own), table.wrapping_add(of_table)]
-    });
-    let [all, table] = [all, table].map(|sum| Torque(I40F24::from_bits(sum.wrapping_shr(5))));
-    let at_rest = times(config.levels.at_rest(), scale);
-    let by_direction = config.by_direction.torque(factor.acting, at_rest);
-    Force {
-        all: all.plus(by_direction),
-        table,
+impl Recent {
+    /// What was where the motor stood still beside the table, and what acts changes evenly.
+    fn steady(next: Velocity, acting: Push, after: Push) -> Self {
+        Self {
+            before: next,
+            present: next,
+            next,
+            acting: acting.before(after),
+            turn: Velocity::ZERO,
+        }
     }
 }
 
-/// A velocity or its change times a factor, saturated.
-fn scaled(value: I20F12, factor: I8F24) -> I20F12 {
-    I20F12::saturating_from_num(value.wide_mul(factor))
-}
-
-fn half(acceleration: Acceleration) -> Velocity {
-    Velocity(I20F12::from_bits(acceleration.0.to_bits().wrapping_shr(1)))
-}
-
-/// A torque in a quarter of µN·m.
-fn coarse(torque: Torque) -> I30F2 {
-    I30F2::saturating_from_num(torque.0)
-}
-
 /// The change over two cycles times a number of them.
-fn damping(cycles: I8F24, change: Torque) -> Torque {
-    // 30.2 bits times 8.24 bits: 38.26 bits, exact; one bit less is half of it.
-    let product = coarse(change).wide_mul(cycles).to_bits();
-    Torque(I40F24::from_bits(product.wrapping_shr(3)))
+fn damping(cycles: I8F24, change: Coarse) -> Coarse {
+    // 30.2 bits times 8.24 bits: 38.26 bits; one bit less is half of it.
+    Coarse::from_bits(narrowed::<25>(change.wide_mul(cycles).to_bits()))
 }
 
-/// Half of a change over two cycles times a number of them.
-fn advanced(cycles: I8F24, change: Velocity) -> Velocity {
-    Velocity(I20F12::from_bits(
-        scaled(change.0, cycles).to_bits().wrapping_shr(1),
-    ))
+/// The torque of an acceleration.
+fn coarse(inertia: AccelerationGain, acceleration: Velocity) -> Coarse {
+    // 24.8 bits times 20.12 bits: 44.20 bits.
+    Coarse::from_bits(narrowed::<18>(inertia.0.wide_mul(acceleration.0).to_bits()))
 }

@@ -8,8 +8,8 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
 use controller::friction::{
-    Ahead, ByDirection, ELEMENTS, Element, Feedforward, FrictionConfig, FrictionState, LEVELS,
-    LevelCurve, LevelLag, LevelPlace, LevelTuning, Screw,
+    Ahead, ByDirection, ELEMENTS, Feedforward, FrictionConfig, FrictionState, LEVELS, LevelCurve,
+    LevelLag, LevelPlace, LevelTuning, STIFFNESS_BITS, Screw, Stiffnesses,
 };
 use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
@@ -18,7 +18,7 @@ use controller::units::{
     Acceleration, AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain,
 };
 use controller::{Config, Input, PositionSource, State};
-use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8};
+use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8, U17F15};
 use proptest::prelude::*;
 
 /// Torque of sliding friction, µN·m: 400 N at a lead of 10 mm.
@@ -89,13 +89,16 @@ const HALF_GAP: f64 = 250.0;
 const CROSSING: f64 = 0.2 * LEVEL;
 const TABLE_INERTIA: f64 = 4800.0;
 
+fn stiffnesses(share: f64) -> Stiffnesses {
+    let steps = share * f64::from(1 << STIFFNESS_BITS);
+    elements().map(|(level, way)| (steps * level / (4096.0 * way)).round() as i32)
+}
+
 fn config() -> FrictionConfig {
     FrictionConfig {
-        elements: elements().map(|(level, way)| Element {
-            per_way: I8F24::from_num(1.0 / way),
-            level_micro_nm: level as i32,
-            table_micro_nm: (TABLE * level) as i32,
-        }),
+        ways: elements().map(|(_, way)| U17F15::from_num(way)),
+        stiffnesses: stiffnesses(1.0),
+        of_table: stiffnesses(TABLE),
         levels: LevelCurve {
             intervals_per_velocity: I8F24::from_num(PER_VELOCITY),
             factors: factors().map(I8F24::from_num),
@@ -107,13 +110,12 @@ fn config() -> FrictionConfig {
             quadratic: I8F24::from_num(PLACE[1]),
         },
         by_direction: ByDirection {
-            forward: I8F24::from_num(1.0 / (1.0 + BY_DIRECTION)),
-            backward: I8F24::from_num(1.0 / (1.0 - BY_DIRECTION)),
+            ways: [1.0 / (1.0 + BY_DIRECTION), 1.0 / (1.0 - BY_DIRECTION)].map(I8F24::from_num),
             level_micro_nm: (BY_DIRECTION * LEVEL) as i32,
         },
         tuning: LevelTuning::default(),
-        viscous: VelocityGain(I20F12::from_num(VISCOUS)),
-        viscous_asymmetry: VelocityGain(I20F12::from_num(ASYMMETRY)),
+        viscous: [VISCOUS + ASYMMETRY, VISCOUS - ASYMMETRY]
+            .map(|gain| VelocityGain(I20F12::from_num(gain))),
         torque: ahead(AHEAD),
         torque_after: ahead(AHEAD + 1.0),
         damping_cycles: I8F24::from_num(DAMPING),
@@ -402,8 +404,7 @@ fn flipping(by_direction: ByDirection) -> (Vec<f64>, f64) {
     let config = FrictionConfig {
         damping_cycles: I8F24::ZERO,
         screw: Screw::default(),
-        viscous: VelocityGain::default(),
-        viscous_asymmetry: VelocityGain::default(),
+        viscous: [VelocityGain::default(); 2],
         by_direction,
         ..config()
     };
@@ -500,8 +501,7 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
     };
     // Beyond the factors and the viscous part, which go with the speed, nothing changes.
     let model = FrictionConfig {
-        viscous: VelocityGain::default(),
-        viscous_asymmetry: VelocityGain::default(),
+        viscous: [VelocityGain::default(); 2],
         ..config()
     };
     let law = |friction: Option<FrictionConfig>| Config {

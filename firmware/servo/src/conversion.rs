@@ -20,8 +20,8 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
-    Ahead, ByDirection, ELEMENTS, Element, FrictionConfig, LEVELS, LevelCurve, LevelLag,
-    LevelPlace, LevelTuning, Screw,
+    Ahead, ByDirection, FrictionConfig, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
+    STIFFNESS_BITS, Screw, SlipWays, Stiffnesses,
 };
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::ripple::{RippleConfig, Wave};
@@ -30,7 +30,7 @@ use controller::units::{
     WayPerIncrement,
 };
 use controller::{Config, PositionSource};
-use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8};
+use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8, U17F15};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
 use crate::objects::Parameter;
@@ -51,12 +51,15 @@ const MICROS: u64 = 1_000_000;
 /// Fractional bits of the machine units.
 const Q8: u64 = 1 << 8;
 const Q12: u64 = 1 << 12;
+const Q15: u64 = 1 << 15;
 const Q24: u64 = 1 << 24;
 const Q28: u64 = 1 << 28;
 const Q30: u64 = 1 << 30;
 const Q32: u64 = 1 << 32;
 const Q40: u64 = 1 << 40;
 const Q48: u64 = 1 << 48;
+/// Bits of a stiffness per 2⁻¹⁵ of 10 nm.
+const STEPS_OF_A_STIFFNESS: u64 = 1 << (STIFFNESS_BITS + 3);
 /// Counts in which the friction model has places along the travel.
 const PLACE: u64 = 1 << 24;
 const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
@@ -331,16 +334,20 @@ impl Reading<'_> {
         }
         let ahead = self.cycles(Parameter::FrictionAhead)?;
         let torque = ahead.saturating_add(HALF_A_CYCLE);
+        let (ways, [stiffnesses, of_table]) = self.elements()?;
+        let viscous = self.viscous(Parameter::ViscousTorque)?;
+        let asymmetry = self.viscous(Parameter::ViscousAsymmetry)?;
         Ok(Some(FrictionConfig {
-            elements: self.elements()?,
+            ways,
+            stiffnesses,
+            of_table,
             levels: self.levels()?,
             lag: self.level_lag(I8F24::ONE),
             lag_per_way: self.lag_per_way()?,
             place: self.level_place(),
             by_direction: self.by_direction(),
             tuning: self.level_tuning()?,
-            viscous: self.viscous(Parameter::ViscousTorque)?,
-            viscous_asymmetry: self.viscous(Parameter::ViscousAsymmetry)?,
+            viscous: [viscous.plus(asymmetry), viscous.minus(asymmetry)],
             torque: self.ahead_by(torque),
             torque_after: self.ahead_by(torque.saturating_add(I8F24::ONE)),
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
@@ -352,30 +359,49 @@ impl Reading<'_> {
         }))
     }
 
-    fn elements(&self) -> Result<[Element; ELEMENTS], SetError> {
-        let mut elements = [Element::default(); ELEMENTS];
-        for (((element, level), way), on_motor) in elements
-            .iter_mut()
-            .zip(Parameter::FRICTION_LEVELS)
+    /// Levels and ways of elements become ways and stiffnesses, those of the table last; a level
+    /// that is too low for a stiffness counts as zero.
+    fn elements(&self) -> Result<(SlipWays, [Stiffnesses; 2]), SetError> {
+        let (mut ways, mut stiffnesses, mut of_table) = (
+            SlipWays::default(),
+            Stiffnesses::default(),
+            Stiffnesses::default(),
+        );
+        let each = ways.iter_mut().zip(&mut stiffnesses).zip(&mut of_table);
+        for (((level, way), on_motor), ((slips_after, all), table)) in Parameter::FRICTION_LEVELS
+            .into_iter()
             .zip(Parameter::FRICTION_WAYS)
             .zip(Parameter::FRICTION_ON_MOTOR)
+            .zip(each)
         {
-            *element = Element {
-                per_way: self.per_way(way)?,
-                level_micro_nm: self.raw(level),
-                table_micro_nm: self.left_at_table(level, on_motor),
-            };
+            *slips_after = self.slip_way(way)?;
+            let whole = on_motor.unit().per_si;
+            let left = whole.saturating_sub(self.steps(on_motor));
+            *all = self.stiffness(level, (whole, whole), *slips_after)?;
+            *table = self.stiffness(level, (left, whole), *slips_after)?;
         }
-        Ok(elements)
+        Ok((ways, [stiffnesses, of_table]))
     }
 
-    /// What of a level is the table's: the level at most. Below 2³¹ · 2²⁰.
-    fn left_at_table(&self, level: Parameter, on_motor: Parameter) -> i32 {
-        let whole = on_motor.unit().per_si;
-        let left = whole.saturating_sub(self.steps(on_motor));
-        let level = Fraction::new(&[self.steps(level), left], &[whole]).and_then(Fraction::nearest);
-        let level = level.and_then(|level| i32::try_from(level).ok());
-        level.unwrap_or_default()
+    /// Below 2²⁴ · 2²⁷ · 2¹⁵.
+    fn slip_way(&self, way: Parameter) -> Result<U17F15, SetError> {
+        let numerator = [self.steps(way), COUNTS_PER_M, Q15];
+        let bits = Self::held(way, &numerator, &[way.unit().per_si])?;
+        Ok(U17F15::from_bits(bits.unsigned_abs()))
+    }
+
+    /// A share of a level over a way. Below 2²⁸ · 2²⁰ · 2²⁷.
+    fn stiffness(
+        &self,
+        level: Parameter,
+        (share, whole): (u64, u64),
+        way: U17F15,
+    ) -> Result<i32, SetError> {
+        let numerator = [self.steps(level), share, STEPS_OF_A_STIFFNESS];
+        let denominator = [u64::from(way.to_bits()), whole];
+        let bits = Fraction::new(&numerator, &denominator).and_then(Fraction::nearest);
+        let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+        bits.ok_or(SetError::TooLarge(level))
     }
 
     /// One over a way, per count.
@@ -478,14 +504,13 @@ impl Reading<'_> {
             counts(whole.saturating_add(share)),
             counts(whole.saturating_sub(share)),
         );
-        let (forward, backward) = if self.raw(asymmetry) < 0 {
-            (shorter, longer)
+        let ways = if self.raw(asymmetry) < 0 {
+            [shorter, longer]
         } else {
-            (longer, shorter)
+            [longer, shorter]
         };
         ByDirection {
-            forward,
-            backward,
+            ways,
             level_micro_nm: self.raw(Parameter::LevelAsymmetry),
         }
     }

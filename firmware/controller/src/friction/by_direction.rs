@@ -1,9 +1,9 @@
 //! Friction that differs by direction.
 
-use fixed::types::{I8F24, I40F24};
+use fixed::types::I8F24;
 
-use super::scaled;
-use crate::units::{Torque, Velocity};
+use super::element::Coarse;
+use crate::units::{Velocity, narrowed};
 
 /// What differs by direction.
 ///
@@ -16,10 +16,8 @@ use crate::units::{Torque, Velocity};
 /// levels is fed forward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ByDirection {
-    /// Ways count so many times forward.
-    pub forward: I8F24,
-    /// And backward.
-    pub backward: I8F24,
+    /// Ways count so many times, forward and backward.
+    pub ways: [I8F24; 2],
     /// How much higher the levels of all elements are forward than backward, halved, µN·m.
     pub level_micro_nm: i32,
 }
@@ -27,8 +25,7 @@ pub struct ByDirection {
 impl Default for ByDirection {
     fn default() -> Self {
         Self {
-            forward: I8F24::ONE,
-            backward: I8F24::ONE,
+            ways: [I8F24::ONE; 2],
             level_micro_nm: 0,
         }
     }
@@ -37,20 +34,24 @@ impl Default for ByDirection {
 impl ByDirection {
     /// A way as the elements have it.
     pub(super) fn way(&self, way: Velocity) -> Velocity {
-        let times = if way.0.is_negative() {
-            self.backward
-        } else {
-            self.forward
-        };
-        Velocity(scaled(way.0, times))
+        way.scaled(of_direction(&self.ways, way))
     }
 
-    /// The torque at a factor on the levels, beyond that at another.
-    pub(super) fn torque(&self, factor: I8F24, beyond: I8F24) -> Torque {
-        // 31.0 bits times 8.24 bits, as a torque has them.
-        let change = i64::from(factor.to_bits()).wrapping_sub(i64::from(beyond.to_bits()));
-        let bits = i64::from(self.level_micro_nm).wrapping_mul(change);
-        Torque(I40F24::from_bits(bits))
+    /// The torque at a factor on the levels, beyond that at another; factors below 4.
+    pub(super) fn torque(&self, factor: I8F24, beyond: I8F24) -> Coarse {
+        // 31.0 bits times 8.24 bits.
+        let change = i64::from(factor.wrapping_sub(beyond).to_bits());
+        let product = i64::from(self.level_micro_nm).wrapping_mul(change);
+        Coarse::from_bits(narrowed::<22>(product))
+    }
+}
+
+/// Forward or backward.
+pub(super) fn of_direction<T: Copy>([forward, backward]: &[T; 2], velocity: Velocity) -> T {
+    if velocity.0.is_negative() {
+        *backward
+    } else {
+        *forward
     }
 }
 
@@ -62,8 +63,7 @@ mod tests {
     #[test]
     fn ways_and_levels_differ_by_direction_and_default_to_none() {
         let own = ByDirection {
-            forward: I8F24::from_num(0.8),
-            backward: I8F24::from_num(1.25),
+            ways: [0.8, 1.25].map(I8F24::from_num),
             level_micro_nm: -60_000,
         };
         let way = |counts: f64| {
@@ -74,12 +74,12 @@ mod tests {
         assert!((way(100.0) - 80.0).abs() < 1.0e-3, "{}", way(100.0));
         assert!((way(-100.0) + 125.0).abs() < 1.0e-3, "{}", way(-100.0));
         let torque = own.torque(I8F24::from_num(1.0), I8F24::from_num(1.25));
-        assert_eq!(torque.0.to_num::<f64>(), 15_000.0);
+        assert_eq!(torque.to_num::<f64>(), 15_000.0);
         let none = ByDirection::default();
         for counts in [-7.0, 0.0, 1.0e5] {
             let way = Velocity(I20F12::from_num(counts));
             assert_eq!(none.way(way), way);
         }
-        assert_eq!(none.torque(I8F24::MAX, I8F24::MIN), Torque::ZERO);
+        assert_eq!(none.torque(I8F24::from_num(3.9), I8F24::ZERO), Coarse::ZERO);
     }
 }

@@ -1,6 +1,10 @@
 //! Levels of the elements over the speed, and how they fall behind it.
+//!
+//! Factors on the levels are never negative and below 4; shares are at most 1, and what has come is
+//! never less than the ramp, so that a level that lags lies between those that it comes from and
+//! goes to. Sums and products of them cannot overflow.
 
-use fixed::types::I8F24;
+use fixed::types::{I8F24, U3F29};
 
 use crate::units::Velocity;
 
@@ -15,7 +19,7 @@ pub const LEVELS: usize = INTERVALS + 1;
 pub struct LevelCurve {
     /// Intervals per speed.
     pub intervals_per_velocity: I8F24,
-    /// Factor on all levels.
+    /// Factor on all levels, 0 to 3.9.
     pub factors: [I8F24; LEVELS],
 }
 
@@ -36,23 +40,20 @@ impl LevelCurve {
     }
 
     pub(super) fn at(&self, velocity: Velocity) -> I8F24 {
-        // 20.12 times 8.24 bits: 28.36 bits. The whole part is the interval.
-        let place = velocity
-            .0
-            .saturating_abs()
-            .wide_mul(self.intervals_per_velocity)
-            .to_bits();
-        let interval = usize::try_from(place.wrapping_shr(36)).unwrap_or(INTERVALS);
-        let [Some(from), Some(to)] =
-            [interval, interval.saturating_add(1)].map(|place| self.factors.get(place).copied())
-        else {
-            return self.factors.last().copied().unwrap_or(I8F24::ONE);
+        // The whole part is the interval.
+        let place = velocity.size().over(self.intervals_per_velocity);
+        let interval = usize::try_from(place.to_bits().wrapping_shr(24)).unwrap_or(INTERVALS);
+        let points = self.factors.get(interval..).unwrap_or_default();
+        let Some([from, to]) = points.first_chunk() else {
+            return self.at_end();
         };
-        // 24 of the 36 fractional bits.
-        let share = I8F24::from_bits(
-            i32::try_from(place.wrapping_shr(12) & 0x00FF_FFFF).unwrap_or_default(),
-        );
-        between(from, to, share)
+        let share = I8F24::from_bits(place.to_bits() & 0x00FF_FFFF);
+        from.wrapping_add(times(to.wrapping_sub(*from), share))
+    }
+
+    fn at_end(&self) -> I8F24 {
+        let [.., last] = self.factors;
+        last
     }
 }
 
@@ -79,7 +80,9 @@ impl LevelLag {
     };
 
     fn after(self, level: I8F24, [from, to]: [I8F24; 2]) -> I8F24 {
-        between(level, from, self.come).saturating_add(times(to.saturating_sub(from), self.ramp))
+        let come = from.wrapping_sub(level).wide_mul(self.come);
+        let ramp = to.wrapping_sub(from).wide_mul(self.ramp);
+        level.wrapping_add(I8F24::wrapping_from_num(come.wrapping_add(ramp)))
     }
 }
 
@@ -111,6 +114,11 @@ impl Factor {
         }
     }
 
+    /// As it acts on elements.
+    pub(super) fn on_levels(self) -> U3F29 {
+        U3F29::wrapping_from_num(self.acting.clamp(I8F24::ZERO, HIGHEST))
+    }
+
     /// The same on its way to `aim`, the cycles of a lag and a way later.
     pub(super) fn passed(self, lag: LevelLag, way: LevelLag, aim: I8F24) -> Self {
         let level = lag.after(self.level, [self.aim, aim]);
@@ -131,32 +139,29 @@ pub(super) fn within_way(way: Velocity, per_way: I8F24) -> LevelLag {
     if per_way == I8F24::ZERO {
         return LevelLag::NONE;
     }
-    let x = I8F24::saturating_from_num(way.0.saturating_abs().wide_mul(per_way));
+    let x = way.size().over(per_way);
     let part = |bits: u32| I8F24::from_bits(x.to_bits().wrapping_shr(bits));
     if x >= TWO {
         // 1/2 + (x − 2) / 8
-        let ramp = part(3).saturating_add(I8F24::from_bits(1 << 22));
+        let ramp = part(3).wrapping_add(I8F24::from_bits(1 << 22));
         return LevelLag {
             come: I8F24::ONE,
             ramp: ramp.min(I8F24::ONE),
         };
     }
-    let ramp = times(part(1), I8F24::ONE.saturating_sub(part(2)));
+    let ramp = times(part(1), I8F24::ONE.wrapping_sub(part(2)));
     LevelLag {
-        come: times(x, I8F24::ONE.saturating_sub(ramp)),
+        come: times(x, I8F24::ONE.wrapping_sub(ramp)),
         ramp,
     }
 }
 
-/// Product of two factors, saturated.
-pub(super) fn times(one: I8F24, other: I8F24) -> I8F24 {
-    I8F24::saturating_from_num(one.wide_mul(other))
-}
+/// Above all factors on levels.
+pub(super) const HIGHEST: I8F24 = I8F24::from_bits((4 << 24) - 1);
 
-/// Between two factors, at a share of the way, the whole of it at most.
-fn between(from: I8F24, to: I8F24, share: I8F24) -> I8F24 {
-    let step = to.saturating_sub(from).wide_mul(share.min(I8F24::ONE));
-    from.saturating_add(I8F24::saturating_from_num(step))
+/// Product of two factors, or of a factor and a share; each below 4, so that it stays below 16.
+pub(super) fn times(one: I8F24, other: I8F24) -> I8F24 {
+    I8F24::wrapping_from_num(one.wide_mul(other))
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use fixed::types::I8F24;
 
-use super::levels::times;
-use crate::units::Position;
+use crate::units::{Position, narrowed};
 
 /// Levels along the travel: `1 + x (linear + x · quadratic)`, with x from position zero in units of
 /// 2²⁴ counts (168 mm), never below zero.
@@ -22,9 +21,16 @@ impl LevelPlace {
         let bits = position.0.to_bits().wrapping_shr(8);
         let end = if bits < 0 { i32::MIN } else { i32::MAX };
         let x = I8F24::from_bits(i32::try_from(bits).unwrap_or(end));
-        let slope = self.linear.saturating_add(times(self.quadratic, x));
-        I8F24::ONE.saturating_add(times(slope, x)).max(I8F24::ZERO)
+        let slope = self.linear.saturating_add(product(self.quadratic, x));
+        I8F24::ONE
+            .saturating_add(product(slope, x))
+            .max(I8F24::ZERO)
     }
+}
+
+/// Saturated.
+fn product(one: I8F24, other: I8F24) -> I8F24 {
+    I8F24::from_bits(narrowed::<24>(one.wide_mul(other).to_bits()))
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use fixed::types::{I4F28, I20F12};
 
 use super::coarse;
-use crate::units::{Acceleration, AccelerationGain, Torque, Velocity};
+use super::element::Coarse;
+use crate::units::{Acceleration, AccelerationGain, Velocity, narrowed};
 
 /// What is between motor and table.
 ///
@@ -26,29 +27,42 @@ pub struct Screw {
 }
 
 impl Screw {
+    fn has_gap(&self) -> bool {
+        self.half_gap > I20F12::ZERO
+    }
+
     /// An acceleration of the motor beside that of the table, within the limit where it crosses a
     /// gap.
     pub(super) fn within_limit(&self, acceleration: Velocity) -> Velocity {
-        if self.half_gap > I20F12::ZERO {
+        if self.has_gap() {
             acceleration.limited(self.acceleration_limit)
         } else {
             acceleration
         }
     }
 
-    /// The way at a torque of friction of the table and an acceleration.
-    pub(super) fn way(&self, friction: Torque, acceleration: Acceleration) -> Velocity {
-        let wound = wound_by(self.compliance, friction);
-        if self.half_gap <= I20F12::ZERO {
-            return Velocity(wound);
+    /// What it transmits beside friction, where that counts.
+    pub(super) fn beside_friction(&self, acceleration: Acceleration) -> Coarse {
+        if self.has_gap() {
+            coarse(self.table_inertia, Velocity(acceleration.0))
+        } else {
+            Coarse::ZERO
         }
-        let transmitted = friction.plus(self.table_inertia.times(acceleration));
-        let across = Velocity(wound_by(self.gap_per_torque, transmitted));
-        Velocity(wound).plus(across.limited(Velocity(self.half_gap)))
+    }
+
+    /// The way at a torque of friction of the table and what is transmitted beside it.
+    pub(super) fn way(&self, friction: Coarse, beside: Coarse) -> Velocity {
+        let wound = wound_by(self.compliance, friction);
+        if !self.has_gap() {
+            return wound;
+        }
+        let across = wound_by(self.gap_per_torque, friction.saturating_add(beside));
+        wound.plus(across.limited(Velocity(self.half_gap)))
     }
 }
 
-/// 30.2 bits times 4.28 bits are 34.30 bits, exact.
-fn wound_by(per_torque: I4F28, torque: Torque) -> I20F12 {
-    I20F12::saturating_from_num(coarse(torque).wide_mul(per_torque))
+/// 30.2 bits times 4.28 bits are 34.30 bits, of which 12 fractional ones stay.
+fn wound_by(per_torque: I4F28, torque: Coarse) -> Velocity {
+    let product = per_torque.wide_mul(torque).to_bits();
+    Velocity(I20F12::from_bits(narrowed::<18>(product)))
 }

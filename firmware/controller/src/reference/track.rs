@@ -6,7 +6,7 @@
 
 use fixed::types::{I20F12, I24F8, I56F8};
 
-use crate::units::{Acceleration, Position, Velocity};
+use crate::units::{Acceleration, Position, Velocity, sixteenfold};
 
 /// Way within one cycle, 10 nm with 8 fractional bits: ±84 mm. Also its change from cycle to cycle.
 pub(super) type Way = I24F8;
@@ -98,17 +98,17 @@ pub(super) fn limited(value: Way, bound: Way) -> Way {
 
 /// A velocity as a way, rounded down to 39 pm.
 pub(super) fn way_of(velocity: Velocity) -> Way {
-    Way::saturating_from_num(velocity.0)
+    Way::wrapping_from_num(velocity.0)
 }
 
 /// A way as a velocity, saturated.
 pub(super) fn velocity_of(way: Way) -> Velocity {
-    Velocity(I20F12::saturating_from_num(way))
+    Velocity(I20F12::from_bits(sixteenfold(way.to_bits())))
 }
 
 /// A change of a way as an acceleration, saturated.
 pub(super) fn acceleration_of(way: Way) -> Acceleration {
-    Acceleration(I20F12::saturating_from_num(way))
+    Acceleration(I20F12::from_bits(sixteenfold(way.to_bits())))
 }
 
 /// Positions beyond ±180 000 km / 256 are cut: sums of 256 of them stay within 64 bits, and no axis
