@@ -9,6 +9,7 @@
 //! table that a scope runs; long tables run on all cores ([`on_all_cores`]).
 
 pub mod architecture;
+pub mod blade;
 pub mod comparison;
 pub mod confusion;
 pub mod drawn;

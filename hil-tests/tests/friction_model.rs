@@ -1,6 +1,8 @@
 //! The model of friction in the drive, as identification found it: what it leaves of a burst at
 //! every feed, and that it does no harm where nothing is to be gained.
 
+#[path = "friction_model/contour.rs"]
+mod contour;
 #[path = "friction_model/harm.rs"]
 mod harm;
 #[path = "friction_model/self_tuning.rs"]

@@ -6,7 +6,7 @@ use plant_sim::Machine;
 use serde::Serialize;
 
 use crate::ballbar::{self, CircleFigures, Point};
-use crate::compensation::{AxisCompensation, Compensation};
+use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::progress;
 use crate::session::{Session, Stand};
@@ -87,7 +87,7 @@ pub fn run_after(
             machine: stand.machine.name.clone(),
             radius_mm: 1.0e3 * circle.radius_m,
             feed_mm_min: 6.0e4 * circle.feed_m_per_s,
-            compensation: name(compensation).to_owned(),
+            compensation: compensation::method(compensation).to_owned(),
             deviation_of: if session.sees_truth() {
                 "table"
             } else {
@@ -138,14 +138,4 @@ fn backlash_m(machine: &Machine) -> f64 {
         .iter()
         .map(|axis| axis.actual.mechanics.backlash_m)
         .fold(0.0, f64::max)
-}
-
-fn name(compensation: &[AxisCompensation]) -> &'static str {
-    match compensation.first().map(|axis| &axis.reversal) {
-        None | Some(Compensation::None) => "none",
-        Some(Compensation::Coulomb { .. }) => "coulomb",
-        Some(Compensation::Model(_)) => "model",
-        Some(Compensation::Pulse(_)) => "pulse",
-        Some(Compensation::Adaptive(_)) => "adaptive",
-    }
 }

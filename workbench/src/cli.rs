@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use machine_arguments::{MachineArguments, Pace, PaceArguments, machine_file};
-pub use values::circle;
+pub use values::{circle, feed};
 use values::{fault_plan, node_id};
 
 /// A servo axis that removes its own reversal errors, and the bench that proves it.
@@ -32,6 +32,8 @@ pub enum Command {
     Identify(Identify),
     /// Run one reference circle over the bus and print its figures
     Circle(CircleArguments),
+    /// Run a contour of dense points over the bus and print how far from it the table was
+    Contour(ContourArguments),
     /// Find compensation parameters from circles, as at a real machine
     Tune(Tune),
     /// Run the plant node of one axis on a CAN interface
@@ -87,6 +89,40 @@ pub enum Method {
     Model,
 }
 
+/// What a circle or a contour is run with.
+#[derive(Debug, clap::Args)]
+pub struct CompensationArguments {
+    /// Reversal compensation
+    #[arg(long = "compensation", value_name = "COMPENSATION", value_enum, default_value_t = Method::None)]
+    pub method: Method,
+    /// Compensation file of `tune` or `commission`
+    #[arg(long, value_name = "FILE")]
+    pub compensation_file: Option<PathBuf>,
+}
+
+/// Arguments of `contour`.
+#[derive(Debug, clap::Args)]
+pub struct ContourArguments {
+    /// CSV file with the columns x_mm and y_mm: dense points in order, about the middle of the
+    /// travel
+    pub points: PathBuf,
+    #[command(flatten)]
+    #[expect(missing_docs, reason = "flattened")]
+    pub machine: MachineArguments,
+    /// Feed, mm/min
+    #[arg(long, value_name = "F")]
+    pub feed_mm_min: f64,
+    #[command(flatten)]
+    #[expect(missing_docs, reason = "flattened")]
+    pub compensation: CompensationArguments,
+    /// Write the figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write all frames as a candump log
+    #[arg(long, value_name = "FILE")]
+    pub candump: Option<PathBuf>,
+}
+
 /// Arguments of `circle`.
 #[derive(Debug, clap::Args)]
 pub struct CircleArguments {
@@ -99,12 +135,9 @@ pub struct CircleArguments {
     /// Feed, mm/min
     #[arg(long, value_name = "F")]
     pub feed_mm_min: f64,
-    /// Reversal compensation
-    #[arg(long, value_enum, default_value_t = Method::None)]
-    pub compensation: Method,
-    /// Compensation file of `tune` or `commission`
-    #[arg(long, value_name = "FILE")]
-    pub compensation_file: Option<PathBuf>,
+    #[command(flatten)]
+    #[expect(missing_docs, reason = "flattened")]
+    pub compensation: CompensationArguments,
     /// Let the drives refine the model's levels of friction on so many circles first, and go on
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=100))]
     pub self_tune: u32,

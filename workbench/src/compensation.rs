@@ -251,6 +251,18 @@ pub fn self_tuning(axes: &[AxisCompensation]) -> Option<Vec<AxisCompensation>> {
     axes.iter().any(is_model).then(|| refining.collect())
 }
 
+/// The method of a compensation, in a word.
+#[must_use]
+pub fn method(axes: &[AxisCompensation]) -> &'static str {
+    match axes.first().map(|axis| &axis.reversal) {
+        None | Some(Compensation::None) => "none",
+        Some(Compensation::Coulomb { .. }) => "coulomb",
+        Some(Compensation::Model(_)) => "model",
+        Some(Compensation::Pulse(_)) => "pulse",
+        Some(Compensation::Adaptive(_)) => "adaptive",
+    }
+}
+
 impl AxisCompensation {
     /// The same, its model refined by the drive.
     fn self_tuning(&self) -> Self {

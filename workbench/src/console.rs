@@ -5,6 +5,7 @@ use identification::{Identification, figures};
 use crate::ballbar::REVERSALS;
 use crate::circle_test::CircleReport;
 use crate::compensation::{Compensation, Model};
+use crate::contour_test::ContourReport;
 use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
 use crate::tuning::Tuned;
 
@@ -39,6 +40,25 @@ pub fn print_circle(report: &CircleReport) {
     println!("  bus load, computed        {load:>10.1} %");
     if report.missed_cycles > 0 {
         println!("  missed cycles             {:>10}", report.missed_cycles);
+    }
+}
+
+/// Prints the figures of a contour.
+pub fn print_contour(report: &ContourReport) {
+    println!(
+        "contour of {:.1} mm, F {} mm/min, compensation {}; error of the {}",
+        report.length_mm, report.feed_mm_min, report.compensation, report.error_of
+    );
+    let [x_mm, y_mm] = report.largest_at_mm;
+    println!(
+        "  largest contour error   {:>10.2} µm  at {x_mm:.2} / {y_mm:.2} mm",
+        report.largest_um
+    );
+    println!("  root mean square        {:>10.2} µm", report.rms_um);
+    let [x, y] = report.reversals;
+    println!("  reversals X / Y         {x:>10} / {y}");
+    if report.missed_cycles > 0 {
+        println!("  missed cycles           {:>10}", report.missed_cycles);
     }
 }
 

@@ -559,17 +559,20 @@ mod tests {
         assert_eq!(wave.phase, -(1 << 30));
         let friction = config.friction.unwrap();
         let per_velocity = newton * 1.0e-3 / COUNT_M;
-        let asymmetry = friction.viscous_asymmetry.0.to_num::<f64>() * per_velocity;
+        let [forward, backward] = friction.viscous.map(|gain| gain.0.to_num::<f64>());
+        let asymmetry = 0.5 * (forward - backward) * per_velocity;
         assert!((asymmetry + 500.0).abs() < 0.02, "{asymmetry}");
-        let [first, ..] = friction.elements;
-        let of_table = f64::from(first.table_micro_nm) / f64::from(first.level_micro_nm);
-        // To a µN·m of 64 mN·m.
-        assert!((of_table - 0.75).abs() < 2.0e-5, "{of_table}");
+        let [stiffness, of_table] = [friction.stiffnesses[0], friction.of_table[0]].map(f64::from);
+        let way = friction.ways[0].to_num::<f64>() * 4096.0;
+        let level_n = stiffness * 2.0_f64.powi(-24) * way * newton;
+        assert!((level_n - 40.0).abs() < 1.0e-3, "{level_n}");
+        assert!((of_table / stiffness - 0.75).abs() < 2.0e-5, "{of_table}");
         let by_direction = friction.by_direction;
         let level_n = f64::from(by_direction.level_micro_nm) * newton;
         assert!((level_n + 60.0).abs() < newton, "{level_n}");
-        assert_same("forward", by_direction.forward.to_num(), 1.25);
-        assert_same("backward", by_direction.backward.to_num(), 1.0 / 1.2);
+        let [forward, backward] = by_direction.ways.map(|counts| counts.to_num::<f64>());
+        assert_same("forward", forward, 1.25);
+        assert_same("backward", backward, 1.0 / 1.2);
         let unit_m = COUNT_M * 2.0_f64.powi(24);
         let linear = friction.place.linear.to_num::<f64>() / unit_m;
         let quadratic = friction.place.quadratic.to_num::<f64>() / unit_m / unit_m;

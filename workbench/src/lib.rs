@@ -4,7 +4,7 @@
 //! commands                                   one file each: the list of its steps
 //! cli            commissioning               arguments; the steps that are more than a call
 //! console, presentation                      results for people
-//! circle_test    tuning      axis_records    tests on a machine
+//! circle_test    contour_test    tuning      axis_records    tests on a machine
 //! session                                    a machine that moves, and stops as one
 //! ballbar        trajectory                  what a circle shows; what the axes are to do
 //! network                                    master and nodes on any bus
@@ -23,6 +23,7 @@ pub mod commands;
 pub mod commissioning;
 pub mod compensation;
 pub mod console;
+pub mod contour_test;
 pub mod drive_parameters;
 pub mod error;
 pub mod interrupt;

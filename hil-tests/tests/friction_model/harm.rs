@@ -135,7 +135,7 @@ const ADAPTIVE: Adaptive = Adaptive {
 
 /// What the methods are tuned to at R 100 F 2000: the pulses as `quadrant tune` has them, Coulomb
 /// friction as it is.
-fn methods() -> Vec<(&'static str, Vec<AxisCompensation>)> {
+pub(super) fn methods() -> Vec<(&'static str, Vec<AxisCompensation>)> {
     let of = |reversal: Compensation| {
         let mut axes = Stand::in_process(&Machine::reference()).uncompensated();
         for axis in &mut axes {

@@ -23,22 +23,31 @@ pub(super) fn node_id(text: &str) -> Result<u8, String> {
 /// # Errors
 /// Where a value is not positive.
 pub fn circle(radius_mm: f64, feed_mm_min: f64) -> Outcome<Circle> {
-    for (option, value, unit) in [
-        ("--radius-mm", radius_mm, "mm"),
-        ("--feed-mm-min", feed_mm_min, "mm/min"),
-    ] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(Failure::new(format!(
-                "{option}: must be above zero {unit}, got {value}"
-            )));
-        }
-    }
+    let radius_mm = above_zero("--radius-mm", radius_mm, "mm")?;
     Ok(Circle {
         radius_m: 1.0e-3 * radius_mm,
-        feed_m_per_s: feed_mm_min / 6.0e4,
+        feed_m_per_s: feed(feed_mm_min)?,
         turns: 3,
         counter_clockwise: true,
     })
+}
+
+/// A feed in m/s.
+///
+/// # Errors
+/// Where it is not positive.
+pub fn feed(feed_mm_min: f64) -> Outcome<f64> {
+    Ok(above_zero("--feed-mm-min", feed_mm_min, "mm/min")? / 6.0e4)
+}
+
+fn above_zero(option: &str, value: f64, unit: &str) -> Outcome<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Failure::new(format!(
+            "{option}: must be above zero {unit}, got {value}"
+        )))
+    }
 }
 
 /// Faults begin here unless the plan says otherwise: when the axes are enabled.
