@@ -58,7 +58,7 @@ use friction::{Feedforward, FrictionConfig, FrictionState, Progress};
 use pulse::{PulseConfig, PulseState, Setpoint};
 use reference::{Reference, ReferenceConfig};
 use ripple::RippleConfig;
-use units::{Position, PositionError, Torque, Velocity};
+use units::{Acceleration, Position, PositionError, Torque, Velocity};
 
 /// Which encoder closes the position loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -320,7 +320,7 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
             error: following_error.plus(offset),
             velocity_setpoint: unexpected.plus(offset_velocity).plus(pulse),
             expected_velocity: expected,
-            acceleration: reference.acceleration,
+            acceleration: accelerated(config, reference),
             motor_velocity,
             friction: coulomb(config.coulomb, direction)
                 .plus(model.torque)
@@ -338,6 +338,20 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         following_error,
         limited,
     }
+}
+
+const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
+
+/// The acceleration of the setpoint when the torque acts: that of the middle of the torque's cycle,
+/// and with a model of friction, which tells the lag of the current loop, so much later.
+fn accelerated(config: &Config, reference: &Reference) -> Acceleration {
+    let Some(model) = &config.friction else {
+        return reference.acceleration;
+    };
+    let jerk = Velocity(reference.jerk.0);
+    // x(k+1) is half a cycle before that middle.
+    let lag = model.torque.cycles.wrapping_sub(HALF_A_CYCLE);
+    Acceleration(Velocity(reference.acceleration.0).plus(jerk.scaled(lag)).0)
 }
 
 fn measured(source: PositionSource, input: &Input) -> Position {
