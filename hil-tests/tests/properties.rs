@@ -775,6 +775,7 @@ impl Chaos {
             (Parameter::GapWidth, 0.0, 5.0e5),
             (Parameter::GapTorque, 1.0e4, 5.0e5),
             (Parameter::TableInertia, 0.0, 1.0e7),
+            (Parameter::TableTorque, -5.0e5, 5.0e5),
             (Parameter::RippleTorque1, 0.0, 5.0e5),
             (Parameter::RipplePeriod1, 1.0e4, 2.0e9),
             (Parameter::RipplePhase1, -1.0e6, 1.0e6),

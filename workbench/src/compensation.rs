@@ -83,6 +83,9 @@ pub struct Model {
     /// What of the inertia is behind the gap.
     #[serde(default)]
     pub table_mass_kg: f64,
+    /// Constant force behind it, as a weight.
+    #[serde(default)]
+    pub table_force_n: f64,
     /// What of the inertia is the motor's.
     pub motor_inertia_kg: f64,
     /// From the begin of its cycle until the torque acts as friction does.
@@ -180,8 +183,18 @@ impl Model {
             level_n: self.level_n.map(|level_n| factor * level_n),
             slip_m: self.slip_m.map(slip_m),
             level_asymmetry_n: factor * self.level_asymmetry_n,
+            gap_force_n: (factor * self.gap_force_n).max(1.0),
             ..*self
         }
+    }
+
+    /// Level of the table's friction.
+    #[must_use]
+    pub fn table_n(&self) -> f64 {
+        let of_table = self.level_n.iter().zip(&self.motor_share);
+        of_table
+            .map(|(level_n, motor)| level_n * (1.0 - motor))
+            .sum()
     }
 
     /// A model that says nothing.
@@ -198,6 +211,7 @@ impl Model {
         gap_m: 0.0,
         gap_force_n: crossing_force_n(),
         table_mass_kg: 0.0,
+        table_force_n: 0.0,
         motor_inertia_kg: 0.0,
         ahead_s: 0.0,
         damping_s: 0.0,
@@ -339,6 +353,11 @@ fn check(path: &Path, axis: &NamedAxis) -> Outcome<()> {
         expect(
             (0.0..=0.01).contains(&gap_m),
             Wrong("backlash_m", "0 to 0.01 m", gap_m),
+        )?;
+        let crosses = matches!(&axis.reversal, Compensation::Model(model) if model.gap_m > 0.0);
+        expect(
+            gap_m <= 0.0 || !crosses,
+            Wrong("backlash_m", "0 where the model crosses gap_m", gap_m),
         )
     });
     checked.map_err(|Wrong(key, wanted, got)| {
@@ -444,6 +463,8 @@ fn check_screw(model: &Model) -> Result<(), Wrong> {
     each("gap_force_n", "1 to 1e6 N", &[force], 1.0..=1.0e6)?;
     let (table, motor) = (model.table_mass_kg, model.motor_inertia_kg);
     each("table_mass_kg", "0 to 1e6 kg", &[table], 0.0..=1.0e6)?;
+    let force = model.table_force_n;
+    each("table_force_n", "-1e6 to 1e6 N", &[force], -1.0e6..=1.0e6)?;
     each("motor_inertia_kg", "0 to 1e6 kg", &[motor], 0.0..=1.0e6)
 }
 

@@ -380,6 +380,11 @@ impl Set {
                 "model table_mass_kg",
                 model.table_mass_kg * per_newton,
             ),
+            (
+                Parameter::TableTorque,
+                "model table_force_n",
+                model.table_force_n * per_newton,
+            ),
         ])
     }
 

@@ -10,6 +10,7 @@
 
 mod adaptive;
 pub mod coulomb_force;
+mod crossing;
 pub mod friction_model;
 mod pulse_response;
 pub mod self_tuning;

@@ -25,8 +25,8 @@ use fixed::types::{I8F24, I24F8, I40F24};
 
 use crate::reference::Reference;
 use crate::units::{
-    Acceleration, AccelerationGain, Position, PositionError, Torque, Velocity, VelocityGain,
-    narrowed,
+    Acceleration, AccelerationGain, Coarse, Position, PositionError, Torque, Velocity,
+    VelocityGain, narrowed,
 };
 
 mod by_direction;
@@ -39,7 +39,7 @@ mod tuning;
 
 pub use by_direction::ByDirection;
 use by_direction::of_direction;
-use element::{Bends, Coarse};
+use element::Bends;
 pub use element::{ELEMENTS, STIFFNESS_BITS, SlipWays, Stiffnesses};
 use levels::{Factor, HIGHEST, times, within_way};
 pub use levels::{LEVELS, LevelCurve, LevelLag};

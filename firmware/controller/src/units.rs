@@ -11,7 +11,7 @@
 //! Every sum saturates. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
 //! cannot overflow, and saturate only when they are brought back to 32 bits.
 
-use fixed::types::{I8F24, I20F12, I24F8, I32F32, I40F24, I56F8};
+use fixed::types::{I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};
 
 /// Position at the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,6 +32,9 @@ pub struct Acceleration(pub I20F12);
 /// Motor torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Torque(pub I40F24);
+
+/// Torque of friction, in a quarter of µN·m: ±537 N·m in 32 bits.
+pub(crate) type Coarse = I30F2;
 
 /// Velocity per position error: `1/s` times the cycle time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

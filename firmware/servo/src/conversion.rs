@@ -643,6 +643,7 @@ impl Reading<'_> {
             table_inertia: AccelerationGain(I24F8::from_bits(
                 self.inertia_gain(Parameter::TableInertia, (1, 1))?,
             )),
+            table_torque: Torque::from_micro_nm(self.raw(Parameter::TableTorque)),
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
     }

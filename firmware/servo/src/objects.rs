@@ -413,6 +413,7 @@ parameters! {
     GapWidth = (0x2156, 3), "gap that the axis crosses where the torque behind it changes sign (0: none)", TENTH_NANOMETRE, (0, 10_000_000), 0;
     GapTorque = (0x2156, 4), "torque within which it is crossed, to either side", MICRO_NM, (1, TORQUE), 100_000;
     TableInertia = (0x2156, 5), "inertia of the table alone, for the gap", INERTIA, POSITIVE, 0;
+    TableTorque = (0x2156, 6), "constant torque of the table, as a weight, for the gap", MICRO_NM, SIGNED_TORQUE, 0;
     LevelSlope = (0x2158, 1), "friction levels change along the travel, per way from position zero", MILLIONTH_PER_M, SLOPE, 0;
     LevelBend = (0x2158, 2), "and per square of that way", MILLIONTH_PER_M2, (-i32::MAX, i32::MAX), 0;
     LevelTuning = (0x2159, 1), "share of what a turn tells that the friction level is refined by (0 off)", MILLIONTH, (0, 1_000_000), 0;

@@ -10,7 +10,7 @@ pub const IDENTIFICATION: [&str; 10] = [
 ];
 
 /// The floors of `workbench`, from the ground up: `commands` use everything.
-pub const WORKBENCH: [&str; 20] = [
+pub const WORKBENCH: [&str; 21] = [
     "error",
     "interrupt",
     "progress",
@@ -24,6 +24,7 @@ pub const WORKBENCH: [&str; 20] = [
     "session",
     "axis_records",
     "circle_test",
+    "contour_test",
     "tuning",
     "presentation",
     "console",

@@ -16,6 +16,7 @@ use axis_model::{
 };
 use identification::{Identification, SlipElement};
 
+use super::crossing::band_n;
 use super::springs::{Spring, Springs, of_bristle};
 use crate::compensation::{
     BENDS_PER_M2, GAPS_M, LEVELS, LONGEST_SLIP_M, Model, PERIODS_M, RIPPLES, Ripple,
@@ -28,12 +29,6 @@ const RIGID_M: f64 = 1.0e-6;
 /// The factors end where the Stribeck fall has come down to this share of itself.
 const END_OF_FALL: f64 = 2.0e-3;
 
-/// A gap is crossed while the force behind it goes from this share of the Coulomb level one way to
-/// as much the other. Within less the motor would have to be accelerated harder: with a fiftieth
-/// the machine 106 of `--bench drawn` was left 20 µm at F 8000 (2.9 with a tenth), with a third the
-/// others are left half as much again (2026-11-27).
-const CROSSING: f64 = 0.2;
-
 /// Friction that is said to differ by direction by more than this is a weight beside it: a record
 /// without a load scale calls all of an offset so where the fall differs by direction.
 const MOST_ASYMMETRY: f64 = 0.5;
@@ -41,6 +36,8 @@ const MOST_ASYMMETRY: f64 = 0.5;
 /// What was identified of an axis, one effect by one.
 struct Found<'a> {
     coulomb_n: f64,
+    /// What takes the same force either way.
+    offset_n: f64,
     viscous: f64,
     inertia: Option<&'a Inertia<Estimate>>,
     stribeck: Option<&'a Stribeck<Estimate>>,
@@ -57,6 +54,7 @@ impl<'a> Found<'a> {
     fn of(effects: &'a [Effect<Estimate>]) -> Self {
         let mut found = Self {
             coulomb_n: 0.0,
+            offset_n: 0.0,
             viscous: 0.0,
             inertia: None,
             stribeck: None,
@@ -71,6 +69,7 @@ impl<'a> Found<'a> {
         for effect in effects {
             match effect {
                 Effect::Coulomb(Coulomb { coulomb }) => found.coulomb_n = coulomb.value.max(0.0),
+                Effect::Offset(own) => found.offset_n = own.offset.value,
                 Effect::Viscous(Viscous { viscous }) => found.viscous = viscous.value.max(0.0),
                 Effect::Inertia(own) => found.inertia = Some(own),
                 Effect::Stribeck(own) => found.stribeck = Some(own),
@@ -181,6 +180,7 @@ pub fn of_effects(
     give_screw(&mut model, &found, known);
     let springs = slipping.unwrap_or_else(|| found.springs(motor));
     give_elements(&mut model, springs);
+    give_gap(&mut model, &found, known);
     give_places(&mut model, &found, known);
     Some(model)
 }
@@ -274,10 +274,19 @@ fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
     model.stiffness_n_per_m = stiffness;
     model.motor_inertia_kg = (all_kg - load.value).max(0.0);
     model.windup_ahead_s = model.damping_s - damping / stiffness;
-    let gap_m = found.gap.map_or(0.0, |own| own.gap.value);
-    model.gap_m = if GAPS_M.contains(&gap_m) { gap_m } else { 0.0 };
-    model.gap_force_n = (CROSSING * found.coulomb_n).max(1.0);
     model.table_mass_kg = load.value;
+}
+
+/// The gap behind the motor. A constant force shifts where it is crossed; one that friction never
+/// comes up to holds the table on one flank. Without a screw the drive does not cross any.
+fn give_gap(model: &mut Model, found: &Found<'_>, known: &Known) {
+    let gap_m = found.gap.map_or(0.0, |own| own.gap.value);
+    let table_n = model.table_n() * model.factor[0];
+    if model.table_mass_kg > 0.0 && GAPS_M.contains(&gap_m) && found.offset_n.abs() < table_n {
+        model.gap_m = gap_m;
+        model.table_force_n = found.offset_n;
+        model.gap_force_n = band_n(model, known.limits.acceleration_m_per_s2).max(1.0);
+    }
 }
 
 #[cfg(test)]

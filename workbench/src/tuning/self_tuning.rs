@@ -108,10 +108,12 @@ mod tests {
                 (stiffness - 10.0 / model.slip_m[3]).abs() < 1.0e-3,
                 "{stiffness}"
             );
-            let (level_n, slip_m) = (model.level_n, model.slip_m);
+            let band = own.gap_force_n / model.gap_force_n;
+            assert!((band - level_n / model.level_n()).abs() < 1.0e-9, "{band}");
             let rest = Model {
-                level_n,
-                slip_m,
+                level_n: model.level_n,
+                slip_m: model.slip_m,
+                gap_force_n: model.gap_force_n,
                 ..**own
             };
             assert_eq!(rest, model);

@@ -2,8 +2,7 @@
 
 use fixed::types::I8F24;
 
-use super::element::Coarse;
-use crate::units::{Velocity, narrowed};
+use crate::units::{Coarse, Velocity, narrowed};
 
 /// What differs by direction.
 ///

@@ -4,10 +4,10 @@
 //! there and back leaves no trace, and a factor on its level is one on the way after which it
 //! slips.
 
-use fixed::types::{I20F12, I30F2, U3F29, U17F15};
+use fixed::types::{I20F12, U3F29, U17F15};
 
 use super::path::Path;
-use crate::units::{Velocity, narrowed};
+use crate::units::{Coarse, Velocity, narrowed};
 
 /// Elements of the model.
 pub const ELEMENTS: usize = 10;
@@ -24,9 +24,6 @@ pub const STIFFNESS_BITS: u32 = 24;
 
 /// How far an element is bent, 10 nm.
 pub(super) type Bend = I20F12;
-
-/// Torque in a quarter of µN·m.
-pub(super) type Coarse = I30F2;
 
 /// How far all elements are bent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

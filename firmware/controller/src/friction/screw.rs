@@ -3,15 +3,14 @@
 use fixed::types::{I4F28, I20F12};
 
 use super::coarse;
-use super::element::Coarse;
-use crate::units::{Acceleration, AccelerationGain, Velocity, narrowed};
+use crate::units::{Acceleration, AccelerationGain, Coarse, Torque, Velocity, narrowed};
 
 /// What is between motor and table.
 ///
 /// The screw is wound up by what it transmits, `F / K`. A gap is crossed where that changes sign:
 /// the motor stands half of it farther on the side of the force, and goes across within a band of
-/// the force about zero. Wind-up is that of friction; a gap goes by the acceleration of the table
-/// as well.
+/// the force about zero. Wind-up is that of friction; a gap goes by what accelerates the table and
+/// by its weight as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Screw {
     /// Wind-up per torque, 10 nm per µN·m.
@@ -22,6 +21,8 @@ pub struct Screw {
     pub gap_per_torque: I4F28,
     /// Torque per acceleration of the table.
     pub table_inertia: AccelerationGain,
+    /// Constant torque of the table.
+    pub table_torque: Torque,
     /// Across a gap the motor gets torque for no more acceleration than the axis may have.
     pub acceleration_limit: Velocity,
 }
@@ -44,7 +45,8 @@ impl Screw {
     /// What it transmits beside friction, where that counts.
     pub(super) fn beside_friction(&self, acceleration: Acceleration) -> Coarse {
         if self.has_gap() {
-            coarse(self.table_inertia, Velocity(acceleration.0))
+            let constant = Coarse::saturating_from_num(self.table_torque.0);
+            constant.saturating_add(coarse(self.table_inertia, Velocity(acceleration.0)))
         } else {
             Coarse::ZERO
         }
