@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use plant_sim::Machine;
+use plant_sim::machine::MachineAxis;
 use serde::Serialize;
 
 use crate::compensation::{self, AxisCompensation};
@@ -10,7 +11,6 @@ use crate::error::{Failure, Outcome};
 use crate::network::master::AxisCycle;
 use crate::progress;
 use crate::session::{Session, Stand};
-use crate::trajectory::circle_limits::Slowest;
 use crate::trajectory::{Contour, Place};
 
 /// What `contour --json` says.
@@ -37,6 +37,10 @@ pub struct ContourReport {
     /// Cycles whose torque did not come in time.
     pub missed_cycles: u32,
 }
+
+/// Longer, or shorter, is a mistake in the feed.
+const LONGEST_H: f64 = 2.0;
+const FEWEST_CYCLES: f64 = 10.0;
 
 /// Distances from the contour at its feed; those of start and stop do not count.
 #[derive(Clone, Debug, Default)]
@@ -133,54 +137,148 @@ fn follow(session: &mut Session<'_>, axes: usize, contour: &Contour) -> Outcome<
 /// # Errors
 /// What does not fit, and the limit.
 pub fn check(machine: &Machine, contour: &Contour) -> Outcome<()> {
-    let limits = Slowest::of(machine);
-    let refused = |text: String| Err(Failure::new(format!("machine {}: {text}", machine.name)));
-    if machine.axes.len() < 2 {
-        return refused(format!(
-            "a contour needs two axes, this machine has {}",
+    let [x, y, ..] = &machine.axes[..] else {
+        return Err(Failure::new(format!(
+            "machine {}: a contour needs two axes, this machine has {}",
+            machine.name,
             machine.axes.len()
-        ));
+        )));
+    };
+    let feed_mm_min = 6.0e4 * contour.feed_m_per_s();
+    let hours = contour.duration_s() / 3600.0;
+    if hours > LONGEST_H {
+        return Err(Failure::new(format!(
+            "--feed-mm-min {feed_mm_min}: the contour of {:.0} mm would take {hours:.1} h, more than {LONGEST_H}; a faster feed takes less",
+            1.0e3 * contour.length_m(),
+        )));
     }
-    let far = |point: &&[f64; 2]| point.iter().any(|at_m| at_m.abs() > limits.travel_m);
-    if let Some([x_m, y_m]) = contour.points_m().iter().find(far) {
-        return refused(format!(
-            "the point {} / {} mm is beyond ±{} mm of travel",
-            1.0e3 * x_m,
-            1.0e3 * y_m,
-            1.0e3 * limits.travel_m
-        ));
+    if contour.at_feed_s().is_empty() || contour.duration_s() < FEWEST_CYCLES * machine.period_s {
+        return Err(Failure::new(format!(
+            "--feed-mm-min {feed_mm_min}: the contour of {:.3} mm would be over within {FEWEST_CYCLES} cycles",
+            1.0e3 * contour.length_m(),
+        )));
     }
-    let (fastest, hardest) = demands(contour, machine.period_s);
-    if fastest > limits.velocity_m_per_s {
-        return refused(format!(
-            "--feed-mm-min: the contour takes {:.0} mm/min of an axis, the limit is {:.0}",
-            6.0e4 * fastest,
-            6.0e4 * limits.velocity_m_per_s
-        ));
-    }
-    if hardest > limits.acceleration_m_per_s2 {
-        return refused(format!(
-            "--feed-mm-min: the contour takes {hardest:.2} m/s² of an axis, the limit is {}; a slower feed takes less with its square",
-            limits.acceleration_m_per_s2
-        ));
-    }
-    Ok(())
+    let demands = Demand::of(contour, machine.period_s);
+    [x, y]
+        .into_iter()
+        .zip(demands)
+        .try_for_each(|(axis, demand)| demand.within(axis))
 }
 
-/// Largest velocity and acceleration of an axis, by differences of setpoints.
-fn demands(contour: &Contour, period_s: f64) -> (f64, f64) {
-    let cycles = (contour.duration_s() / period_s).ceil();
-    let at = |cycle: f64| contour.place(cycle * period_s).at_m;
-    let (mut fastest, mut hardest, mut cycle) = (0.0_f64, 0.0_f64, 1.0);
-    while cycle < cycles {
-        let [before, here, after] = [at(cycle - 1.0), at(cycle), at(cycle + 1.0)];
-        for axis in 0..2 {
-            let way = after[axis] - here[axis];
-            let turn = way - (here[axis] - before[axis]);
-            fastest = fastest.max(way.abs() / period_s);
-            hardest = hardest.max(turn.abs() / (period_s * period_s));
+/// What a contour asks of an axis, by differences of setpoints.
+#[derive(Clone, Copy, Debug, Default)]
+struct Demand {
+    travel_m: f64,
+    velocity_m_per_s: f64,
+    acceleration_m_per_s2: f64,
+}
+
+impl Demand {
+    fn of(contour: &Contour, period_s: f64) -> [Self; 2] {
+        let cycles = (contour.duration_s() / period_s).ceil();
+        let at = |cycle: f64| contour.place(cycle * period_s).at_m;
+        let (mut most, mut cycle) = ([Self::default(); 2], 0.0);
+        while cycle <= cycles {
+            let [before, here, after] = [at(cycle - 1.0), at(cycle), at(cycle + 1.0)];
+            for (axis, own) in most.iter_mut().enumerate() {
+                let way = after[axis] - here[axis];
+                let turn = way - (here[axis] - before[axis]);
+                own.travel_m = own.travel_m.max(here[axis].abs());
+                own.velocity_m_per_s = own.velocity_m_per_s.max(way.abs() / period_s);
+                let acceleration = turn.abs() / (period_s * period_s);
+                own.acceleration_m_per_s2 = own.acceleration_m_per_s2.max(acceleration);
+            }
+            cycle += 1.0;
         }
-        cycle += 1.0;
+        most
     }
-    (fastest, hardest)
+
+    fn within(self, axis: &MachineAxis) -> Outcome<()> {
+        let limits = &axis.limits;
+        for (wanted, limit, unit, what) in [
+            (
+                1.0e3 * self.travel_m,
+                1.0e3 * limits.travel_m,
+                "mm",
+                "of travel to either side",
+            ),
+            (
+                6.0e4 * self.velocity_m_per_s,
+                6.0e4 * limits.velocity_m_per_s,
+                "mm/min",
+                "of velocity; a slower feed takes less",
+            ),
+            (
+                self.acceleration_m_per_s2,
+                limits.acceleration_m_per_s2,
+                "m/s²",
+                "of acceleration; a slower feed takes less with its square",
+            ),
+        ] {
+            if wanted > limit {
+                return Err(Failure::new(format!(
+                    "axis {}: the contour takes {wanted:.2} {unit}, the limit is {limit} {unit} {what}",
+                    axis.name
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A circle of 10 mm about the middle, once around.
+    fn around(feed_mm_min: f64) -> Contour {
+        let points = (0..=628).map(|step| {
+            let angle = 0.01 * f64::from(step);
+            [0.01 * angle.cos(), 0.01 * angle.sin()]
+        });
+        Contour::through(points.collect(), feed_mm_min / 6.0e4).unwrap()
+    }
+
+    #[test]
+    fn a_contour_that_the_machine_cannot_run_is_refused_with_the_limit() {
+        let machine = Machine::reference();
+        assert_eq!(check(&machine, &around(2000.0)), Ok(()));
+        let refused = |contour: &Contour| check(&machine, contour).unwrap_err().0;
+        assert!(refused(&around(0.1)).contains("would take 10.5 h"));
+        assert!(refused(&around(2.0e4)).contains("the limit is 5 m/s² of acceleration"));
+        assert!(refused(&around(1.0e9)).contains("would be over within 10 cycles"));
+        let bulge = [[0.0, -0.19], [0.19, -0.1], [0.19, 0.1], [0.0, 0.19]];
+        let travel_m = machine.axes[0].limits.travel_m;
+        let scale = travel_m / 0.191;
+        let out = bulge.map(|point| point.map(|at_m| scale * at_m)).to_vec();
+        let out = Contour::through(out, 0.01).unwrap();
+        assert!(
+            refused(&out).contains("of travel to either side"),
+            "between its points"
+        );
+        let mut one = Machine::reference();
+        one.axes.truncate(1);
+        assert!(
+            check(&one, &around(2000.0))
+                .unwrap_err()
+                .0
+                .contains("two axes")
+        );
+    }
+
+    #[test]
+    fn a_contour_is_followed_and_its_error_seen() {
+        let machine = Machine::reference();
+        let stand = Stand::in_process(&machine);
+        let none = stand.uncompensated();
+        let report = run(&stand, &around(3000.0), &none, None).unwrap();
+        // Bursts of some tens of micrometres at three of the four reversals; one is where it ends.
+        assert_eq!(report.reversals, [1, 2]);
+        assert!(
+            (20.0..60.0).contains(&report.largest_um),
+            "{}",
+            report.largest_um
+        );
+        assert!(report.rms_um < 0.5 * report.largest_um);
+    }
 }

@@ -134,6 +134,7 @@ impl Own {
             stated.without_presliding();
         }
         let unknown = report.parameters.unknown.keys();
+        let unknown = unknown.filter(|name| !report.parameters.is_used_amid_interval(name));
         stated
             .left_out
             .extend(unknown.map(|name| format!("{name}: unknown")));

@@ -55,7 +55,8 @@ pub use tuning::{LevelTuning, Progress};
 pub struct FrictionConfig {
     /// Ways after which elements slip.
     pub ways: SlipWays,
-    /// Stiffnesses of elements; the sum of their levels, stiffness times way, is the Coulomb torque.
+    /// Stiffnesses of elements; the sum of their levels, stiffness times way, is the Coulomb
+    /// torque.
     pub stiffnesses: Stiffnesses,
     /// What of them is the table's, and winds the screw up.
     pub of_table: Stiffnesses,

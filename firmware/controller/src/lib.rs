@@ -343,7 +343,8 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
 const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
 
 /// The acceleration of the setpoint when the torque acts: that of the middle of the torque's cycle,
-/// and with a model of friction, which tells the lag of the current loop, so much later.
+/// and with a model of friction, which tells the lag of the current loop, so much later; a cycle at
+/// most, since a step of the acceleration looks like jerk.
 fn accelerated(config: &Config, reference: &Reference) -> Acceleration {
     let Some(model) = &config.friction else {
         return reference.acceleration;
@@ -351,6 +352,7 @@ fn accelerated(config: &Config, reference: &Reference) -> Acceleration {
     let jerk = Velocity(reference.jerk.0);
     // x(k+1) is half a cycle before that middle.
     let lag = model.torque.cycles.wrapping_sub(HALF_A_CYCLE);
+    let lag = lag.min(I8F24::ONE);
     Acceleration(Velocity(reference.acceleration.0).plus(jerk.scaled(lag)).0)
 }
 

@@ -386,8 +386,9 @@ impl Reading<'_> {
     /// Below 2²⁴ · 2²⁷ · 2¹⁵.
     fn slip_way(&self, way: Parameter) -> Result<U17F15, SetError> {
         let numerator = [self.steps(way), COUNTS_PER_M, Q15];
-        let bits = Self::held(way, &numerator, &[way.unit().per_si])?;
-        Ok(U17F15::from_bits(bits.unsigned_abs()))
+        let bits = Fraction::new(&numerator, &[way.unit().per_si]).and_then(Fraction::nearest);
+        let bits = bits.and_then(|bits| u32::try_from(bits).ok());
+        bits.map(U17F15::from_bits).ok_or(SetError::TooLarge(way))
     }
 
     /// A share of a level over a way. Below 2²⁸ · 2²⁰ · 2²⁷.
@@ -1072,6 +1073,38 @@ mod tests {
             .unwrap();
         let (min, max) = (entry.min, entry.max);
         (any::<i32>(), 0..31_u32).prop_map(move |(value, shift)| (value >> shift).clamp(min, max))
+    }
+
+    #[test]
+    fn elements_slip_after_their_ways_at_their_levels_and_one_that_is_too_stiff_is_refused() {
+        let element = |level: i32, way: i32| {
+            with(&[
+                (Parameter::FrictionLevel1, level),
+                (Parameter::FrictionWay1, way),
+            ])
+            .settings()
+        };
+        // 0.1 mN·m to 268 N·m, 10 nm to 1 mm, in tenths of a nanometre.
+        for (level, way) in [(100, 10_000_000), (100_000, 100), (250_000_000, 10_000_000)] {
+            let friction = element(level, way).unwrap().config.friction.unwrap();
+            let [counts, stiffness] = [
+                friction.ways[0].to_num::<f64>(),
+                f64::from(friction.stiffnesses[0]) * 2.0_f64.powi(12 - 24),
+            ];
+            assert!(
+                (counts / (0.01 * f64::from(way)) - 1.0).abs() < 1.0e-4,
+                "{counts}"
+            );
+            // To half a step of the stiffness.
+            let most = counts * 2.0_f64.powi(-13) + 1.0e-4 * f64::from(level);
+            let reached = stiffness * counts;
+            assert!(
+                (reached - f64::from(level)).abs() < most,
+                "{reached} of {level}"
+            );
+        }
+        let stiff = element(250_000_000, 100).unwrap_err();
+        assert_eq!(stiff, SetError::TooLarge(Parameter::FrictionLevel1));
     }
 
     #[test]

@@ -22,7 +22,7 @@ use axis_model::{Effect, EffectName, Estimate, Parameter, TorqueRipple};
 use crate::evidence::thresholds::MOST_EFFECTS;
 use crate::model::effects::curve;
 use crate::model::effects::position_dependent_friction::knot_name;
-use crate::report::forms::Report;
+use crate::report::forms::{ParameterTable, Report, UnknownParameter};
 use crate::report::parameters::COULOMB_ASYMMETRY;
 
 /// Parameters by the name that a report gives them.
@@ -57,14 +57,29 @@ const USED_AS_AN_INTERVAL: [&str; 3] = ["compliance_stiffness", "compliance_damp
 /// The parameters that are known, and those that are used though they are not.
 fn used(report: &Report) -> Table {
     let mut table = report.parameters.known.clone();
-    for key in USED_AS_AN_INTERVAL {
-        let unknown = report.parameters.unknown.get(key);
-        if let Some(own) = unknown.filter(|own| own.low > 0.0) {
-            let (middle, half) = (0.5 * (own.low + own.high), 0.5 * (own.high - own.low));
-            table.insert(key.into(), Estimate::about(middle, half, &own.unit));
-        }
+    for (key, own) in amid_interval(&report.parameters) {
+        let (middle, half) = (0.5 * (own.low + own.high), 0.5 * (own.high - own.low));
+        table.insert(key.into(), Estimate::about(middle, half, &own.unit));
     }
     table
+}
+
+/// Parameters that are unknown and stand amid their intervals in the effects.
+fn amid_interval(
+    parameters: &ParameterTable,
+) -> impl Iterator<Item = (&'static str, &UnknownParameter)> {
+    USED_AS_AN_INTERVAL.into_iter().filter_map(|key| {
+        let unknown = parameters.unknown.get(key)?;
+        (unknown.low > 0.0).then_some((key, unknown))
+    })
+}
+
+impl ParameterTable {
+    /// Whether a parameter is unknown, and stands amid its interval in the effects all the same.
+    #[must_use]
+    pub fn is_used_amid_interval(&self, key: &str) -> bool {
+        amid_interval(self).any(|(own, _)| own == key)
+    }
 }
 
 /// The most that one effect is found. One of them may have a size that nobody knows.

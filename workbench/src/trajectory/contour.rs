@@ -34,6 +34,9 @@ pub struct Place {
 const RAMP_S: f64 = 0.2;
 /// Start and stop take at most this share of the contour each.
 const RAMP_SHARE: f64 = 0.25;
+/// How far neighbours may be apart: nearer ones are one point, written twice.
+const NEAREST_M: f64 = 1.0e-9;
+const FARTHEST_M: f64 = 100.0;
 /// Fewer are no contour.
 const FEWEST: usize = 4;
 
@@ -52,11 +55,13 @@ impl Contour {
         let mut ways_m = vec![0.0];
         for (place, pair) in points_m.windows(2).enumerate() {
             let chord_m = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-            if chord_m.is_nan() || chord_m <= 0.0 || chord_m.is_infinite() {
+            if !(NEAREST_M..FARTHEST_M).contains(&chord_m) {
                 return Err(Failure::new(format!(
-                    "points {} and {}: two neighbours need a finite way between them",
+                    "points {} and {}: two neighbours must be {} nm to {} m apart",
                     place + 1,
-                    place + 2
+                    place + 2,
+                    1.0e9 * NEAREST_M,
+                    FARTHEST_M
                 )));
             }
             ways_m.push(ways_m[place] + chord_m);
@@ -249,6 +254,9 @@ mod tests {
         let mut twice = arc();
         twice[7] = twice[6];
         assert!(refused(twice).starts_with("points 7 and 8"));
+        let mut joined = arc();
+        joined[7] = [joined[6][0], joined[6][1] + 1.0e-17];
+        assert!(refused(joined).starts_with("points 7 and 8"));
         let mut gone = arc();
         gone[3][1] = f64::NAN;
         assert!(refused(gone).starts_with("points 3 and 4"));

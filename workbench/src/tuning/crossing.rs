@@ -11,7 +11,8 @@ use crate::compensation::Model;
 /// fiftieth the machine 106 of `--bench drawn` was left 20 µm at F 8000 (2.9 within a tenth),
 /// within a third the others half as much again (2026-11-27).
 const NARROWEST: f64 = 0.2;
-/// No farther than this: beyond, the gap would not be crossed altogether.
+/// No farther than to this share of what the friction comes to: beyond, the gap would not be
+/// crossed altogether.
 const WIDEST: f64 = 0.9;
 const STEP: f64 = 0.02;
 /// The reversal that a motor is to follow: R 100 mm at F 8000 mm/min, and what of its acceleration
@@ -27,7 +28,9 @@ pub(super) fn band_n(model: &Model, limit_m_per_s2: f64) -> f64 {
     while share < WIDEST && !has_time(model, share * all_n, limit_m_per_s2) {
         share += STEP;
     }
-    share * all_n
+    // What is transmitted has to come to both ends of it.
+    let comes_to_n = all_n - model.table_force_n.abs();
+    (share * all_n).min(WIDEST * comes_to_n.max(0.0))
 }
 
 /// Whether a band is wide enough after reversals of either direction: a constant force lets one be
@@ -107,6 +110,9 @@ mod tests {
         let wide = share(1.6e-5, 5.0);
         assert!((0.43..0.46).contains(&wide), "{wide}");
         assert!(share(1.6e-5, 20.0) < 0.6 * wide);
-        assert!(share(1.0e-3, 1.0) < WIDEST + STEP);
+        assert!(share(1.0e-3, 1.0) <= WIDEST);
+        let mut heavy = spring(1.6e-5);
+        heavy.table_force_n = -300.0;
+        assert!(band_n(&heavy, 5.0) <= WIDEST * 60.0 + 1.0e-9);
     }
 }

@@ -281,7 +281,7 @@ fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
 /// comes up to holds the table on one flank. Without a screw the drive does not cross any.
 fn give_gap(model: &mut Model, found: &Found<'_>, known: &Known) {
     let gap_m = found.gap.map_or(0.0, |own| own.gap.value);
-    let table_n = model.table_n() * model.factor[0];
+    let table_n = model.table_n();
     if model.table_mass_kg > 0.0 && GAPS_M.contains(&gap_m) && found.offset_n.abs() < table_n {
         model.gap_m = gap_m;
         model.table_force_n = found.offset_n;

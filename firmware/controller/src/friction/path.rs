@@ -93,8 +93,8 @@ const SHARE_BITS: u32 = 6;
 /// From such a share to 24 fractional bits.
 const SHARE_SHIFT: u32 = 24 - SHARE_BITS;
 
-/// `one / (one + other)` in 64ths, rounded down, digit by digit; each counts as 2³⁰ at most, 2.6 m/s
-/// at 1 kHz, so that twice their sum has room.
+/// `one / (one + other)` in 64ths, rounded down, digit by digit; each counts as 2³⁰ at most,
+/// 2.6 m/s at 1 kHz, so that twice their sum has room.
 fn share(one: u32, other: u32) -> i32 {
     let [mut rest, other] = [one, other].map(|size| size.min(1 << 30));
     let all = rest.wrapping_add(other);

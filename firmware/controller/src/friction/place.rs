@@ -5,7 +5,8 @@ use fixed::types::I8F24;
 use crate::units::{Position, narrowed};
 
 /// Levels along the travel: `1 + x (linear + x · quadratic)`, with x from position zero in units of
-/// 2²⁴ counts (168 mm), never below zero.
+/// 2²⁴ counts (168 mm), never below zero. What it
+/// does to a level is cut at four times it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LevelPlace {
     /// Per unit.
