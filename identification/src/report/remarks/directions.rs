@@ -9,8 +9,8 @@ use crate::record::dataset::Dataset;
 const ALIKE: f64 = 1.5;
 
 const SAME_FORCE: &str = "offset and coulomb_asymmetry are the same force (a constant one, at rest \
-                          as in motion): nothing in this record tells them apart, and offset stands for \
-                          both; a load scale, or a Stribeck fall by direction, could";
+                          as in motion): nothing in this record tells them apart, and offset \
+                          stands for both";
 
 /// What an offset may be: only friction that falls or drifts by direction tells an asymmetry from a
 /// force, and the motion of a load, which says how large it is.
