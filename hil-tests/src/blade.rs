@@ -55,9 +55,9 @@ fn level() -> f64 {
     })
 }
 
-/// A quarter circle about a point over the suction side, from an angle on, clockwise.
-fn lead_mm(from: f64, share: f64) -> [f64; 2] {
-    let [x, y] = section_mm(level());
+/// A quarter circle about a point over the suction side, which it touches there; from an angle on,
+/// clockwise.
+fn lead_mm([x, y]: [f64; 2], from: f64, share: f64) -> [f64; 2] {
     let angle = from - FRAC_PI_2 * share;
     [x + LEAD_MM * angle.cos(), y + LEAD_MM * (1.0 + angle.sin())]
 }
@@ -90,11 +90,12 @@ fn root_mm(theta: f64) -> [f64; 2] {
 /// The section with what leads in and out, mm.
 #[must_use]
 pub fn section() -> Vec<[f64; 2]> {
-    let lead_in = along(|share| lead_mm(0.0, share));
     let begin = level();
+    let touch = section_mm(begin);
+    let lead_in = along(|share| lead_mm(touch, 0.0, share));
     let around = along(|share| section_mm(begin + TAU * share));
-    let lead_out = along(|share| lead_mm(-FRAC_PI_2, share));
-    let end = lead_mm(-FRAC_PI_2, 1.0);
+    let lead_out = along(|share| lead_mm(touch, -FRAC_PI_2, share));
+    let end = lead_mm(touch, -FRAC_PI_2, 1.0);
     [lead_in, around, lead_out, vec![end]].concat()
 }
 

@@ -88,11 +88,7 @@ pub fn run_after(
             radius_mm: 1.0e3 * circle.radius_m,
             feed_mm_min: 6.0e4 * circle.feed_m_per_s,
             compensation: compensation::method(compensation).to_owned(),
-            deviation_of: if session.sees_truth() {
-                "table"
-            } else {
-                "load scale"
-            },
+            deviation_of: session.sees(),
             bus_load_percent: f64::from(stand.machine.bus_load_per_mille()) / 10.0,
             missed_cycles: session.missed(),
             refined_levels: refines.then(|| session.refined_levels()).transpose()?,

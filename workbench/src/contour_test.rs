@@ -11,6 +11,7 @@ use crate::error::{Failure, Outcome};
 use crate::network::master::AxisCycle;
 use crate::progress;
 use crate::session::{Session, Stand};
+use crate::trajectory::circle_limits::two_axes;
 use crate::trajectory::{Contour, Place};
 
 /// What `contour --json` says.
@@ -54,12 +55,7 @@ struct Distances {
 
 impl Distances {
     fn take(&mut self, place: &Place, axes: &[AxisCycle]) {
-        let off_um = [0, 1].map(|axis| {
-            let table_m = axes[axis]
-                .truth
-                .map_or(axes[axis].load_m, |truth| truth.table_m);
-            1.0e6 * (table_m - place.at_m[axis])
-        });
+        let off_um = [0, 1].map(|axis| 1.0e6 * (axes[axis].table_m() - place.at_m[axis]));
         let distance_um = (off_um[1] * place.along[0] - off_um[0] * place.along[1]).abs();
         self.cycles += 1;
         self.squares_um2 += distance_um * distance_um;
@@ -102,11 +98,7 @@ pub fn run(
             length_mm: 1.0e3 * contour.length_m(),
             reversals: distances.reversals,
             compensation: compensation::method(compensation).to_owned(),
-            error_of: if session.sees_truth() {
-                "table"
-            } else {
-                "load scale"
-            },
+            error_of: session.sees(),
             largest_um: distances.largest.0,
             largest_at_mm: distances.largest.1.map(|at_m| 1.0e3 * at_m),
             rms_um: (distances.squares_um2 / f64::from(distances.cycles.max(1))).sqrt(),
@@ -137,13 +129,7 @@ fn follow(session: &mut Session<'_>, axes: usize, contour: &Contour) -> Outcome<
 /// # Errors
 /// What does not fit, and the limit.
 pub fn check(machine: &Machine, contour: &Contour) -> Outcome<()> {
-    let [x, y, ..] = &machine.axes[..] else {
-        return Err(Failure::new(format!(
-            "machine {}: a contour needs two axes, this machine has {}",
-            machine.name,
-            machine.axes.len()
-        )));
-    };
+    let both = two_axes(machine, "a contour")?;
     let feed_mm_min = 6.0e4 * contour.feed_m_per_s();
     let hours = contour.duration_s() / 3600.0;
     if hours > LONGEST_H {
@@ -159,8 +145,7 @@ pub fn check(machine: &Machine, contour: &Contour) -> Outcome<()> {
         )));
     }
     let demands = Demand::of(contour, machine.period_s);
-    [x, y]
-        .into_iter()
+    both.into_iter()
         .zip(demands)
         .try_for_each(|(axis, demand)| demand.within(axis))
 }
@@ -178,8 +163,9 @@ impl Demand {
         let cycles = (contour.duration_s() / period_s).ceil();
         let at = |cycle: f64| contour.place(cycle * period_s).at_m;
         let (mut most, mut cycle) = ([Self::default(); 2], 0.0);
+        let [mut before, mut here] = [at(-1.0), at(0.0)];
         while cycle <= cycles {
-            let [before, here, after] = [at(cycle - 1.0), at(cycle), at(cycle + 1.0)];
+            let after = at(cycle + 1.0);
             for (axis, own) in most.iter_mut().enumerate() {
                 let way = after[axis] - here[axis];
                 let turn = way - (here[axis] - before[axis]);
@@ -188,6 +174,7 @@ impl Demand {
                 let acceleration = turn.abs() / (period_s * period_s);
                 own.acceleration_m_per_s2 = own.acceleration_m_per_s2.max(acceleration);
             }
+            (before, here) = (here, after);
             cycle += 1.0;
         }
         most

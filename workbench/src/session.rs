@@ -269,10 +269,14 @@ impl<'a, L: Link> Session<'a, L> {
         axes.map(read).collect()
     }
 
-    /// Whether bursts are seen by an instrument at the machine, or by the load scale.
+    /// What is seen: the table, by an instrument at the machine, or the load scale.
     #[must_use]
-    pub fn sees_truth(&self) -> bool {
-        self.master.axis(0).truth.is_some()
+    pub fn sees(&self) -> &'static str {
+        if self.master.axis(0).truth.is_some() {
+            "table"
+        } else {
+            "load scale"
+        }
     }
 
     /// Disables the drives and gives the logs of all buses.
@@ -304,7 +308,7 @@ fn point(angle_rad: f64, axes: &[AxisCycle]) -> Point {
     let of = |value: &dyn Fn(&AxisCycle) -> f64| [value(&axes[0]), value(&axes[1])];
     Point {
         angle_rad,
-        table_m: of(&|axis| axis.truth.map_or(axis.load_m, |truth| truth.table_m)),
+        table_m: of(&AxisCycle::table_m),
         motor_m: of(&|axis| axis.truth.map_or(axis.motor_m, |truth| truth.motor_m)),
         reference_m: of(&|axis| axis.reference_m),
     }

@@ -7,7 +7,7 @@
 //! [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7 < 2³, so the
 //! accumulator stays below 2⁶⁰.
 
-use crate::units::Torque;
+use crate::units::{Torque, narrowed};
 
 /// Largest torque limit that the drive takes: 250 N·m.
 pub const TORQUE_LIMIT_MICRO_NM: i32 = 250_000_000;
@@ -99,8 +99,7 @@ impl FilterState {
         let sum = products.fold(self.rest, |sum, (c, v)| {
             sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v)))
         });
-        let whole = i32::try_from(sum.wrapping_shr(COEFFICIENT_FRACTION_BITS))
-            .unwrap_or(if sum < 0 { i32::MIN } else { i32::MAX });
+        let whole = narrowed::<COEFFICIENT_FRACTION_BITS>(sum);
         let y0 = whole.max(limit.saturating_neg()).min(limit);
         self.rest = sum & REST_MASK;
         self.past = [x0, x1, y0, y1];

@@ -76,8 +76,8 @@ pub struct FrictionConfig {
     pub viscous: [VelocityGain; 2],
     /// From x(k+1) to when the torque acts.
     pub torque: Ahead,
-    /// The same one cycle later; its way and velocity follow from that.
-    pub torque_after: Ahead,
+    /// How the levels fall behind one cycle farther; way and velocity there follow from that.
+    pub lag_after: LevelLag,
     /// Friction has a damping in presliding: its rate of change counts so many cycles.
     pub damping_cycles: I8F24,
     /// How much farther than the table the motor stands.
@@ -91,9 +91,7 @@ pub struct FrictionConfig {
 
 impl FrictionConfig {
     fn viscous(&self, velocity: Velocity) -> Coarse {
-        let gain = of_direction(&self.viscous, velocity);
-        // 40.24 bits.
-        Coarse::from_bits(narrowed::<22>(gain.times(velocity).0.to_bits()))
+        of_direction(&self.viscous, velocity).coarse(velocity)
     }
 }
 
@@ -190,19 +188,20 @@ impl FrictionState {
         self.at = Some(position);
         self.stand.go(config, &cycle, &Look { path, end, lag });
         let next = self.stand.push(config, &cycle, end).ahead;
-        let look = |ahead: &Ahead, way: Velocity, there: Velocity| {
-            let path = Path::between(direction, end, there, ahead.cycles, way);
-            let (mut stand, lag) = (self.stand, ahead.lag);
-            let end = there;
+        let look = |cycles: I8F24, lag: LevelLag, way: Velocity, there: Velocity| {
+            let path = Path::between(direction, end, there, cycles, way);
+            let (mut stand, end) = (self.stand, there);
             stand.go(config, &cycle, &Look { path, end, lag });
             stand.push(config, &cycle, end)
         };
-        let way = config.torque.way(velocity, acceleration);
-        let there = config.torque.velocity(velocity, acceleration);
-        let acting = look(&config.torque, way, there);
+        let ahead = &config.torque;
+        let way = ahead.way(velocity, acceleration);
+        let there = ahead.velocity(velocity, acceleration);
+        let acting = look(ahead.cycles, ahead.lag, way, there);
         let way = way.plus(there).plus(half);
         let there = there.plus(Velocity(acceleration.0));
-        let after = look(&config.torque_after, way, there);
+        let cycles = ahead.cycles.wrapping_add(I8F24::ONE);
+        let after = look(cycles, config.lag_after, way, there);
         self.feedforward(config, next, [acting, after])
     }
 
@@ -234,7 +233,7 @@ impl FrictionState {
         let turning = turn.minus(before.turn);
         let turn = turn.plus(turning.scaled(config.windup_cycles));
         let turn = config.screw.within_limit(turn);
-        let inertia = coarse(config.motor_inertia, turn);
+        let inertia = config.motor_inertia.coarse(Acceleration(turn.0));
         let rate = after.all.saturating_sub(before.acting.all);
         let damping = damping(config.damping_cycles, rate);
         let torque = acting.all.saturating_add(damping).saturating_add(inertia);
@@ -382,10 +381,4 @@ impl Recent {
 fn damping(cycles: I8F24, change: Coarse) -> Coarse {
     // 30.2 bits times 8.24 bits: 38.26 bits; one bit less is half of it.
     Coarse::from_bits(narrowed::<25>(change.wide_mul(cycles).to_bits()))
-}
-
-/// The torque of an acceleration.
-fn coarse(inertia: AccelerationGain, acceleration: Velocity) -> Coarse {
-    // 24.8 bits times 20.12 bits: 44.20 bits.
-    Coarse::from_bits(narrowed::<18>(inertia.0.wide_mul(acceleration.0).to_bits()))
 }

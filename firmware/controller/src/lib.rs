@@ -54,7 +54,7 @@ use cascade::{CascadeConfig, CascadeInput, CascadeState};
 use direction::{Direction, DirectionMemory, Turns};
 use filter::{FilterConfig, FilterState};
 use fixed::types::I8F24;
-use friction::{Feedforward, FrictionConfig, FrictionState, Progress};
+use friction::{Ahead, Feedforward, FrictionConfig, FrictionState, Progress};
 use pulse::{PulseConfig, PulseState, Setpoint};
 use reference::{Reference, ReferenceConfig};
 use ripple::RippleConfig;
@@ -340,8 +340,6 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
     }
 }
 
-const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
-
 /// The acceleration of the setpoint when the torque acts: that of the middle of the torque's cycle,
 /// and with a model of friction, which tells the lag of the current loop, so much later; a cycle at
 /// most, since a step of the acceleration looks like jerk.
@@ -351,7 +349,7 @@ fn accelerated(config: &Config, reference: &Reference) -> Acceleration {
     };
     let jerk = Velocity(reference.jerk.0);
     // x(k+1) is half a cycle before that middle.
-    let lag = model.torque.cycles.wrapping_sub(HALF_A_CYCLE);
+    let lag = model.torque.cycles.wrapping_sub(Ahead::HALF_A_CYCLE);
     let lag = lag.min(I8F24::ONE);
     Acceleration(Velocity(reference.acceleration.0).plus(jerk.scaled(lag)).0)
 }

@@ -271,6 +271,11 @@ impl VelocityGain {
         // 20.12 times 20.12 bits: 40.24 bits, exact.
         Torque(self.0.wide_mul(velocity.0))
     }
+
+    /// The same as friction has it, saturated.
+    pub(crate) fn coarse(self, velocity: Velocity) -> Coarse {
+        Coarse::from_bits(narrowed::<22>(self.times(velocity).0.to_bits()))
+    }
 }
 
 impl AccelerationGain {
@@ -280,6 +285,12 @@ impl AccelerationGain {
         // 24.8 times 20.12 bits: 44.20 bits, exact; brought to 40.24.
         let product = self.0.wide_mul(acceleration.0).to_bits();
         Torque(I40F24::from_bits(raised::<4>(product)))
+    }
+
+    /// The same as friction has it, saturated.
+    pub(crate) fn coarse(self, acceleration: Acceleration) -> Coarse {
+        let product = self.0.wide_mul(acceleration.0).to_bits();
+        Coarse::from_bits(narrowed::<18>(product))
     }
 }
 

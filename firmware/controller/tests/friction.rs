@@ -117,7 +117,7 @@ fn config() -> FrictionConfig {
         viscous: [VISCOUS + ASYMMETRY, VISCOUS - ASYMMETRY]
             .map(|gain| VelocityGain(I20F12::from_num(gain))),
         torque: ahead(AHEAD),
-        torque_after: ahead(AHEAD + 1.0),
+        lag_after: lag(AHEAD + 1.0),
         damping_cycles: I8F24::from_num(DAMPING),
         screw: Screw {
             compliance: I4F28::from_num(COMPLIANCE),

@@ -62,7 +62,6 @@ const Q48: u64 = 1 << 48;
 const STEPS_OF_A_STIFFNESS: u64 = 1 << (STIFFNESS_BITS + 3);
 /// Counts in which the friction model has places along the travel.
 const PLACE: u64 = 1 << 24;
-const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
 /// The friction model looks so many cycles ahead at most, with 24 fractional bits.
 const LONGEST_AHEAD: i32 = 8 << 24;
 /// A position gain above one per cycle is not stable.
@@ -333,7 +332,7 @@ impl Reading<'_> {
             return Ok(None);
         }
         let ahead = self.cycles(Parameter::FrictionAhead)?;
-        let torque = ahead.saturating_add(HALF_A_CYCLE);
+        let torque = ahead.saturating_add(Ahead::HALF_A_CYCLE);
         let (ways, [stiffnesses, of_table]) = self.elements()?;
         let viscous = self.viscous(Parameter::ViscousTorque)?;
         let asymmetry = self.viscous(Parameter::ViscousAsymmetry)?;
@@ -349,7 +348,7 @@ impl Reading<'_> {
             tuning: self.level_tuning()?,
             viscous: [viscous.plus(asymmetry), viscous.minus(asymmetry)],
             torque: self.ahead_by(torque),
-            torque_after: self.ahead_by(torque.saturating_add(I8F24::ONE)),
+            lag_after: self.level_lag(torque.saturating_add(I8F24::ONE)),
             damping_cycles: self.cycles(Parameter::FrictionDamping)?,
             screw: self.screw()?,
             windup_cycles: self.signed_cycles(Parameter::WindupAhead)?,
@@ -477,7 +476,7 @@ impl Reading<'_> {
         Ahead {
             cycles,
             way_by_acceleration: I8F24::from_bits(sum.to_bits().wrapping_shr(1)),
-            velocity_by_acceleration: cycles.saturating_add(HALF_A_CYCLE),
+            velocity_by_acceleration: cycles.saturating_add(Ahead::HALF_A_CYCLE),
             lag: self.level_lag(cycles),
         }
     }
@@ -601,7 +600,7 @@ impl Reading<'_> {
                 per_position: self.turns_per_position(period),
                 phase: self.angle(phase),
             }),
-            ahead: self.ahead_by(ahead.saturating_add(HALF_A_CYCLE)),
+            ahead: self.ahead_by(ahead.saturating_add(Ahead::HALF_A_CYCLE)),
         })
     }
 
@@ -644,7 +643,7 @@ impl Reading<'_> {
             table_inertia: AccelerationGain(I24F8::from_bits(
                 self.inertia_gain(Parameter::TableInertia, (1, 1))?,
             )),
-            table_torque: Torque::from_micro_nm(self.raw(Parameter::TableTorque)),
+            table_micro_nm: self.raw(Parameter::TableTorque),
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
     }
@@ -1125,7 +1124,7 @@ mod tests {
             for (lag, cycles) in [
                 (friction.lag, 1.0),
                 (friction.torque.lag, 1.0),
-                (friction.torque_after.lag, 2.0),
+                (friction.lag_after, 2.0),
             ] {
                 let x = cycles * f64::from(period_us) / f64::from(lag_us);
                 let come = 1.0 - (-x).exp();

@@ -71,18 +71,27 @@ pub fn fitting_circle(machine: &Machine) -> Circle {
     }
 }
 
+/// The axes that move in a plane.
+///
+/// # Errors
+/// Where the machine has fewer, with what needs them.
+pub fn two_axes<'a>(machine: &'a Machine, what: &str) -> Outcome<[&'a MachineAxis; 2]> {
+    match &machine.axes[..] {
+        [x, y, ..] => Ok([x, y]),
+        fewer => Err(Failure::new(format!(
+            "machine {}: {what} needs two axes, this machine has {}",
+            machine.name,
+            fewer.len()
+        ))),
+    }
+}
+
 /// Refuses a circle that the machine cannot run.
 ///
 /// # Errors
 /// What does not fit, and the limit.
 pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
-    let [x, y, ..] = &machine.axes[..] else {
-        return Err(Failure::new(format!(
-            "machine {}: a circle needs two axes, this machine has {}",
-            machine.name,
-            machine.axes.len()
-        )));
-    };
+    let [x, y] = two_axes(machine, "a circle")?;
     check_axis(x, circle)?;
     check_axis(y, circle)
 }

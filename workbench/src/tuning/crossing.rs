@@ -23,7 +23,7 @@ const SHARE: f64 = 0.6;
 /// Force to either side within which a gap is crossed, N, by a motor that may be accelerated so.
 #[must_use]
 pub(super) fn band_n(model: &Model, limit_m_per_s2: f64) -> f64 {
-    let all_n = table_n(model, f64::INFINITY);
+    let all_n = model.table_n();
     let mut share = NARROWEST;
     while share < WIDEST && !has_time(model, share * all_n, limit_m_per_s2) {
         share += STEP;
@@ -60,7 +60,7 @@ fn table_n(model: &Model, way_m: f64) -> f64 {
 /// The way after a reversal at which friction of the table has come from all of it to a force, by
 /// Masing's rule.
 fn way_m(model: &Model, force_n: f64) -> f64 {
-    let all_n = table_n(model, f64::INFINITY);
+    let all_n = model.table_n();
     let farthest_m = 2.0
         * model
             .slip_m

@@ -21,6 +21,9 @@ pub struct Ahead {
 }
 
 impl Ahead {
+    /// From the begin of a cycle to its middle.
+    pub const HALF_A_CYCLE: I8F24 = I8F24::from_bits(1 << 23);
+
     /// How far it is at such a velocity and acceleration.
     pub(crate) fn way(&self, velocity: Velocity, acceleration: Acceleration) -> Velocity {
         let turned = Velocity(acceleration.0).scaled(self.way_by_acceleration);
@@ -46,7 +49,7 @@ impl Path {
     }
 
     /// A way at constant acceleration, between two velocities, as elements have it that differ by
-    /// direction. Where the velocities differ in sign it turns round.
+    /// direction. Where the velocities differ in sign it turns round: so far on, and the rest back.
     pub(super) fn between(
         direction: &ByDirection,
         begin: Velocity,
@@ -55,29 +58,13 @@ impl Path {
         way: Velocity,
     ) -> Self {
         if (begin.0 ^ end.0).is_negative() && begin.0 != I20F12::ZERO && end.0 != I20F12::ZERO {
-            Self::turning(direction, begin, end, cycles, way)
+            let on = way_on(begin, end, cycles);
+            Self {
+                on: direction.way(on),
+                back: Some(direction.way(way.minus(on))),
+            }
         } else {
             Self::straight(direction.way(way))
-        }
-    }
-
-    /// It turns round after the share `r = |v₁| / (|v₁| + |v₂|)` of the time: `r v₁ τ / 2` on, and
-    /// the rest back.
-    #[inline(never)]
-    fn turning(
-        direction: &ByDirection,
-        begin: Velocity,
-        end: Velocity,
-        cycles: I8F24,
-        way: Velocity,
-    ) -> Self {
-        let [begin_size, end_size] =
-            [begin, end].map(|velocity| velocity.0.to_bits().unsigned_abs());
-        let share = I8F24::from_bits(share(begin_size, end_size).wrapping_shl(SHARE_SHIFT));
-        let on = begin.scaled(cycles).scaled(share).halved();
-        Self {
-            on: direction.way(on),
-            back: Some(direction.way(way.minus(on))),
         }
     }
 
@@ -86,6 +73,15 @@ impl Path {
         let on = self.on.size();
         self.back.map_or(on, |back| on.plus(back.size()))
     }
+}
+
+/// How far it goes on before it turns round, after the share `r = |v₁| / (|v₁| + |v₂|)` of the
+/// time: `r v₁ τ / 2`.
+#[inline(never)]
+fn way_on(begin: Velocity, end: Velocity, cycles: I8F24) -> Velocity {
+    let [begin_size, end_size] = [begin, end].map(|velocity| velocity.0.to_bits().unsigned_abs());
+    let share = I8F24::from_bits(share(begin_size, end_size).wrapping_shl(SHARE_SHIFT));
+    begin.scaled(cycles).scaled(share).halved()
 }
 
 /// Bits of a share of the time.

@@ -19,9 +19,7 @@ impl LevelPlace {
     /// The factor at a position; beyond 21 m as there.
     pub(super) fn at(self, position: Position) -> I8F24 {
         // 56.8 bits in units of 2²⁴ counts are 32 fractional bits; 24 of them stay.
-        let bits = position.0.to_bits().wrapping_shr(8);
-        let end = if bits < 0 { i32::MIN } else { i32::MAX };
-        let x = I8F24::from_bits(i32::try_from(bits).unwrap_or(end));
+        let x = I8F24::from_bits(narrowed::<8>(position.0.to_bits()));
         let slope = self.linear.saturating_add(product(self.quadratic, x));
         I8F24::ONE
             .saturating_add(product(slope, x))

@@ -2,8 +2,7 @@
 
 use fixed::types::{I4F28, I20F12};
 
-use super::coarse;
-use crate::units::{Acceleration, AccelerationGain, Coarse, Torque, Velocity, narrowed};
+use crate::units::{Acceleration, AccelerationGain, Coarse, Velocity, narrowed};
 
 /// What is between motor and table.
 ///
@@ -21,8 +20,8 @@ pub struct Screw {
     pub gap_per_torque: I4F28,
     /// Torque per acceleration of the table.
     pub table_inertia: AccelerationGain,
-    /// Constant torque of the table.
-    pub table_torque: Torque,
+    /// Constant torque of the table, µN·m; below 2²⁸.
+    pub table_micro_nm: i32,
     /// Across a gap the motor gets torque for no more acceleration than the axis may have.
     pub acceleration_limit: Velocity,
 }
@@ -45,8 +44,8 @@ impl Screw {
     /// What it transmits beside friction, where that counts.
     pub(super) fn beside_friction(&self, acceleration: Acceleration) -> Coarse {
         if self.has_gap() {
-            let constant = Coarse::saturating_from_num(self.table_torque.0);
-            constant.saturating_add(coarse(self.table_inertia, Velocity(acceleration.0)))
+            let constant = Coarse::wrapping_from_num(self.table_micro_nm);
+            constant.saturating_add(self.table_inertia.coarse(acceleration))
         } else {
             Coarse::ZERO
         }

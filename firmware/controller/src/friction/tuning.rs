@@ -15,7 +15,7 @@
 use fixed::types::I8F24;
 
 use crate::direction::Direction;
-use crate::units::{Position, PositionError, Torque};
+use crate::units::{Position, PositionError, Torque, narrowed};
 
 /// How the level is refined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,11 +114,10 @@ impl Tuner {
         // 31 times 31 bits: 40 fractional ones, of which 24 stay.
         let product =
             i64::from(lacking.to_micro_nm_lossy()).wrapping_mul(i64::from(config.per_micro_nm));
-        let step = i32::try_from(product.wrapping_shr(16));
-        let end = if product < 0 { i32::MIN } else { i32::MAX };
+        let step = I8F24::from_bits(narrowed::<16>(product));
         self.off = self
             .off
-            .saturating_add(I8F24::from_bits(step.unwrap_or(end)))
+            .saturating_add(step)
             .clamp(FARTHEST.saturating_neg(), FARTHEST);
         self.since = None;
     }

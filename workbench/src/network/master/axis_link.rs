@@ -43,6 +43,14 @@ pub struct AxisCycle {
     pub truth: Option<Truth>,
 }
 
+impl AxisCycle {
+    /// Where the table was: by the instrument, or by the load scale.
+    #[must_use]
+    pub fn table_m(&self) -> f64 {
+        self.truth.map_or(self.load_m, |truth| truth.table_m)
+    }
+}
+
 /// One axis, seen from the workbench.
 pub(super) struct AxisLink {
     pub(super) ids: AxisIds,
