@@ -3,6 +3,8 @@
 //! last one has friction of the motor's side as well.
 
 use hil_tests::Scope;
+use hil_tests::drawn::Drawn;
+use identification::Report;
 use plant_sim::Machine;
 use workbench::commissioning::identified_axes;
 use workbench::session::Stand;
@@ -102,7 +104,7 @@ const CASES: [Case; 5] = [
 ];
 
 /// A half width is at most this part of the truth: an interval of anything holds everything.
-const WIDEST: f64 = 0.5;
+const WIDEST: f64 = 0.55;
 
 #[test]
 fn what_the_motion_of_a_load_tells_holds_the_truth_on_machines_of_unlike_friction() {
@@ -118,21 +120,61 @@ fn what_the_motion_of_a_load_tells_holds_the_truth_on_machines_of_unlike_frictio
     }
 }
 
-fn assert_told(machine: &Machine, case: &Case) {
+/// Numbers of drawn machines that have a bristle on either side, friction and viscous friction that
+/// differ by direction on both, and a ripple; 103, 106 and 109 have a gap as well.
+const DRAWN: [u64; 7] = [107, 101, 103, 104, 106, 109, 110];
+
+#[test]
+fn what_is_told_of_both_sides_of_a_screw_holds_the_truth_on_drawn_machines() {
+    let count = if Scope::now().is_complete() {
+        DRAWN.len()
+    } else {
+        1
+    };
+    for number in &DRAWN[..count] {
+        let mut machine = Drawn::of_number(*number).machine;
+        machine.axes.truncate(1);
+        machine.name = format!("drawn {number}");
+        let actual = &machine.axes[0].actual;
+        let motor = actual.motor_side.as_ref().unwrap().sliding.coulomb_n;
+        let report = reported(&machine);
+        let mechanics = &actual.mechanics;
+        for (name, truth) in [
+            ("compliance_stiffness", mechanics.screw_stiffness_n_per_m),
+            ("load_inertia", mechanics.table_mass_kg),
+            ("load_coulomb", actual.sliding.coulomb_n),
+            ("motor_coulomb", motor),
+        ] {
+            assert_holds(&machine, &report, name, truth, 1.0);
+        }
+    }
+}
+
+/// What is identified of the first axis.
+fn reported(machine: &Machine) -> Report {
     let out = tempfile::tempdir().unwrap();
     let stand = Stand::in_process(machine);
     identified_axes::record(&stand, out.path()).unwrap();
     let results = identified_axes::identify(&stand, out.path()).unwrap();
-    let report = &results[0].report;
+    results.into_iter().next().unwrap().report
+}
+
+/// A parameter has the truth in its interval, whose half width is at most such a part of it.
+fn assert_holds(machine: &Machine, report: &Report, name: &str, truth: f64, widest: f64) {
+    let known = report.parameters.get(name);
+    let known = known.unwrap_or_else(|| panic!("{}: {name} is not known", machine.name));
+    let what = format!("{}: {name} {known:?} for {truth}", machine.name);
+    assert!((known.low..=known.high).contains(&truth), "{what}");
+    assert!(known.half_width() < widest * truth.abs(), "{what}");
+}
+
+fn assert_told(machine: &Machine, case: &Case) {
+    let report = reported(machine);
     let mut names: Vec<&str> = report.found.iter().map(String::as_str).collect();
     names.sort_unstable();
     assert_eq!(names, case.lacks, "{}", machine.name);
     assert_eq!(report.verdict, "explained", "{}", machine.name);
     for (name, truth) in case.parameters {
-        let known = report.parameters.get(name);
-        let known = known.unwrap_or_else(|| panic!("{}: {name} is not known", machine.name));
-        let what = format!("{}: {name} {known:?} for {truth}", machine.name);
-        assert!((known.low..=known.high).contains(truth), "{what}");
-        assert!(known.half_width() < WIDEST * truth.abs(), "{what}");
+        assert_holds(machine, &report, name, *truth, WIDEST);
     }
 }

@@ -39,6 +39,8 @@ const ROUNDS: i32 = 2;
 /// Where a gap went into the friction it is 0.27 and less: what is swallowed unseen is less than
 /// the noise of the effort over the stiffness.
 const TIED_PART: f64 = 0.5;
+/// Deflections of the motor's own friction that are tried for it, in those of the load's.
+const MOTOR_DEFLECTIONS: [f64; 5] = [0.35, 0.7, 1.0, 1.4, 2.5];
 
 /// The best wind-up beside other ways; `unit` is the moving velocity.
 fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
@@ -152,8 +154,13 @@ fn is_in_effort(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
     let balance = Balance::of(apart);
     let free = balance.left_by_all(&apart.columns(way));
     let motor = LoadMotion::of_motor(apart.motion, apart.path.position, 0.0);
-    let bend = motor.rubbed(apart.motion, carried.friction).swap_remove(0);
-    let tied = balance.left_by(&apart.predicted(way, own), &bend);
+    // Without the rate of a bend, which takes what comes with the direction and is in no effort.
+    let bends = MOTOR_DEFLECTIONS.map(|deflection| {
+        let mut columns = carried.on_motor(apart.motion, &motor, deflection);
+        columns.pop();
+        columns
+    });
+    let tied = balance.left_by(&apart.predicted(way, own), &bends);
     free >= TIED_PART * tied
 }
 
@@ -192,13 +199,14 @@ pub(super) mod tests {
         by_direction: f64,
         more: impl Fn(f64) -> f64,
     ) -> Axis {
-        rubbed_on_both(friction, by_direction, (0.0, friction), more)
+        rubbed_on_both(friction, [by_direction, 0.0], (0.0, friction), more)
     }
 
-    /// The same with so much Coulomb friction of the motor's own side, which follows another law.
+    /// The same with so much Coulomb friction of the motor's own side, which follows another law;
+    /// viscous friction of load and motor differ by direction.
     pub(in crate::evidence::difference) fn rubbed_on_both(
         friction: LoadFriction,
-        by_direction: f64,
+        by_direction: [f64; 2],
         (motor_coulomb, motor): (f64, LoadFriction),
         more: impl Fn(f64) -> f64,
     ) -> Axis {
@@ -208,7 +216,7 @@ pub(super) mod tests {
         let bend = friction.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
         let force = |row: usize| {
             let v = moved.velocity[row];
-            let viscous = 200.0 * v + 0.5 * by_direction * v.abs();
+            let viscous = 200.0 * v + 0.5 * by_direction[0] * v.abs();
             60.0 * moved.acceleration[row] + viscous + 25.0 * bend[row]
         };
         let force: Vec<f64> = (0..6000).map(force).collect();
@@ -219,7 +227,9 @@ pub(super) mod tests {
         let own = motor.bend(&Steps::of(&at, &pushed.velocity, 1.0e-3));
         let noise = |row: usize| 4.0 * (1.7 * (row * row % 1013) as f64).sin();
         let effort = force.iter().enumerate().map(|(row, force)| {
-            force + 30.0 * pushed.acceleration[row] + motor_coulomb * own[row] + noise(row)
+            let viscous = 0.5 * by_direction[1] * pushed.velocity[row].abs();
+            let own = motor_coulomb * own[row] + viscous;
+            force + 30.0 * pushed.acceleration[row] + own + noise(row)
         });
         let effort = effort.collect();
         let mut made = record(1.0e-3, at);

@@ -138,20 +138,21 @@ impl<'a> Balance<'a> {
     }
 
     /// The same of one column, that of the wind-up, beside friction of the motor's own side that is
-    /// rigid or bends like this, whichever leaves less. It only holds back: where it would have to
-    /// push, there is none.
-    pub(super) fn left_by(&self, wound: &[f64], bend: &[f64]) -> f64 {
+    /// rigid or bends in one of these ways, whichever leaves least; the first column of each is its
+    /// bend. It only holds back: where it would have to push, there is none.
+    pub(super) fn left_by(&self, wound: &[f64], bends: &[Vec<Vec<f64>>]) -> f64 {
         let held = [self.held(|row| wound[row])];
         let rigid = self.blocks(&held).fit();
-        let bent = self.at_efforts(&[wound.to_vec(), bend.to_vec()]);
-        let bent = self.blocks_beside(&OWN_WITHOUT_COULOMB, &bent).fit();
-        let holds_back = [
-            (rigid.coefficients.get(OWN_FRICTION), rigid.sse),
-            (bent.coefficients.last(), bent.sse),
-        ];
-        let left = holds_back
-            .into_iter()
-            .filter(|(own, _)| own.is_some_and(|own| *own >= 0.0))
+        let rigid = (rigid.coefficients.get(OWN_FRICTION).copied(), rigid.sse);
+        let bent = bends.iter().map(|bend| {
+            let columns = self.at_efforts(&[&[wound.to_vec()], bend.as_slice()].concat());
+            let fit = self.blocks_beside(&OWN_WITHOUT_COULOMB, &columns).fit();
+            let own = fit.coefficients.get(OWN_WITHOUT_COULOMB.len() + 1);
+            (own.copied(), fit.sse)
+        });
+        let left = bent
+            .chain([rigid])
+            .filter(|(own, _)| own.is_some_and(|own| own >= 0.0))
             .map(|(_, sse)| sse)
             .min_by(f64::total_cmp);
         left.unwrap_or_else(|| self.blocks_beside(&OWN_WITHOUT_COULOMB, &held).fit().sse)

@@ -210,6 +210,25 @@ impl Carried {
         load.plain().into_iter().chain(rubbed).chain(more).collect()
     }
 
+    /// Columns of a friction of the motor's own side, low-passed, that follows the law of the load's
+    /// with such a deflection in those of the load's: its bend, what else the load's friction goes
+    /// with, which the motor's may as well, and the rate of the bend.
+    pub(super) fn on_motor(
+        self,
+        motion: &Kinematics,
+        motor: &LoadMotion,
+        deflection: f64,
+    ) -> Vec<Vec<f64>> {
+        let friction = LoadFriction {
+            deflection: deflection * self.friction.deflection,
+            ..self.friction
+        };
+        let mut columns = motor.rubbed(motion, friction);
+        let more = self.more.columns(motion, motor, &columns[0]);
+        columns.splice(1..1, more);
+        columns
+    }
+
     /// Whether its friction is a bristle and nothing else.
     pub(super) fn rubs_as_a_bristle(self) -> bool {
         let LoadFriction {
