@@ -22,7 +22,7 @@ use workbench::network::master::Master;
 
 /// The scenarios of a scope by their names, and what the runner says when all of them passed.
 const QUICK: (&[&str], &str) = (&["separate_processes"], "1 passed; 0 failed");
-const ALL: (&[&str], &str) = (&[], "3 passed; 0 failed");
+const ALL: (&[&str], &str) = (&[], "4 passed; 0 failed");
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -84,12 +84,27 @@ struct Setup<'a> {
     faults: Option<&'a str>,
     /// The lock-step deadline of nodes and master; long without it.
     deadline: Option<Duration>,
+    /// Nodes follow the clock, each axis on a bus of its own: two on one are more than it carries.
+    clock: bool,
 }
 
 impl Setup<'_> {
-    fn node(self, arguments: &[&str]) -> Child {
+    fn interface(self, axis: usize) -> &'static str {
+        if self.clock && axis == 1 {
+            "vcan1"
+        } else {
+            "vcan0"
+        }
+    }
+
+    fn node(self, axis: usize, arguments: &[&str]) -> Child {
         let mut command = Command::new(program());
-        command.args(arguments).args(["--can", "vcan0"]);
+        command
+            .args(arguments)
+            .args(["--can", self.interface(axis)]);
+        if self.clock {
+            command.args(["--pace", "clock"]);
+        }
         if let Some(plan) = self.faults {
             command.args(["--faults", plan]);
         }
@@ -129,14 +144,16 @@ struct Nodes(Vec<Child>);
 
 impl Nodes {
     fn start(setup: Setup<'_>) -> Self {
-        let listener = CanPort::open("vcan0", &[]).unwrap();
+        let listeners = [0, 1].map(|axis| CanPort::open(setup.interface(axis), &[]).unwrap());
         let nodes = Self(vec![
-            setup.node(&["plant", "--node", "0x11"]),
-            setup.node(&["servo", "--node", "1", "--plant-node", "0x11"]),
-            setup.node(&["plant", "--node", "0x12"]),
-            setup.node(&["servo", "--node", "2", "--plant-node", "0x12"]),
+            setup.node(0, &["plant", "--node", "0x11"]),
+            setup.node(0, &["servo", "--node", "1", "--plant-node", "0x11"]),
+            setup.node(1, &["plant", "--node", "0x12"]),
+            setup.node(1, &["servo", "--node", "2", "--plant-node", "0x12"]),
         ]);
-        await_boot_ups(&listener);
+        for (axis, listener) in listeners.iter().enumerate() {
+            await_boot_ups(listener, axis);
+        }
         nodes
     }
 
@@ -161,17 +178,14 @@ impl Nodes {
     }
 }
 
-/// Hears the boot-up of every node of both axes. Counting frames would not do: a node that has
-/// booted begins its heartbeats while others are still being loaded.
-fn await_boot_ups(listener: &CanPort) {
-    let boot_ups = |axis| {
-        let ids = axis_ids(axis).unwrap();
-        [
-            Message::PlantHeartbeat(NmtState::Initialising).encode(ids),
-            Message::ServoHeartbeat(NmtState::Initialising).encode(ids),
-        ]
-    };
-    let mut missing = [boot_ups(0), boot_ups(1)].concat();
+/// Hears the boot-up of both nodes of an axis. Counting frames would not do: a node that has booted
+/// begins its heartbeats while others are still being loaded.
+fn await_boot_ups(listener: &CanPort, axis: usize) {
+    let ids = axis_ids(axis).unwrap();
+    let mut missing = vec![
+        Message::PlantHeartbeat(NmtState::Initialising).encode(ids),
+        Message::ServoHeartbeat(NmtState::Initialising).encode(ids),
+    ];
     let mut left = LONGEST_BOOT;
     while !missing.is_empty() {
         let heard = listener.receive_within(&mut left).unwrap();
@@ -323,6 +337,7 @@ fn frames_that_go_wrong_in_the_ports_stop_no_cycle_over_vcan() {
         let setup = Setup {
             faults: Some(plan),
             deadline: Some(DEADLINE),
+            ..Setup::default()
         };
         let _nodes = Nodes::start(setup);
         let mut master = setup.enabled();
@@ -410,4 +425,79 @@ fn emergencies(link: &mut Interfaces, patience: Duration) -> Vec<(Duration, usiz
         }
     }
     reported
+}
+
+/// What `timing` over vcan writes as JSON, or why it broke off.
+fn timing(place: &[&str]) -> Result<serde_json::Value, String> {
+    let file = folder().join("timing.json");
+    let ran = Command::new(program())
+        .args(["timing", "--seconds", TIMED_S, "--can"])
+        .args(place)
+        .arg("--json")
+        .arg(&file)
+        .output()
+        .unwrap();
+    println!("{}", String::from_utf8_lossy(&ran.stdout));
+    if !ran.status.success() {
+        assert_eq!(ran.status.code(), Some(2));
+        return Err(String::from_utf8_lossy(&ran.stderr).into_owned());
+    }
+    Ok(serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap())
+}
+
+/// Seconds that are timed, and their cycles.
+const TIMED_S: &str = "3";
+const TIMED: u64 = 3000;
+/// What breaks off a run whose frames come too late.
+const TOO_LATE: [&str; 5] = [
+    "FeedbackMissing",
+    "TorqueMissing",
+    "SetpointMissing",
+    "SyncMissing",
+    "sent no torque for 3 cycles",
+];
+
+/// So many of a duration, and of cycles that were missed.
+fn counts(timing: &serde_json::Value, of: &str) -> (u64, u64) {
+    let all = timing["times"].as_array().unwrap();
+    let one = all.iter().find(|times| times["of"] == of);
+    let count = one.map_or(0, |times| times["count"].as_u64().unwrap());
+    assert_eq!(timing["cycles"], TIMED);
+    (count, timing["missed_cycles"].as_u64().unwrap())
+}
+
+#[test]
+#[ignore = "run by over_vcan, in a kernel that has vcan"]
+fn every_cycle_is_timed_over_vcan_and_a_clock_that_is_not_kept_stops_the_axes_by_name() {
+    let nodes = Nodes::start(Setup::default());
+    let in_step = timing(&["vcan0"]).unwrap();
+    assert_eq!(counts(&in_step, "SYNC to the last torque"), (TIMED, 0));
+    assert_eq!(counts(&in_step, "SYNC to feedback"), (2 * TIMED, 0));
+    assert_eq!(counts(&in_step, "feedback to torque"), (2 * TIMED, 0));
+    assert_eq!(counts(&in_step, "bare frame, there and back"), (2000, 0));
+    assert_eq!(counts(&in_step, "lateness of SYNC"), (0, 0));
+    drop(nodes);
+
+    let setup = Setup {
+        clock: true,
+        ..Setup::default()
+    };
+    let _nodes = Nodes::start(setup);
+    match timing(&["vcan0,vcan1", "--pace", "clock"]) {
+        Ok(kept) => {
+            let (timed, missed) = counts(&kept, "SYNC to the last torque");
+            assert_eq!(timed + missed, TIMED);
+            let (late, _) = counts(&kept, "lateness of SYNC");
+            assert!((timed..=TIMED).contains(&late), "{late} of {timed}");
+            assert!(kept["scheduling"].is_string());
+        }
+        // The guest has one processor, and its host other work.
+        Err(told) => {
+            println!("the clock was not kept: {told}");
+            assert!(
+                TOO_LATE.iter().any(|reason| told.contains(reason)),
+                "{told}"
+            );
+        }
+    }
 }

@@ -36,6 +36,8 @@ pub enum Command {
     Contour(ContourArguments),
     /// Find compensation parameters from circles, as at a real machine
     Tune(Tune),
+    /// Measure how long the cycles of a machine take: loop timing
+    Timing(Timing),
     /// Run the plant node of one axis on a CAN interface
     Plant(Plant),
     /// Run the servo node of one axis on a CAN interface
@@ -184,6 +186,24 @@ pub struct Tune {
     /// Time from the reversal to the start of the pulse, ms; the paper has none, `adaptive` its own
     #[arg(long, value_name = "T", default_value_t = 0.0)]
     pub start_delay_ms: f64,
+}
+
+/// Arguments of `timing`.
+#[derive(Debug, clap::Args)]
+pub struct Timing {
+    #[command(flatten)]
+    #[expect(missing_docs, reason = "flattened")]
+    pub machine: MachineArguments,
+    /// For so long, s of the machine's time: all axes go 10 mm to and fro at F 1000, or as far and
+    /// fast as they can
+    #[arg(long, value_name = "S", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=3600))]
+    pub seconds: u32,
+    /// Write the figures and histograms as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the histograms as a plot
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
 }
 
 /// Arguments of `plant`.

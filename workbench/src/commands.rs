@@ -9,4 +9,5 @@ pub mod identify;
 pub mod machine;
 pub mod plant;
 pub mod servo;
+pub mod timing;
 pub mod tune;

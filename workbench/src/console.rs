@@ -7,6 +7,7 @@ use crate::circle_test::CircleReport;
 use crate::compensation::{Compensation, Model};
 use crate::contour_test::ContourReport;
 use crate::presentation::result_tables::{error_table, position_error_unit, sentence};
+use crate::timing_test::{Spread, TimingReport};
 use crate::tuning::Tuned;
 
 /// Prints the figures of a circle.
@@ -59,6 +60,53 @@ pub fn print_contour(report: &ContourReport) {
     println!("  reversals X / Y         {x:>10} / {y}");
     if report.missed_cycles > 0 {
         println!("  missed cycles           {:>10}", report.missed_cycles);
+    }
+}
+
+/// Longest bar of a histogram, letters.
+const LONGEST_BAR: f64 = 50.0;
+
+/// Prints how long cycles take.
+pub fn print_timing(report: &TimingReport) {
+    println!(
+        "{} cycles of {} µs, {}, pace {}; {} missed",
+        report.cycles, report.period_us, report.place, report.pace, report.missed_cycles
+    );
+    if let Some(scheduling) = &report.scheduling {
+        println!("{scheduling}");
+    }
+    println!(
+        "  {:<32}{:>9}{:>10}{:>10}{:>10}{:>10}",
+        "µs", "count", "p50", "p99", "p99.9", "max"
+    );
+    for spread in &report.times {
+        println!(
+            "  {:<32}{:>9}{:>10.2}{:>10.2}{:>10.2}{:>10.2}",
+            spread.of, spread.count, spread.p50_us, spread.p99_us, spread.p99_9_us, spread.max_us
+        );
+    }
+    println!("  bus load, computed {:>6.1} %", report.bus_load_percent);
+    let late = report
+        .times
+        .iter()
+        .find(|spread| spread.of.starts_with("lateness"));
+    report
+        .times
+        .first()
+        .into_iter()
+        .chain(late)
+        .for_each(print_histogram);
+}
+
+fn print_histogram(spread: &Spread) {
+    println!("  {}, up to µs:", spread.of);
+    for (upper_us, count) in &spread.histogram {
+        // One of ten thousand shows as well.
+        let letters = (LONGEST_BAR * *count as f64 / spread.count as f64).ceil();
+        println!(
+            "  {upper_us:>10.2} {count:>8} {}",
+            "#".repeat(letters as usize)
+        );
     }
 }
 

@@ -4,7 +4,7 @@
 //! commands                                   one file each: the list of its steps
 //! cli            commissioning               arguments; the steps that are more than a call
 //! console, presentation                      results for people
-//! circle_test    contour_test    tuning      axis_records    tests on a machine
+//! circle_test, contour_test, timing_test    tuning    axis_records    tests on a machine
 //! session                                    a machine that moves, and stops as one
 //! ballbar        trajectory                  what a circle shows; what the axes are to do
 //! network                                    master and nodes on any bus
@@ -33,5 +33,6 @@ pub mod output_files;
 pub mod presentation;
 pub mod progress;
 pub mod session;
+pub mod timing_test;
 pub mod trajectory;
 pub mod tuning;

@@ -8,7 +8,9 @@ use clap::Parser as _;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use workbench::cli::{Cli, Command};
-use workbench::commands::{circle, commission, contour, identify, machine, plant, servo, tune};
+use workbench::commands::{
+    circle, commission, contour, identify, machine, plant, servo, timing, tune,
+};
 use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
 
@@ -94,6 +96,7 @@ fn dispatch(command: Command) -> (Outcome<()>, Option<i32>) {
         Command::Circle(arguments) => moving(|interrupt| circle::run(&arguments, interrupt)),
         Command::Contour(arguments) => moving(|interrupt| contour::run(&arguments, interrupt)),
         Command::Tune(arguments) => moving(|interrupt| tune::run(&arguments, interrupt)),
+        Command::Timing(arguments) => moving(|interrupt| timing::run(&arguments, interrupt)),
         Command::Identify(arguments) => still(identify::run(&arguments)),
         Command::Plant(arguments) => still(plant::run(&arguments)),
         Command::Servo(arguments) => still(servo::run(&arguments)),

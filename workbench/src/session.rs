@@ -219,7 +219,8 @@ impl<'a, L: Link> Session<'a, L> {
         let mut index = 0.0;
         while index < cycles {
             // The setpoint that is sent in this cycle is due in the next one.
-            self.master.cycle(&at((index + 1.0) * period_s))?;
+            let due = |skipped: u32| at((index + f64::from(skipped) + 1.0) * period_s);
+            index += f64::from(self.master.cycle_at(due)?);
             for (axis, cycle) in now.iter_mut().enumerate() {
                 *cycle = self.master.axis(axis);
             }

@@ -209,7 +209,9 @@ impl Link for Drive {
         self.receive(bus, Duration::ZERO)
     }
 
-    fn pass(&mut self, _cycle: Duration) {}
+    fn pass(&mut self, _cycle: Duration) -> u32 {
+        0
+    }
 
     fn truth(&self, _axis: usize) -> Option<Truth> {
         None

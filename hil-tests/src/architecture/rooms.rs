@@ -10,7 +10,7 @@ pub const IDENTIFICATION: [&str; 10] = [
 ];
 
 /// The floors of `workbench`, from the ground up: `commands` use everything.
-pub const WORKBENCH: [&str; 21] = [
+pub const WORKBENCH: [&str; 22] = [
     "error",
     "interrupt",
     "progress",
@@ -25,6 +25,7 @@ pub const WORKBENCH: [&str; 21] = [
     "axis_records",
     "circle_test",
     "contour_test",
+    "timing_test",
     "tuning",
     "presentation",
     "console",

@@ -8,7 +8,7 @@ use plant_sim::Machine;
 
 use crate::error::Outcome;
 use crate::network::interfaces::DEADLINE_MS;
-use crate::network::place::{Place, refuse_overload};
+use crate::network::place::{Place, refuse_overload, wired};
 
 /// Where the machine is.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -46,6 +46,7 @@ impl MachineArguments {
         let Some(names) = self.can.clone() else {
             return Ok((machine, Place::InProcess));
         };
+        let machine = wired(machine, &names);
         let pace = self.pace.chosen();
         refuse_overload(&machine, pace)?;
         Ok((machine, Place::Can { names, pace }))

@@ -3,14 +3,17 @@
 //! Each axis has a bus of its own; axes that name the same interface in the machine file share one,
 //! as they would share the cable.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
 use bus::{BusLog, InProcessBus, Shared};
 use plant_sim::node::Truth;
 use plant_sim::{Machine, PlantNode};
-use protocol::CanFrame;
+use protocol::{CanFrame, Station};
 
 use super::link::{Link, axis_ids, micros};
+use super::stopwatch::{Durations, Watched};
 use crate::error::Outcome;
 
 /// Servo and plant of every axis in this process, one bus per axis (or per named interface).
@@ -28,6 +31,24 @@ impl InProcess {
     /// # Errors
     /// Beyond 16 axes.
     pub fn new(machine: &Machine, run: u64) -> Outcome<Self> {
+        Self::assembled(machine, run, |servo| Box::new(servo))
+    }
+
+    /// The same, with what each drive costs for one torque noted.
+    ///
+    /// # Errors
+    /// Beyond 16 axes.
+    pub fn watched(machine: &Machine, run: u64, steps: &Rc<RefCell<Durations>>) -> Outcome<Self> {
+        Self::assembled(machine, run, |servo| {
+            Box::new(Watched::new(servo, Rc::clone(steps)))
+        })
+    }
+
+    fn assembled(
+        machine: &Machine,
+        run: u64,
+        on_bus: impl Fn(Shared<servo::Servo>) -> Box<dyn Station>,
+    ) -> Outcome<Self> {
         let mut link = Self {
             buses: Vec::new(),
             bus_of: Vec::new(),
@@ -41,7 +62,8 @@ impl InProcess {
             let seed = plant_seed(machine.seed, run, index);
             let plant = PlantNode::new(ids, axis.actual.clone(), machine.period_s, seed);
             let bus = link.bus_named(&mut names, axis.interface.as_deref());
-            link.add_axis(bus, plant, servo::Servo::new(ids));
+            let servo = Shared::new(servo::Servo::new(ids));
+            link.add_axis(bus, plant, servo.clone(), on_bus(servo));
         }
         Ok(link)
     }
@@ -58,10 +80,16 @@ impl InProcess {
         })
     }
 
-    fn add_axis(&mut self, bus: usize, plant: PlantNode, servo: servo::Servo) {
-        let (plant, servo) = (Shared::new(plant), Shared::new(servo));
+    fn add_axis(
+        &mut self,
+        bus: usize,
+        plant: PlantNode,
+        servo: Shared<servo::Servo>,
+        on_bus: Box<dyn Station>,
+    ) {
+        let plant = Shared::new(plant);
         self.buses[bus].add(Box::new(plant.clone()));
-        self.buses[bus].add(Box::new(servo.clone()));
+        self.buses[bus].add(on_bus);
         self.plants.push(plant);
         self.servos.push(servo);
         self.bus_of.push(bus);
@@ -126,10 +154,11 @@ impl Link for InProcess {
         Ok(bus.receive_until(begun_us.saturating_add(self.period_us)))
     }
 
-    fn pass(&mut self, cycle: Duration) {
+    fn pass(&mut self, cycle: Duration) -> u32 {
         self.buses
             .iter_mut()
             .for_each(|bus| bus.pass(micros(cycle)));
+        0
     }
 
     fn truth(&self, axis: usize) -> Option<Truth> {

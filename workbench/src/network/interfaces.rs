@@ -1,13 +1,14 @@
 //! The machine at the other end of CAN interfaces: its nodes run in processes or on boards of their
 //! own, and time is that of the clock on the wall.
 //!
-//! Lock-step waits for everybody, clock pace sends SYNC on a grid. The patience with a cycle is
+//! Lock-step waits for everybody, clock pace sends SYNC on a grid of its period, and passes over
+//! cycles for which it came too late. The patience with a cycle is
 //! shared by its buses: what one bus has used up is not there for the others.
 
 use std::io;
 use std::time::{Duration, Instant};
 
-use bus::{BusLog, CanPort};
+use bus::{BusLog, CanPort, RealTime};
 use plant_sim::Machine;
 use plant_sim::node::Truth;
 use protocol::CanFrame;
@@ -75,6 +76,10 @@ pub struct Interfaces {
     cycle_end: Option<Instant>,
     /// What is left of the patience of the present cycle.
     left: Duration,
+    /// How much later than due the present cycle began, at clock pace.
+    late: Option<Duration>,
+    /// At clock pace, for as long as the interfaces are open.
+    _real_time: Option<RealTime>,
 }
 
 impl Interfaces {
@@ -101,13 +106,21 @@ impl Interfaces {
             pace: DEFAULT_PACE,
             cycle_end: None,
             left: Duration::ZERO,
+            late: None,
+            _real_time: None,
         })
     }
 
-    /// The same interfaces at another pace: that of the nodes.
+    /// The same interfaces at another pace: that of the nodes. At clock pace the present thread
+    /// runs in real time while they are open, where the system permits it.
     #[must_use]
     pub fn with_pace(self, pace: Pace) -> Self {
-        Self { pace, ..self }
+        let real_time = (pace == Pace::Clock).then(RealTime::begin);
+        Self {
+            pace,
+            _real_time: real_time,
+            ..self
+        }
     }
 
     /// How long a cycle waits for its frames. In lock-step half as long again as the nodes'
@@ -122,20 +135,17 @@ impl Interfaces {
         }
     }
 
-    /// Clock pace: sleeps until the present cycle is over. The cycles lie on a grid; one that
-    /// begins more than half a period late moves it, because two SYNCs close together are worse for
-    /// the nodes than one that is late.
-    fn wait_for_the_clock(&mut self, cycle: Duration) {
+    /// Clock pace: sleeps until the present cycle is over; gives how many cycles were passed over.
+    fn wait_for_the_clock(&mut self, cycle: Duration) -> u32 {
         let now = Instant::now();
         let due = self.cycle_end.unwrap_or(now);
         std::thread::sleep(due.saturating_duration_since(now));
-        let woke = Instant::now();
-        let start = if woke.saturating_duration_since(due) > cycle / 2 {
-            woke
-        } else {
-            due
-        };
-        self.cycle_end = Some(start + cycle);
+        let late = Instant::now().saturating_duration_since(due);
+        let (skipped, wait) = caught_up(late, cycle);
+        std::thread::sleep(wait);
+        self.late = Some(late);
+        self.cycle_end = Some(due + cycle * (skipped + 1));
+        skipped
     }
 
     fn note(&mut self, bus: usize, frame: &CanFrame) {
@@ -146,6 +156,21 @@ impl Interfaces {
 
     fn failed(&self, bus: usize, error: &io::Error) -> Failure {
         Failure::new(format!("CAN interface {}: {error}", self.names[bus]))
+    }
+}
+
+/// What is made of a cycle that begins late by so much: how many are passed over, and how long is
+/// waited for the next one. The nodes go on by their own timers and count on, so the cycles stay on
+/// the grid, each with the number that it has there; and two SYNCs close together are worse for
+/// them than one that is missing.
+fn caught_up(late: Duration, cycle: Duration) -> (u32, Duration) {
+    let whole = late.as_nanos() / cycle.as_nanos().max(1);
+    let whole = u32::try_from(whole).unwrap_or(u32::MAX - 1);
+    let rest = late.saturating_sub(cycle * whole);
+    if rest > cycle / 2 {
+        (whole + 1, cycle.saturating_sub(rest))
+    } else {
+        (whole, Duration::ZERO)
     }
 }
 
@@ -200,12 +225,24 @@ impl Link for Interfaces {
 
     /// The log's times are those of the begin of each cycle: reading the clock for every frame
     /// costs a third of a lock-step cycle where it is a system call.
-    fn pass(&mut self, cycle: Duration) {
-        if self.pace == Pace::Clock {
-            self.wait_for_the_clock(cycle);
-        }
+    fn pass(&mut self, cycle: Duration) -> u32 {
+        let skipped = if self.pace == Pace::Clock {
+            self.wait_for_the_clock(cycle)
+        } else {
+            0
+        };
         self.left = self.patience();
         self.now_us = micros(self.begun.elapsed());
+        skipped
+    }
+
+    fn is_due(&self) -> bool {
+        let end = self.cycle_end.filter(|_| self.pace == Pace::Clock);
+        end.is_some_and(|end| end <= Instant::now())
+    }
+
+    fn lateness(&self) -> Option<Duration> {
+        self.late
     }
 
     fn truth(&self, _axis: usize) -> Option<Truth> {
@@ -229,6 +266,22 @@ mod tests {
 
     fn wiring(own: &[Option<&str>], default: &str) -> Outcome<(Vec<String>, Vec<usize>)> {
         Wiring::of(own.iter().copied(), default).map(|wiring| (wiring.names, wiring.bus_of))
+    }
+
+    #[test]
+    fn a_late_cycle_has_the_number_of_the_grid_and_none_begins_in_its_second_half() {
+        let ms = |value: f64| Duration::from_secs_f64(1.0e-3 * value);
+        let near = |late: f64| {
+            let (skipped, wait) = caught_up(ms(late), ms(1.0));
+            (skipped, (1.0e6 * wait.as_secs_f64()).round())
+        };
+        assert_eq!(near(0.0), (0, 0.0));
+        assert_eq!(near(0.4), (0, 0.0));
+        assert_eq!(near(0.7), (1, 300.0));
+        assert_eq!(near(3.4), (3, 0.0));
+        assert_eq!(near(3.8), (4, 200.0));
+        // A minute in a debugger.
+        assert_eq!(near(60_000.2), (60_000, 0.0));
     }
 
     #[test]

@@ -37,8 +37,16 @@ pub trait Link {
     /// Where the interface is gone.
     fn receive_in_cycle(&mut self, bus: usize, most: Option<Duration>)
     -> Outcome<Option<CanFrame>>;
-    /// The next cycle begins.
-    fn pass(&mut self, cycle: Duration);
+    /// The next cycle begins; gives how many before it the clock has passed over.
+    fn pass(&mut self, cycle: Duration) -> u32;
+    /// Whether the clock asks for the next cycle by now.
+    fn is_due(&self) -> bool {
+        false
+    }
+    /// How much later than due the present cycle began; `None` where no clock beats the time.
+    fn lateness(&self) -> Option<Duration> {
+        None
+    }
     /// What the axis truly does, where an instrument can see it; `None` over a cable.
     fn truth(&self, axis: usize) -> Option<Truth>;
     /// Starts logging all frames.
@@ -81,8 +89,16 @@ impl Link for Box<dyn Link> {
         self.as_mut().receive_in_cycle(bus, most)
     }
 
-    fn pass(&mut self, cycle: Duration) {
-        self.as_mut().pass(cycle);
+    fn pass(&mut self, cycle: Duration) -> u32 {
+        self.as_mut().pass(cycle)
+    }
+
+    fn is_due(&self) -> bool {
+        self.as_ref().is_due()
+    }
+
+    fn lateness(&self) -> Option<Duration> {
+        self.as_ref().lateness()
     }
 
     fn truth(&self, axis: usize) -> Option<Truth> {

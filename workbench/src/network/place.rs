@@ -38,6 +38,20 @@ impl Place {
     }
 }
 
+/// A machine whose axes are on the interfaces that it names, the others on these in turn: what
+/// shares a bus decides its load.
+#[must_use]
+pub fn wired(mut machine: Machine, names: &str) -> Machine {
+    let names = names
+        .split(',')
+        .map(str::trim)
+        .filter(|name| !name.is_empty());
+    for (axis, name) in machine.axes.iter_mut().zip(names.cycle()) {
+        axis.interface.get_or_insert_with(|| name.to_owned());
+    }
+    machine
+}
+
 /// On a clock, a bus that cannot carry the cycle misses deadlines; vcan would not show it, so the
 /// computed load decides.
 ///
@@ -55,4 +69,19 @@ pub fn refuse_overload(machine: &Machine, pace: Pace) -> Outcome<()> {
         )));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_axes_on_one_interface_are_more_than_a_clock_takes_and_one_each_are_not() {
+        let machine = |names: &str| wired(Machine::reference(), names);
+        assert_eq!(refuse_overload(&machine("can0,can1"), Pace::Clock), Ok(()));
+        let refusal = refuse_overload(&machine("can0"), Pace::Clock).unwrap_err();
+        assert!(refusal.to_string().contains("at most 80 %"), "{refusal}");
+        let pace = crate::network::interfaces::DEFAULT_PACE;
+        assert_eq!(refuse_overload(&machine("can0"), pace), Ok(()));
+    }
 }

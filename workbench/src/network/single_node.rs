@@ -1,6 +1,6 @@
 //! One node alone on a CAN interface, for a bus with other people's nodes on it.
 
-use bus::{CanPort, FaultPlan, FaultyPort};
+use bus::{CanPort, FaultPlan, FaultyPort, RealTime};
 use protocol::Station;
 use protocol::cob::{AxisIds, FrameKind, NodeId};
 use quadrant_host::Pace;
@@ -39,7 +39,7 @@ pub struct Post<'a> {
 
 impl Post<'_> {
     /// Runs a node until it is ended by SIGTERM or SIGINT: it says nothing more then, and its
-    /// peer's watchdog acts.
+    /// peer's watchdog acts. At clock pace it runs in real time, where the system permits it.
     ///
     /// # Errors
     /// Where the interface cannot be opened or goes away.
@@ -57,6 +57,7 @@ impl Post<'_> {
         let faults = self
             .faults
             .map(|plan| FaultyPort::new(plan, ids, self.node.get()));
+        let _real_time = (self.pace == Pace::Clock).then(RealTime::begin);
         quadrant_host::run(node, Port::Can(port), faults, self.pace, &ended).map_err(gone)
     }
 }

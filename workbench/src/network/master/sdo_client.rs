@@ -81,6 +81,7 @@ impl<L: Link> Master<L> {
     }
 
     fn ask(&mut self, index: usize, request: Request) -> Outcome<Response> {
+        self.keep_pace()?;
         self.send(index, Message::SdoRequest(request))?;
         let (bus, ids) = (self.axes[index].bus, self.axes[index].ids);
         let mut patience = AnswerPatience::begin();

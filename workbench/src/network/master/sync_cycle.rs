@@ -9,11 +9,13 @@
 //! others must not starve while they are being stopped, and the cycle keeps its pace where nobody
 //! answers at all.
 
+use protocol::counter::SYNC_OVERFLOW;
 use protocol::message::{Decoded, Setpoint, decode};
 use protocol::{CanFrame, Message, SyncCounter};
 
 use super::Master;
 use super::axis_link::AxisLink;
+use super::way::is_down;
 use crate::error::Outcome;
 use crate::network::link::{Link, axis_ids};
 
@@ -35,13 +37,24 @@ impl<L: Link> Master<L> {
     /// # Errors
     /// Where an interface is gone.
     pub fn cycle(&mut self, next_m: &[f64]) -> Outcome<()> {
-        self.link.pass(self.period);
-        let counter = self.counter;
+        self.cycle_at(|_| next_m).map(|_| ())
+    }
+
+    /// The same with setpoints that go with the clock: they are asked for when it is known how many
+    /// cycles it has passed over, which is given. Those count as missed where a drive is not at
+    /// rest.
+    ///
+    /// # Errors
+    /// Where an interface is gone.
+    pub fn cycle_at<S: AsRef<[f64]>>(&mut self, next: impl FnOnce(u32) -> S) -> Outcome<u32> {
+        let skipped = self.link.pass(self.period);
+        let next_m = next(skipped);
+        let counter = later(self.counter, skipped);
         let sync = Message::Sync(counter).encode(axis_ids(0)?);
         (0..self.link.buses()).try_for_each(|bus| self.link.send(bus, sync))?;
         self.axes
             .iter_mut()
-            .zip(next_m)
+            .zip(next_m.as_ref())
             .for_each(|(axis, next)| axis.begin(*next));
         self.send_setpoints(counter.next())?;
         (0..self.link.buses()).try_for_each(|bus| self.collect(bus, counter))?;
@@ -49,8 +62,23 @@ impl<L: Link> Master<L> {
             axis.end(self.link.truth(index));
         }
         self.counter = counter.next();
-        self.cycles += 1;
-        Ok(())
+        self.cycles += 1 + u64::from(skipped);
+        // Drives without torque wait for SYNC as long as it takes.
+        let is_at_rest = self.axes.iter().all(|axis| axis.state.is_some_and(is_down));
+        if !is_at_rest {
+            self.missed = self.missed.saturating_add(skipped);
+        }
+        Ok(skipped)
+    }
+
+    /// A cycle with the setpoints that were sent last, where the clock asks for one: whoever talks
+    /// to drives that are being cycled does this between any two questions.
+    pub(super) fn keep_pace(&mut self) -> Outcome<()> {
+        if self.cycles == 0 || !self.link.is_due() {
+            return Ok(());
+        }
+        let last: Vec<f64> = self.axes.iter().map(AxisLink::last_setpoint_m).collect();
+        self.cycle(&last)
     }
 
     /// The setpoints of a cycle to come, with the present control word.
@@ -114,6 +142,11 @@ impl<L: Link> Master<L> {
         }
         is_overdue
     }
+}
+
+/// The counter so many cycles later.
+fn later(counter: SyncCounter, cycles: u32) -> SyncCounter {
+    (0..cycles % u32::from(SYNC_OVERFLOW)).fold(counter, |counter, _| counter.next())
 }
 
 /// The cycle that a node says is on.

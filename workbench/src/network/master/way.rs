@@ -246,7 +246,7 @@ impl<L: Link> Master<L> {
 }
 
 /// A fault that is latched, or the state after power-up: nothing is left to switch off.
-const fn is_down(state: DriveState) -> bool {
+pub(super) const fn is_down(state: DriveState) -> bool {
     matches!(state, DriveState::SwitchOnDisabled | DriveState::Fault)
 }
 
