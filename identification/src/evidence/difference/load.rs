@@ -210,9 +210,9 @@ impl Carried {
         load.plain().into_iter().chain(rubbed).chain(more).collect()
     }
 
-    /// Columns of a friction of the motor's own side, low-passed, that follows the law of the load's
-    /// with such a deflection in those of the load's: its bend, what else the load's friction goes
-    /// with, which the motor's may as well, and the rate of the bend.
+    /// Columns of a friction of the motor's own side, low-passed. It follows the law of the load's,
+    /// with such a deflection in those of it: its bend, what else the load's friction goes with,
+    /// which the motor's may as well, and the rate of the bend.
     pub(super) fn on_motor(
         self,
         motion: &Kinematics,
