@@ -8,6 +8,7 @@ use bus::BusLog;
 use plant_sim::Machine;
 use plant_sim::node::Truth;
 use protocol::CanFrame;
+use workbench::axis_records::{Part, Plan, record};
 use workbench::compensation::AxisCompensation;
 use workbench::error::Outcome;
 use workbench::interrupt::Interrupt;
@@ -111,4 +112,34 @@ fn cycles_that_are_passed_over_are_missed_and_the_axes_are_where_the_clock_is() 
 fn beyond_what_the_nodes_bridge_the_axes_are_stopped_by_name() {
     let told = followed(20).unwrap_err().to_string();
     assert!(told.contains("axis") && told.contains("Missing"), "{told}");
+}
+
+#[test]
+fn a_record_has_no_row_of_a_cycle_whose_frames_did_not_come() {
+    let mut machine = Machine::reference();
+    machine.axes.truncate(1);
+    let link = Late {
+        link: InProcess::new(&machine, 0).unwrap(),
+        left: 6000,
+        skipped: 2,
+    };
+    let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
+    session.ready(&[AxisCompensation::default()]).unwrap();
+    let (plan, mut records) = (Plan::of(&machine, Part::Validate), Vec::new());
+    let begun = session.cycles();
+    record(&mut session, &machine, &plan, &mut records).unwrap();
+    let rows = &records[0].rows;
+    let steps: Vec<f64> = rows
+        .windows(2)
+        .map(|pair| (1000.0 * (pair[1].0 - pair[0].0)).round())
+        .collect();
+    assert!(session.cycles() - begun > 6000);
+    // Two were passed over; nobody saw the torque that acted in the one after them.
+    assert_eq!(steps.iter().filter(|step| **step == 4.0).count(), 1);
+    assert!(steps.iter().all(|step| [1.0, 4.0].contains(step)));
+    // The axis moves: what is not its own row would stand still.
+    let still = rows
+        .windows(2)
+        .filter(|pair| pair[0].1.motor_m == pair[1].1.motor_m);
+    assert!(still.count() < rows.len() / 10);
 }

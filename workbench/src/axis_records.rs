@@ -82,8 +82,9 @@ impl Plan {
     }
 }
 
-/// Moves all axes by their own excitation and records them together, one record per axis. What was
-/// recorded before a failure stays in `records`.
+/// Moves all axes by their own excitation and records them together, one record per axis. A cycle
+/// whose frames did not come is no row; times tell. What was recorded before a failure stays in
+/// `records`.
 ///
 /// # Errors
 /// Where a drive faults, or the operator interrupts.
@@ -103,7 +104,8 @@ pub fn record<L: Link>(
         plan.duration_s,
         |time_s| plan.setpoints(time_s),
         |time_s, axes| {
-            for (record, axis) in records.iter_mut().zip(axes) {
+            let measured = records.iter_mut().zip(axes);
+            for (record, axis) in measured.filter(|(_, axis)| axis.is_measured) {
                 record.rows.push((origin_s + time_s, *axis));
             }
         },

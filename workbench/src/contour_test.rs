@@ -117,7 +117,7 @@ fn follow(session: &mut Session<'_>, axes: usize, contour: &Contour) -> Outcome<
     let mut distances = Distances::default();
     let counts = contour.at_feed_s();
     session.follow(contour.duration_s(), setpoints, |time_s, axes| {
-        if counts.contains(&time_s) {
+        if counts.contains(&time_s) && axes.iter().all(AxisCycle::shows_table) {
             distances.take(&contour.place(time_s), axes);
         }
     })?;

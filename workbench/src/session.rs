@@ -249,7 +249,7 @@ impl<'a, L: Link> Session<'a, L> {
             |time_s| setpoints(circle.at(time_s)),
             |time_s, axes| {
                 let angle_rad = circle.angle_rad(time_s);
-                if measured.contains(&angle_rad) {
+                if measured.contains(&angle_rad) && axes.iter().all(AxisCycle::shows_table) {
                     points.push(point(angle_rad, axes));
                 }
             },

@@ -131,6 +131,7 @@ mod tests {
                 motor_m: at,
                 load_m: at - 3.0e-6,
                 force_n: 30.0,
+                is_measured: true,
                 truth: None,
             };
             (time_s, cycle)

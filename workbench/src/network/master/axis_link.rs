@@ -39,11 +39,20 @@ pub struct AxisCycle {
     /// Force that is active from this cycle to the next: the torque command of the cycle before, at
     /// the table, N.
     pub force_n: f64,
+    /// Whether the feedback of the cycle came and the torque that acts in it was seen: else
+    /// positions or force are those of an earlier one.
+    pub is_measured: bool,
     /// What an instrument at the machine saw.
     pub truth: Option<Truth>,
 }
 
 impl AxisCycle {
+    /// Whether it is known where the table was in this cycle.
+    #[must_use]
+    pub const fn shows_table(&self) -> bool {
+        self.is_measured || self.truth.is_some()
+    }
+
     /// Where the table was: by the instrument, or by the load scale.
     #[must_use]
     pub fn table_m(&self) -> f64 {
@@ -74,6 +83,8 @@ pub(super) struct AxisLink {
     relation_counts: i64,
     torque_n: f64,
     torque_seen: bool,
+    feedback_seen: bool,
+    force_known: bool,
     silent_cycles: u32,
     motor_before_m: f64,
     stands_m: f64,
@@ -108,6 +119,8 @@ impl AxisLink {
             relation_counts: (model_file::relation_m(axis) / COUNT_M).round() as i64,
             torque_n: 0.0,
             torque_seen: false,
+            feedback_seen: false,
+            force_known: false,
             silent_cycles: 0,
             motor_before_m: 0.0,
             stands_m: (STANDS_M_PER_S * machine.period_s).max(STANDS_COUNTS * way_m),
@@ -115,9 +128,11 @@ impl AxisLink {
         })
     }
 
-    /// A cycle begins: the setpoint that was sent early is due now, and so is the torque of the
-    /// cycle before.
-    pub(super) fn begin(&mut self, next_m: f64) {
+    /// A cycle begins, so many later than the one before: the setpoint that was sent early is due
+    /// now, and so is the torque of the cycle before.
+    pub(super) fn begin(&mut self, next_m: f64, skipped: u32) {
+        self.force_known = self.torque_seen && skipped == 0;
+        self.feedback_seen = false;
         self.now.reference_m = fine_m(self.next);
         self.now.force_n = self.torque_n;
         self.next = fine(next_m);
@@ -128,6 +143,7 @@ impl AxisLink {
     /// A cycle ends, with what an instrument saw of it.
     pub(super) fn end(&mut self, truth: Option<Truth>) {
         self.now.truth = truth;
+        self.now.is_measured = self.feedback_seen && self.force_known;
         self.silent_cycles = if self.torque_seen {
             0
         } else {
@@ -163,6 +179,7 @@ impl AxisLink {
     }
 
     fn take_feedback(&mut self, feedback: Feedback) {
+        self.feedback_seen = true;
         self.now.motor_m = f64::from(feedback.motor.0) * self.way_m;
         let counts = self.unwrap(feedback.load);
         self.load = Some((feedback.load, counts));

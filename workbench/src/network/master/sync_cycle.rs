@@ -55,7 +55,7 @@ impl<L: Link> Master<L> {
         self.axes
             .iter_mut()
             .zip(next_m.as_ref())
-            .for_each(|(axis, next)| axis.begin(*next));
+            .for_each(|(axis, next)| axis.begin(*next, skipped));
         self.send_setpoints(counter.next())?;
         (0..self.link.buses()).try_for_each(|bus| self.collect(bus, counter))?;
         for (index, axis) in self.axes.iter_mut().enumerate() {
