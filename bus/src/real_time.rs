@@ -10,10 +10,13 @@ use std::io;
 /// to gain, since it delivers the frames.
 const PRIORITY: libc::c_int = 49;
 
-/// The present thread runs in real time until this is dropped, where the system permits it.
+/// The present thread runs in real time until this is dropped, where the system permits it; threads
+/// that it starts do not. One that runs in real time already stays as it is. To be dropped by the
+/// thread that asked.
 #[derive(Debug)]
 pub struct RealTime {
     scheduled: io::Result<()>,
+    is_given_back: bool,
     locked: io::Result<()>,
 }
 
@@ -21,8 +24,15 @@ impl RealTime {
     /// Asks for it.
     #[must_use]
     pub fn begin() -> Self {
+        let before = policy();
+        let is_usual = before == libc::SCHED_OTHER;
+        let scheduled = match before {
+            libc::SCHED_FIFO | libc::SCHED_RR => Ok(()),
+            _ => schedule(libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK, PRIORITY),
+        };
         Self {
-            scheduled: schedule(libc::SCHED_FIFO, PRIORITY),
+            is_given_back: is_usual && scheduled.is_ok(),
+            scheduled,
             locked: lock(),
         }
     }
@@ -31,7 +41,7 @@ impl RealTime {
     #[must_use]
     pub fn granted(&self) -> String {
         let scheduling = match &self.scheduled {
-            Ok(()) => format!("real-time scheduling (SCHED_FIFO, priority {PRIORITY})"),
+            Ok(()) => "real-time scheduling".to_owned(),
             Err(error) => format!("ordinary scheduling (SCHED_FIFO: {error})"),
         };
         let memory = match &self.locked {
@@ -44,7 +54,7 @@ impl RealTime {
 
 impl Drop for RealTime {
     fn drop(&mut self) {
-        if self.scheduled.is_ok() {
+        if self.is_given_back {
             // Back to what every thread may have: it cannot be refused.
             let _ = schedule(libc::SCHED_OTHER, 0);
         }
@@ -56,6 +66,14 @@ impl Drop for RealTime {
             }
         }
     }
+}
+
+/// That of the present thread.
+fn policy() -> libc::c_int {
+    #[expect(unsafe_code, reason = "sched_getscheduler has no safe wrapper here")]
+    // SAFETY: 0 is the present thread.
+    let policy = unsafe { libc::sched_getscheduler(0) };
+    policy & !libc::SCHED_RESET_ON_FORK
 }
 
 fn schedule(policy: libc::c_int, priority: libc::c_int) -> io::Result<()> {
@@ -88,21 +106,16 @@ fn told(outcome: libc::c_int) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn policy() -> libc::c_int {
-        #[expect(unsafe_code, reason = "sched_getscheduler has no safe wrapper here")]
-        // SAFETY: 0 is the present thread.
-        unsafe {
-            libc::sched_getscheduler(0)
-        }
-    }
-
     #[test]
     fn a_thread_runs_in_real_time_where_it_may_and_only_for_so_long() {
         let before = policy();
         let real_time = RealTime::begin();
         let granted = real_time.granted();
         let is_granted = real_time.scheduled.is_ok();
-        assert_eq!(policy() == libc::SCHED_FIFO, is_granted, "{granted}");
+        let runs = [libc::SCHED_FIFO, libc::SCHED_RR].contains(&policy());
+        assert_eq!(runs, is_granted, "{granted}");
+        let of_another = std::thread::spawn(policy).join().unwrap();
+        assert!(of_another == before || before != libc::SCHED_OTHER);
         assert_eq!(granted.starts_with("real-time"), is_granted, "{granted}");
         drop(real_time);
         assert_eq!(policy(), before);

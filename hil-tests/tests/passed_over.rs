@@ -58,6 +58,10 @@ impl Link for Late {
         skipped
     }
 
+    fn follows_clock(&self) -> bool {
+        true
+    }
+
     fn truth(&self, axis: usize) -> Option<Truth> {
         self.link.truth(axis)
     }
@@ -80,19 +84,30 @@ fn at(time_s: f64) -> Vec<f64> {
     vec![5.0e-3 * (1.0 - (0.5 * TAU * time_s).cos()); 2]
 }
 
+/// A session on a link that is late once.
+fn late(machine: &Machine, left: u32, skipped: u32) -> Outcome<Session<'_, Late>> {
+    let link = Late {
+        link: InProcess::new(machine, 0)?,
+        left,
+        skipped,
+    };
+    let mut session = Session::on(link, machine, &Interrupt::never())?;
+    session.ready(&vec![AxisCompensation::default(); machine.axes.len()])?;
+    Ok(session)
+}
+
 /// Where the table was at the end, cycles that were missed, and all cycles; or why it broke off.
 fn followed(skipped: u32) -> Outcome<(f64, u32, u64)> {
     let machine = Machine::reference();
-    let link = Late {
-        link: InProcess::new(&machine, 0)?,
-        left: UNTIL_LATE,
-        skipped,
-    };
-    let mut session = Session::on(link, &machine, &Interrupt::never())?;
-    session.ready(&vec![AxisCompensation::default(); 2])?;
+    let mut session = late(&machine, UNTIL_LATE, skipped)?;
     let begun = session.cycles();
-    let mut last_m = 0.0;
-    session.follow(DURATION_S, at, |_, axes| last_m = axes[0].table_m())?;
+    let (mut last_m, mut beside_m) = (0.0, 0.0_f64);
+    session.follow(DURATION_S, at, |time_s, axes| {
+        last_m = axes[0].table_m();
+        beside_m = beside_m.max((axes[0].reference_m - at(time_s)[0]).abs());
+    })?;
+    // What is told as the setpoint of a cycle is at most a cycle beside it.
+    assert!(beside_m < 20.0e-6, "{skipped}: {beside_m}");
     Ok((last_m, session.missed(), session.cycles() - begun))
 }
 
@@ -118,13 +133,7 @@ fn beyond_what_the_nodes_bridge_the_axes_are_stopped_by_name() {
 fn a_record_has_no_row_of_a_cycle_whose_frames_did_not_come() {
     let mut machine = Machine::reference();
     machine.axes.truncate(1);
-    let link = Late {
-        link: InProcess::new(&machine, 0).unwrap(),
-        left: 6000,
-        skipped: 2,
-    };
-    let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
-    session.ready(&[AxisCompensation::default()]).unwrap();
+    let mut session = late(&machine, 6000, 2).unwrap();
     let (plan, mut records) = (Plan::of(&machine, Part::Validate), Vec::new());
     let begun = session.cycles();
     record(&mut session, &machine, &plan, &mut records).unwrap();
@@ -142,4 +151,18 @@ fn a_record_has_no_row_of_a_cycle_whose_frames_did_not_come() {
         .windows(2)
         .filter(|pair| pair[0].1.motor_m == pair[1].1.motor_m);
     assert!(still.count() < rows.len() / 10);
+}
+
+#[test]
+fn a_clock_does_not_wait_for_work_and_the_axes_hold_their_place_meanwhile() {
+    let machine = Machine::reference();
+    let mut session = late(&machine, 0, 0).unwrap();
+    let begun = session.cycles();
+    let done = session.meanwhile(|| {
+        std::thread::sleep(Duration::from_millis(20));
+        7
+    });
+    assert_eq!(done, Ok(7));
+    assert!(session.cycles() > begun);
+    session.master().expect_enabled().unwrap();
 }

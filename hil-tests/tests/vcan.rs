@@ -462,7 +462,7 @@ fn counts(timing: &serde_json::Value, of: &str) -> (u64, u64) {
     let all = timing["times"].as_array().unwrap();
     let one = all.iter().find(|times| times["of"] == of);
     let count = one.map_or(0, |times| times["count"].as_u64().unwrap());
-    assert_eq!(timing["cycles"], TIMED);
+    assert!(timing["cycles"].as_u64().unwrap() >= TIMED);
     (count, timing["missed_cycles"].as_u64().unwrap())
 }
 
@@ -486,7 +486,7 @@ fn every_cycle_is_timed_over_vcan_and_a_clock_that_is_not_kept_stops_the_axes_by
     match timing(&["vcan0,vcan1", "--pace", "clock"]) {
         Ok(kept) => {
             let (timed, missed) = counts(&kept, "SYNC to the last torque");
-            assert_eq!(timed + missed, TIMED);
+            assert_eq!(kept["cycles"], timed + missed);
             let (late, _) = counts(&kept, "lateness of SYNC");
             assert!((timed..=TIMED).contains(&late), "{late} of {timed}");
             assert!(kept["scheduling"].is_string());

@@ -120,9 +120,14 @@ fn measured(
         ..*circle
     })?;
     let radius_m = circle.radius_m;
-    let mut figures = ballbar::figures(&points, radius_m, backlash_m(machine), MEASURE_FROM_RAD);
-    let hysteresis_um = ballbar::hysteresis_um(&points, &clockwise, radius_m);
-    figures.circular_hysteresis_h_um = Some(hysteresis_um);
+    let figures = session.meanwhile(|| {
+        let figures = ballbar::figures(&points, radius_m, backlash_m(machine), MEASURE_FROM_RAD);
+        let hysteresis_um = ballbar::hysteresis_um(&points, &clockwise, radius_m);
+        CircleFigures {
+            circular_hysteresis_h_um: Some(hysteresis_um),
+            ..figures
+        }
+    })?;
     Ok((points, figures))
 }
 

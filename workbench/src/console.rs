@@ -99,6 +99,9 @@ pub fn print_timing(report: &TimingReport) {
 }
 
 fn print_histogram(spread: &Spread) {
+    if spread.count == 0 {
+        return;
+    }
     println!("  {}, up to µs:", spread.of);
     for (upper_us, count) in &spread.histogram {
         // One of ten thousand shows as well.

@@ -233,6 +233,28 @@ impl<'a, L: Link> Session<'a, L> {
         Ok(())
     }
 
+    /// Does some work while the machine holds its place: a clock does not wait for it, all others
+    /// do.
+    ///
+    /// # Errors
+    /// Where an interface is gone.
+    ///
+    /// # Panics
+    /// Where the work does.
+    pub fn meanwhile<T: Send>(&mut self, work: impl FnOnce() -> T + Send) -> Outcome<T> {
+        if !self.master.follows_clock() {
+            return Ok(work());
+        }
+        std::thread::scope(|scope| {
+            let work = scope.spawn(work);
+            while !work.is_finished() {
+                self.master.hold()?;
+            }
+            work.join()
+                .map_or_else(|panic| std::panic::resume_unwind(panic), Ok)
+        })
+    }
+
     /// Runs a circle and gives the turns that count.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 //! notes what goes by.
 
 use std::cell::RefCell;
+use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use bus::RealTime;
 use plant_sim::Machine;
 use quadrant_host::Pace;
 use serde::Serialize;
@@ -82,7 +82,7 @@ pub struct TimingReport {
 /// # Errors
 /// Where it cannot be moved, or an interface is gone.
 pub fn run(stand: &Stand<'_>, duration_s: f64) -> Outcome<TimingReport> {
-    let (times, steps) = timed(stand, duration_s)?;
+    let (times, steps, scheduling) = timed(stand, duration_s)?;
     progress::step("bare frames there and back");
     let (place, pace, trips) = match &stand.place {
         Place::InProcess => {
@@ -90,12 +90,15 @@ pub fn run(stand: &Stand<'_>, duration_s: f64) -> Outcome<TimingReport> {
             ("in process".to_owned(), "virtual", trips)
         }
         Place::Can { names, pace } => {
-            let first = names.split(',').next().unwrap_or_default().trim();
-            let trips = round_trip::on_interface(first, ROUND_TRIPS)?;
+            let own = stand
+                .machine
+                .axes
+                .first()
+                .and_then(|axis| axis.interface.as_deref());
+            let trips = round_trip::on_interface(own.unwrap_or(names), ROUND_TRIPS)?;
             (names.clone(), pace_name(*pace), trips)
         }
     };
-    let scheduling = (pace == "clock").then(|| RealTime::begin().granted());
     Ok(TimingReport {
         machine: stand.machine.name.clone(),
         place,
@@ -116,8 +119,12 @@ const fn pace_name(pace: Pace) -> &'static str {
     }
 }
 
-/// Times by the stopwatch, and what each drive does for a torque where it is in this process.
-fn timed(stand: &Stand<'_>, duration_s: f64) -> Outcome<(Times, Option<Durations>)> {
+/// Times by the stopwatch, what each drive does for a torque where it is in this process, and what
+/// the system granted.
+fn timed(
+    stand: &Stand<'_>,
+    duration_s: f64,
+) -> Outcome<(Times, Option<Durations>, Option<String>)> {
     let steps = Rc::new(RefCell::new(no_durations()));
     let is_here = stand.place == Place::InProcess;
     let link: Box<dyn Link> = if is_here {
@@ -125,34 +132,38 @@ fn timed(stand: &Stand<'_>, duration_s: f64) -> Outcome<(Times, Option<Durations
     } else {
         stand.place.open(stand.machine, 0)?
     };
+    let scheduling = link.scheduling();
     let (link, button) = Stopwatch::at(link, stand.machine.axes.len())?;
     let session = Session::on(link, stand.machine, &stand.interrupt)?;
     session.perform(&stand.uncompensated(), None, |session| {
+        let here = vec![0.0; stand.machine.axes.len()];
+        session.go_to(&here)?;
         progress::step(&format!("cycles for {duration_s} s"));
         *steps.borrow_mut() = no_durations();
         button.start();
-        session.follow(duration_s, to_and_fro(stand.machine), |_, _| ())?;
-        let noted = (button.stop(), is_here.then(|| steps.borrow().clone()));
-        let here = vec![0.0; stand.machine.axes.len()];
-        session.go_to(&here)?;
-        Ok(noted)
+        session.follow(duration_s, to_and_fro(stand.machine, duration_s), |_, _| ())?;
+        let steps = is_here.then(|| steps.borrow().clone());
+        Ok((button.stop(), steps, scheduling))
     })
 }
 
-/// All axes to one side and back, again and again, from rest.
-fn to_and_fro(machine: &Machine) -> impl Fn(f64) -> Vec<f64> + use<> {
+/// All axes to one side and back, again and again, from rest to rest.
+fn to_and_fro(machine: &Machine, duration_s: f64) -> impl Fn(f64) -> Vec<f64> + use<> {
     let slowest = Slowest::of(machine);
-    let amplitude_m = AMPLITUDE_M.min(0.5 * SHARE * slowest.travel_m);
-    let by_acceleration = (SHARE * slowest.acceleration_m_per_s2 * amplitude_m).sqrt();
-    let feed = FEED_M_PER_S
-        .min(SHARE * slowest.velocity_m_per_s)
-        .min(by_acceleration);
-    let (axes, rate) = (machine.axes.len(), feed / amplitude_m);
+    let widest_m = AMPLITUDE_M.min(0.5 * SHARE * slowest.travel_m);
+    let feed = FEED_M_PER_S.min(SHARE * slowest.velocity_m_per_s);
+    // As many whole periods as that feed makes, one at least.
+    let periods = (duration_s * feed / (TAU * widest_m)).floor().max(1.0);
+    let rate = TAU * periods / duration_s;
+    let by_acceleration_m = SHARE * slowest.acceleration_m_per_s2 / (rate * rate);
+    let amplitude_m = widest_m.min(feed / rate).min(by_acceleration_m);
+    let axes = machine.axes.len();
     move |time_s| vec![amplitude_m * (1.0 - (rate * time_s).cos()); axes]
 }
 
 fn spreads(times: &Times, steps: Option<&Durations>, trips: &Durations) -> Vec<Spread> {
-    let mut all = vec![Spread::of("SYNC to the last torque", &times.cycle)];
+    let cycle = Spread::of("SYNC to the last torque", &times.cycle);
+    let mut all = Vec::new();
     match steps {
         Some(steps) => all.push(Spread::of("a drive's work for one torque", steps)),
         None => {
@@ -164,7 +175,7 @@ fn spreads(times: &Times, steps: Option<&Durations>, trips: &Durations) -> Vec<S
     all.push(Spread::of("lateness of SYNC", &times.lateness));
     all.push(Spread::of("bare frame, there and back", trips));
     all.retain(|spread| spread.count > 0);
-    all
+    [vec![cycle], all].concat()
 }
 
 impl Spread {
@@ -203,7 +214,6 @@ fn histogram(durations: &Durations) -> Vec<(f64, u64)> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
     use std::time::Duration;
 
     use super::*;
@@ -242,16 +252,20 @@ mod tests {
 
     #[test]
     fn the_motion_begins_at_rest_and_stays_within_what_the_axes_can_do() {
-        let machine = Machine::reference();
-        let (at, slowest) = (to_and_fro(&machine), Slowest::of(&machine));
-        assert_eq!(at(0.0), [0.0, 0.0]);
-        let furthest = (0..10_000).map(|ms| at(1.0e-3 * f64::from(ms))[0]);
-        let furthest = furthest.fold(0.0, f64::max);
-        assert!(
-            furthest > 0.009 && furthest < slowest.travel_m,
-            "{furthest}"
-        );
-        let period_s = TAU * AMPLITUDE_M / FEED_M_PER_S;
-        assert!(at(period_s)[1].abs() < 1.0e-9);
+        let (machine, slowest) = (Machine::reference(), Slowest::of(&Machine::reference()));
+        for duration_s in [1.0, 10.0] {
+            let at = to_and_fro(&machine, duration_s);
+            assert_eq!(at(0.0), [0.0, 0.0]);
+            assert!(at(duration_s)[1].abs() < 1.0e-9);
+            let way = (0..10_000).map(|ms| at(1.0e-3 * f64::from(ms))[0]);
+            let way: Vec<f64> = way.collect();
+            let furthest = way.iter().copied().fold(0.0, f64::max);
+            assert!(
+                furthest > 0.005 && furthest < slowest.travel_m,
+                "{furthest}"
+            );
+            let fastest = way.windows(2).map(|pair| 1.0e3 * (pair[1] - pair[0]));
+            assert!(fastest.fold(0.0, f64::max) < 1.001 * FEED_M_PER_S);
+        }
     }
 }

@@ -39,7 +39,8 @@ fn plot(report: &TimingReport) -> Outcome<String> {
         "{}, {}: {} cycles of {} µs, {} missed",
         report.machine, report.place, report.cycles, report.period_us, report.missed_cycles
     );
-    let curves: Vec<Curve> = report.times.iter().map(outline).collect();
+    let some = report.times.iter().filter(|spread| spread.count > 0);
+    let curves: Vec<Curve> = some.map(outline).collect();
     let x = "duration, µs, as a power of ten";
     plots::curves(&title, x, "share of all, %", SIZE, &curves)
 }

@@ -57,14 +57,17 @@ fn record_part(
     });
     let mut records = Vec::new();
     let outcome = axis_records::record(session, machine, plan, &mut records);
-    for (axis, record) in machine.axes.iter().zip(&records) {
-        let folder = DatasetFolder {
-            path: &records_folder(out, axis),
-            machine,
-            axis,
-        };
-        folder.write(part, record, outcome.as_ref().err())?;
-    }
+    session.meanwhile(|| {
+        let records = machine.axes.iter().zip(&records);
+        records.into_iter().try_for_each(|(axis, record)| {
+            let folder = DatasetFolder {
+                path: &records_folder(out, axis),
+                machine,
+                axis,
+            };
+            folder.write(part, record, outcome.as_ref().err())
+        })
+    })??;
     outcome.map_err(|failure| broke_off(&failure, part, &records, out))
 }
 

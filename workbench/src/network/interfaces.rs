@@ -79,7 +79,7 @@ pub struct Interfaces {
     /// How much later than due the present cycle began, at clock pace.
     late: Option<Duration>,
     /// At clock pace, for as long as the interfaces are open.
-    _real_time: Option<RealTime>,
+    real_time: Option<RealTime>,
 }
 
 impl Interfaces {
@@ -107,7 +107,7 @@ impl Interfaces {
             cycle_end: None,
             left: Duration::ZERO,
             late: None,
-            _real_time: None,
+            real_time: None,
         })
     }
 
@@ -118,7 +118,7 @@ impl Interfaces {
         let real_time = (pace == Pace::Clock).then(RealTime::begin);
         Self {
             pace,
-            _real_time: real_time,
+            real_time,
             ..self
         }
     }
@@ -137,15 +137,20 @@ impl Interfaces {
 
     /// Clock pace: sleeps until the present cycle is over; gives how many cycles were passed over.
     fn wait_for_the_clock(&mut self, cycle: Duration) -> u32 {
-        let now = Instant::now();
-        let due = self.cycle_end.unwrap_or(now);
-        std::thread::sleep(due.saturating_duration_since(now));
-        let late = Instant::now().saturating_duration_since(due);
-        let (skipped, wait) = caught_up(late, cycle);
-        std::thread::sleep(wait);
-        self.late = Some(late);
-        self.cycle_end = Some(due + cycle * (skipped + 1));
-        skipped
+        let mut due = self.cycle_end.unwrap_or_else(Instant::now);
+        let mut skipped = 0;
+        loop {
+            std::thread::sleep(due.saturating_duration_since(Instant::now()));
+            let late = Instant::now().saturating_duration_since(due);
+            let (more, begins) = caught_up(late, cycle);
+            due += cycle * more;
+            skipped += more;
+            if begins {
+                self.late = Some(late.saturating_sub(cycle * more));
+                self.cycle_end = Some(due + cycle);
+                return skipped;
+            }
+        }
     }
 
     fn note(&mut self, bus: usize, frame: &CanFrame) {
@@ -159,18 +164,18 @@ impl Interfaces {
     }
 }
 
-/// What is made of a cycle that begins late by so much: how many are passed over, and how long is
-/// waited for the next one. The nodes go on by their own timers and count on, so the cycles stay on
-/// the grid, each with the number that it has there; and two SYNCs close together are worse for
-/// them than one that is missing.
-fn caught_up(late: Duration, cycle: Duration) -> (u32, Duration) {
+/// What is made of a cycle that begins late by so much: how many are passed over, and whether the
+/// next one begins now or is waited for. The nodes go on by their own timers and count on, so the
+/// cycles stay on the grid, each with the number that it has there; and two SYNCs close together
+/// are worse for them than one that is missing.
+fn caught_up(late: Duration, cycle: Duration) -> (u32, bool) {
     let whole = late.as_nanos() / cycle.as_nanos().max(1);
     let whole = u32::try_from(whole).unwrap_or(u32::MAX - 1);
     let rest = late.saturating_sub(cycle * whole);
     if rest > cycle / 2 {
-        (whole + 1, cycle.saturating_sub(rest))
+        (whole + 1, false)
     } else {
-        (whole, Duration::ZERO)
+        (whole, true)
     }
 }
 
@@ -236,6 +241,14 @@ impl Link for Interfaces {
         skipped
     }
 
+    fn follows_clock(&self) -> bool {
+        self.pace == Pace::Clock
+    }
+
+    fn scheduling(&self) -> Option<String> {
+        self.real_time.as_ref().map(RealTime::granted)
+    }
+
     fn is_due(&self) -> bool {
         let end = self.cycle_end.filter(|_| self.pace == Pace::Clock);
         end.is_some_and(|end| end <= Instant::now())
@@ -271,17 +284,14 @@ mod tests {
     #[test]
     fn a_late_cycle_has_the_number_of_the_grid_and_none_begins_in_its_second_half() {
         let ms = |value: f64| Duration::from_secs_f64(1.0e-3 * value);
-        let near = |late: f64| {
-            let (skipped, wait) = caught_up(ms(late), ms(1.0));
-            (skipped, (1.0e6 * wait.as_secs_f64()).round())
-        };
-        assert_eq!(near(0.0), (0, 0.0));
-        assert_eq!(near(0.4), (0, 0.0));
-        assert_eq!(near(0.7), (1, 300.0));
-        assert_eq!(near(3.4), (3, 0.0));
-        assert_eq!(near(3.8), (4, 200.0));
+        let near = |late: f64| caught_up(ms(late), ms(1.0));
+        assert_eq!(near(0.0), (0, true));
+        assert_eq!(near(0.4), (0, true));
+        assert_eq!(near(0.7), (1, false));
+        assert_eq!(near(3.4), (3, true));
+        assert_eq!(near(3.8), (4, false));
         // A minute in a debugger.
-        assert_eq!(near(60_000.2), (60_000, 0.0));
+        assert_eq!(near(60_000.2), (60_000, true));
     }
 
     #[test]

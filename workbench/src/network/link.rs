@@ -39,6 +39,14 @@ pub trait Link {
     -> Outcome<Option<CanFrame>>;
     /// The next cycle begins; gives how many before it the clock has passed over.
     fn pass(&mut self, cycle: Duration) -> u32;
+    /// Whether a clock beats the time: it does not wait for the workbench.
+    fn follows_clock(&self) -> bool {
+        false
+    }
+    /// What the system granted to a workbench that follows the clock.
+    fn scheduling(&self) -> Option<String> {
+        None
+    }
     /// Whether the clock asks for the next cycle by now.
     fn is_due(&self) -> bool {
         false
@@ -91,6 +99,14 @@ impl Link for Box<dyn Link> {
 
     fn pass(&mut self, cycle: Duration) -> u32 {
         self.as_mut().pass(cycle)
+    }
+
+    fn follows_clock(&self) -> bool {
+        self.as_ref().follows_clock()
+    }
+
+    fn scheduling(&self) -> Option<String> {
+        self.as_ref().scheduling()
     }
 
     fn is_due(&self) -> bool {

@@ -72,6 +72,8 @@ pub struct Master<L: Link> {
     interrupt: Interrupt,
     missed: u32,
     cycles: u64,
+    /// Whether all drives were without torque when the last cycle ended.
+    is_at_rest: bool,
 }
 
 impl<L: Link> Master<L> {
@@ -101,6 +103,7 @@ impl<L: Link> Master<L> {
             interrupt: Interrupt::never(),
             missed: 0,
             cycles: 0,
+            is_at_rest: true,
         })
     }
 
@@ -121,6 +124,12 @@ impl<L: Link> Master<L> {
     #[must_use]
     pub const fn cycles(&self) -> u64 {
         self.cycles
+    }
+
+    /// Whether a clock beats the time, which does not wait for the workbench.
+    #[must_use]
+    pub fn follows_clock(&self) -> bool {
+        self.link.follows_clock()
     }
 
     /// The link, for tests that pull plugs.

@@ -7,6 +7,7 @@ use super::in_process::InProcess;
 use super::interfaces::Interfaces;
 use super::link::Link;
 use crate::error::{Failure, Outcome};
+use crate::progress;
 
 /// Where the machine is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -32,7 +33,11 @@ impl Place {
         Ok(match self {
             Self::InProcess => Box::new(InProcess::new(machine, run)?),
             Self::Can { names, pace } => {
-                Box::new(Interfaces::open(machine, names)?.with_pace(*pace))
+                let link = Interfaces::open(machine, names)?.with_pace(*pace);
+                if let Some(granted) = link.scheduling() {
+                    progress::step(&format!("pace of the clock: {granted}"));
+                }
+                Box::new(link)
             }
         })
     }

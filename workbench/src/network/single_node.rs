@@ -8,6 +8,7 @@ use quadrant_host::port::Port;
 use quadrant_host::termination::Termination;
 
 use crate::error::{Failure, Outcome};
+use crate::progress;
 
 /// The two nodes of an axis, from the numbers of a command line.
 ///
@@ -57,7 +58,10 @@ impl Post<'_> {
         let faults = self
             .faults
             .map(|plan| FaultyPort::new(plan, ids, self.node.get()));
-        let _real_time = (self.pace == Pace::Clock).then(RealTime::begin);
+        let real_time = (self.pace == Pace::Clock).then(RealTime::begin);
+        if let Some(granted) = real_time.as_ref().map(RealTime::granted) {
+            progress::step(&format!("pace of the clock: {granted}"));
+        }
         quadrant_host::run(node, Port::Can(port), faults, self.pace, &ended).map_err(gone)
     }
 }

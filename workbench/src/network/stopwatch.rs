@@ -17,7 +17,7 @@ use hdrhistogram::Histogram;
 use plant_sim::node::Truth;
 use protocol::cob::AxisIds;
 use protocol::message::{Decoded, decode};
-use protocol::{CanFrame, Message, Station};
+use protocol::{CanFrame, Message, Station, SyncCounter};
 
 use super::link::{Link, axis_ids};
 use crate::error::Outcome;
@@ -55,9 +55,9 @@ pub struct Times {
     pub interval: Durations,
     /// From SYNC to the torque of the last axis.
     pub cycle: Durations,
-    /// From SYNC to the feedback of each axis.
+    /// From SYNC to the feedback of each axis on the first bus.
     pub feedback: Durations,
-    /// From the feedback of an axis to its torque.
+    /// From the feedback of an axis on the first bus to its torque.
     pub drive: Durations,
 }
 
@@ -85,8 +85,11 @@ struct Seen {
 struct Noted {
     runs: bool,
     begun: Option<Instant>,
-    sync: Option<Instant>,
+    sync: Option<(Instant, SyncCounter)>,
     seen: Vec<Seen>,
+    /// Whether an axis is on the bus that is read first. On the others frames are read when those
+    /// of the first have all come, so when they came is not known.
+    on_first_bus: Vec<bool>,
     times: Times,
 }
 
@@ -108,7 +111,7 @@ impl Noted {
 
     /// The present cycle is over.
     fn end(&mut self) {
-        let Some(sync) = self.sync.take() else {
+        let Some((sync, _)) = self.sync.take() else {
             return;
         };
         let last = self.seen.iter().try_fold(sync, |last, axis| {
@@ -121,9 +124,9 @@ impl Noted {
             }
             None => self.times.missed += 1,
         }
-        for axis in &mut self.seen {
+        for (axis, is_first) in self.seen.iter_mut().zip(&self.on_first_bus) {
             let Seen { feedback, torque } = std::mem::take(axis);
-            let Some(feedback) = feedback else {
+            let Some(feedback) = feedback.filter(|_| *is_first) else {
                 continue;
             };
             note(&mut self.times.feedback, feedback - sync);
@@ -180,6 +183,7 @@ impl<L: Link> Stopwatch<L> {
             begun: None,
             sync: None,
             seen: vec![Seen::default(); axes.len()],
+            on_first_bus: axes.iter().map(|(_, bus)| *bus == 0).collect(),
             times: Times::none(),
         }));
         let button = Button(Rc::clone(&noted));
@@ -189,16 +193,16 @@ impl<L: Link> Stopwatch<L> {
     fn note(&self, bus: usize, frame: &CanFrame) {
         let now = Instant::now();
         let mut noted = self.noted.borrow_mut();
-        if noted.sync.is_none() {
+        let Some((_, counter)) = noted.sync else {
             return;
-        }
+        };
         let axes = self.axes.iter().zip(&mut noted.seen);
         for ((ids, _), seen) in axes.filter(|((_, own), _)| *own == bus) {
             match decode(*ids, frame) {
-                Ok(Decoded::Message(Message::Feedback(_))) => {
+                Ok(Decoded::Message(Message::Feedback(own))) if own.counter == counter => {
                     seen.feedback.get_or_insert(now);
                 }
-                Ok(Decoded::Message(Message::Torque(_))) => {
+                Ok(Decoded::Message(Message::Torque(own))) if own.counter == counter => {
                     seen.torque.get_or_insert(now);
                 }
                 _ => {}
@@ -218,13 +222,12 @@ impl<L: Link> Link for Stopwatch<L> {
 
     fn send(&mut self, bus: usize, frame: CanFrame) -> Outcome<()> {
         let mut noted = self.noted.borrow_mut();
-        let is_sync = || {
-            let (ids, _) = self.axes.first()?;
-            let decoded = decode(*ids, &frame).ok()?;
-            matches!(decoded, Decoded::Message(Message::Sync(_))).then_some(())
-        };
-        if noted.runs && noted.sync.is_none() && is_sync().is_some() {
-            noted.sync = Some(Instant::now());
+        if noted.runs
+            && noted.sync.is_none()
+            && let Some((ids, _)) = self.axes.first()
+            && let Ok(Decoded::Message(Message::Sync(counter))) = decode(*ids, &frame)
+        {
+            noted.sync = Some((Instant::now(), counter));
         }
         self.link.send(bus, frame)
     }
@@ -252,6 +255,14 @@ impl<L: Link> Link for Stopwatch<L> {
             .borrow_mut()
             .begins(Instant::now(), late, skipped);
         skipped
+    }
+
+    fn follows_clock(&self) -> bool {
+        self.link.follows_clock()
+    }
+
+    fn scheduling(&self) -> Option<String> {
+        self.link.scheduling()
     }
 
     fn is_due(&self) -> bool {

@@ -45,7 +45,8 @@ impl<'a, 'm> TuningCircles<'a, 'm> {
         let points = self.session.circle(&self.circle)?;
         let radius_m = self.circle.radius_m;
         // The window about the reversals is not widened for a gap: a real machine does not tell it.
-        let figures = ballbar::figures(&points, radius_m, 0.0, MEASURE_FROM_RAD);
+        let figures = || ballbar::figures(&points, radius_m, 0.0, MEASURE_FROM_RAD);
+        let figures = self.session.meanwhile(figures)?;
         Ok(TuningCircle {
             points,
             radius_m,

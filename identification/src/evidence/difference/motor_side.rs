@@ -143,7 +143,8 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Opti
     });
     let seen = seen.filter(|(known, motor_side)| {
         let table_share = known.value / unrubbed.value;
-        motor_side.coulomb.value > 0.0 && TABLE_SHARES.contains(&table_share)
+        motor_side.coulomb.value > motor_side.coulomb.half_width
+            && TABLE_SHARES.contains(&table_share)
     });
     let known = seen.map_or_else(
         || rubbing.hiding(unrubbed, by_law.stiffness),

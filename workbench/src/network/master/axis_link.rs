@@ -133,7 +133,12 @@ impl AxisLink {
     pub(super) fn begin(&mut self, next_m: f64, skipped: u32) {
         self.force_known = self.torque_seen && skipped == 0;
         self.feedback_seen = false;
-        self.now.reference_m = fine_m(self.next);
+        // What the drive made of setpoints that it did not get is not known: about the next one.
+        self.now.reference_m = if skipped == 0 {
+            fine_m(self.next)
+        } else {
+            next_m
+        };
         self.now.force_n = self.torque_n;
         self.next = fine(next_m);
         self.torque_seen = false;

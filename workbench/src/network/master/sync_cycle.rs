@@ -64,10 +64,10 @@ impl<L: Link> Master<L> {
         self.counter = counter.next();
         self.cycles += 1 + u64::from(skipped);
         // Drives without torque wait for SYNC as long as it takes.
-        let is_at_rest = self.axes.iter().all(|axis| axis.state.is_some_and(is_down));
-        if !is_at_rest {
+        if !self.is_at_rest {
             self.missed = self.missed.saturating_add(skipped);
         }
+        self.is_at_rest = self.axes.iter().all(|axis| axis.state.is_some_and(is_down));
         Ok(skipped)
     }
 
@@ -77,6 +77,14 @@ impl<L: Link> Master<L> {
         if self.cycles == 0 || !self.link.is_due() {
             return Ok(());
         }
+        self.hold()
+    }
+
+    /// A cycle with the setpoints that were sent last.
+    ///
+    /// # Errors
+    /// Where an interface is gone.
+    pub fn hold(&mut self) -> Outcome<()> {
         let last: Vec<f64> = self.axes.iter().map(AxisLink::last_setpoint_m).collect();
         self.cycle(&last)
     }
