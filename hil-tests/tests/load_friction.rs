@@ -108,12 +108,7 @@ const WIDEST: f64 = 0.55;
 
 #[test]
 fn what_the_motion_of_a_load_tells_holds_the_truth_on_machines_of_unlike_friction() {
-    let count = if Scope::now().is_complete() {
-        CASES.len()
-    } else {
-        1
-    };
-    for case in &CASES[..count] {
+    for case in chosen(&CASES) {
         let mut machine = Machine::parse("machine.toml", case.machine).unwrap();
         machine.axes.truncate(1);
         assert_told(&machine, case);
@@ -126,12 +121,7 @@ const DRAWN: [u64; 7] = [107, 101, 103, 104, 106, 109, 110];
 
 #[test]
 fn what_is_told_of_both_sides_of_a_screw_holds_the_truth_on_drawn_machines() {
-    let count = if Scope::now().is_complete() {
-        DRAWN.len()
-    } else {
-        1
-    };
-    for number in &DRAWN[..count] {
+    for number in chosen(&DRAWN) {
         let mut machine = Drawn::of_number(*number).machine;
         machine.axes.truncate(1);
         machine.name = format!("drawn {number}");
@@ -166,6 +156,16 @@ fn assert_holds(machine: &Machine, report: &Report, name: &str, truth: f64, wide
     let what = format!("{}: {name} {known:?} for {truth}", machine.name);
     assert!((known.low..=known.high).contains(&truth), "{what}");
     assert!(known.half_width() < widest * truth.abs(), "{what}");
+}
+
+/// All of them in the full tables, else the first.
+fn chosen<T>(all: &[T]) -> &[T] {
+    let count = if Scope::now().is_complete() {
+        all.len()
+    } else {
+        1
+    };
+    &all[..count]
 }
 
 fn assert_told(machine: &Machine, case: &Case) {

@@ -26,6 +26,12 @@ pub const DEFAULT_PACE: Pace = Pace::Lockstep {
     deadline: Duration::from_millis(DEADLINE_MS),
 };
 
+/// The names of a list of interfaces, separated by commas.
+pub(super) fn listed(names: &str) -> impl Iterator<Item = &str> + Clone {
+    let names = names.split(',').map(str::trim);
+    names.filter(|name| !name.is_empty())
+}
+
 /// Which axis is on which interface.
 #[derive(Debug, PartialEq, Eq)]
 struct Wiring {
@@ -39,11 +45,7 @@ impl Wiring {
     /// `own` are the interfaces that the machine file names; the other axes get those of `default`
     /// in turn.
     fn of<'m>(own: impl Iterator<Item = Option<&'m str>>, default: &str) -> Outcome<Self> {
-        let defaults: Vec<&str> = default
-            .split(',')
-            .map(str::trim)
-            .filter(|name| !name.is_empty())
-            .collect();
+        let defaults: Vec<&str> = listed(default).collect();
         if defaults.is_empty() {
             return Err(Failure::new(
                 "--can needs the name of an interface, for example vcan0",

@@ -4,7 +4,7 @@ use plant_sim::Machine;
 use quadrant_host::Pace;
 
 use super::in_process::InProcess;
-use super::interfaces::Interfaces;
+use super::interfaces::{Interfaces, listed};
 use super::link::Link;
 use crate::error::{Failure, Outcome};
 use crate::progress;
@@ -47,11 +47,7 @@ impl Place {
 /// shares a bus decides its load.
 #[must_use]
 pub fn wired(mut machine: Machine, names: &str) -> Machine {
-    let names = names
-        .split(',')
-        .map(str::trim)
-        .filter(|name| !name.is_empty());
-    for (axis, name) in machine.axes.iter_mut().zip(names.cycle()) {
+    for (axis, name) in machine.axes.iter_mut().zip(listed(names).cycle()) {
         axis.interface.get_or_insert_with(|| name.to_owned());
     }
     machine

@@ -15,7 +15,7 @@ use protocol::{CanFrame, Message, SyncCounter};
 
 use super::Master;
 use super::axis_link::AxisLink;
-use super::way::is_down;
+use super::way::{Hold, is_down};
 use crate::error::Outcome;
 use crate::network::link::{Link, axis_ids};
 
@@ -85,7 +85,7 @@ impl<L: Link> Master<L> {
     /// # Errors
     /// Where an interface is gone.
     pub fn hold(&mut self) -> Outcome<()> {
-        let last: Vec<f64> = self.axes.iter().map(AxisLink::last_setpoint_m).collect();
+        let last = self.held(Hold::Last);
         self.cycle(&last)
     }
 

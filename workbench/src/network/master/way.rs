@@ -232,7 +232,7 @@ impl<L: Link> Master<L> {
         Ok(false)
     }
 
-    fn held(&self, hold: Hold) -> Vec<f64> {
+    pub(super) fn held(&self, hold: Hold) -> Vec<f64> {
         let of = |axis: &AxisLink| match hold {
             Hold::Actual => axis.position_m(),
             Hold::Last => axis.last_setpoint_m(),
