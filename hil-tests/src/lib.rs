@@ -13,6 +13,7 @@ pub mod blade;
 pub mod comparison;
 pub mod confusion;
 pub mod drawn;
+pub mod emulated;
 pub mod exact;
 pub mod gaps;
 pub mod golden;

@@ -22,22 +22,21 @@
 #![no_std]
 #![no_main]
 
+mod host;
 mod recording;
 
-use core::fmt::{self, Write as _};
 use core::hint::black_box;
-use core::panic::PanicInfo;
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m_rt::{ExceptionFrame, entry, exception};
-use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
-use cortex_m_semihosting::hio;
+use cortex_m_rt::entry;
+use cortex_m_semihosting::debug::EXIT_SUCCESS;
 use protocol::CanFrame;
 use protocol::cob::AxisIds;
 use servo::Servo;
 
+use host::{exit, report};
 use recording::{Class, Event, Events, FRAME};
 
 /// Copies of the servo that take an event that is measured: 40 instructions a tick / 64 copies is
@@ -169,35 +168,4 @@ fn is_as_recorded(out: &[CanFrame], answers: &[[u8; FRAME]]) -> bool {
             .iter()
             .zip(answers)
             .all(|(frame, answer)| recording::to_bytes(frame) == Some(*answer))
-}
-
-/// A line to the host: one semihosting call, whatever it is made of.
-fn report(line: fmt::Arguments<'_>) {
-    let mut text = heapless::String::<64>::new();
-    writeln!(text, "{line}").expect("a line has 64 bytes at most");
-    let sent = hio::hstdout().and_then(|mut host| host.write_all(text.as_bytes()));
-    sent.expect("the host takes every line");
-}
-
-fn exit(status: debug::ExitStatus) -> ! {
-    loop {
-        debug::exit(status);
-    }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    if let Ok(mut host) = hio::hstdout() {
-        let _ = writeln!(host, "{info}");
-    }
-    exit(EXIT_FAILURE)
-}
-
-#[allow(
-    unsafe_code,
-    reason = "cortex-m-rt wants this signature; its macro copies the attribute to where `expect` finds nothing"
-)]
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    panic!("hard fault at {:#010x}", frame.pc())
 }

@@ -8,10 +8,11 @@
 //! ```
 //!
 //! Boot-up and passing time have no frame; a frame of zeros stands in its place. This one file is
-//! part of two programs, the image and the benchmark that records
-//! (`hil-tests/benches/instructions.rs`), so that there is one description of the format.
+//! part of two programs, the image and the tests that record (`hil-tests/src/emulated`), so that
+//! there is one description of the format.
 #![allow(
     dead_code,
+    unreachable_pub,
     reason = "each of the two programs uses its half: one writes, the other reads"
 )]
 
@@ -19,17 +20,17 @@ use embedded_can::{Frame, Id, StandardId};
 use protocol::CanFrame;
 
 /// Bytes of a frame.
-pub(crate) const FRAME: usize = 11;
+pub const FRAME: usize = 11;
 /// Where QEMU's loader puts the recording: the PSRAM of the mps2-an386.
-pub(crate) const ADDRESS: usize = 0x2100_0000;
+pub const ADDRESS: usize = 0x2100_0000;
 /// Size of that PSRAM.
-pub(crate) const SPACE: usize = 16 << 20;
+pub const SPACE: usize = 16 << 20;
 
 /// What happens to the servo. The discriminant is the byte in the recording and in the image's
 /// report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
-pub(crate) enum Class {
+pub enum Class {
     /// It boots.
     Boot,
     /// Time passes.
@@ -46,7 +47,7 @@ pub(crate) enum Class {
 
 impl Class {
     /// All classes; the place of each is its byte.
-    pub(crate) const ALL: [Self; 6] = [
+    pub const ALL: [Self; 6] = [
         Self::Boot,
         Self::Time,
         Self::Sync,
@@ -56,13 +57,13 @@ impl Class {
     ];
 
     /// The class of a byte.
-    pub(crate) fn from_byte(byte: u8) -> Option<Self> {
+    pub fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()
     }
 }
 
 /// A frame as it stands in the recording; `None` for what no node of ours sends or hears.
-pub(crate) fn to_bytes(frame: &CanFrame) -> Option<[u8; FRAME]> {
+pub fn to_bytes(frame: &CanFrame) -> Option<[u8; FRAME]> {
     let Id::Standard(id) = frame.id() else {
         return None;
     };
@@ -77,29 +78,29 @@ pub(crate) fn to_bytes(frame: &CanFrame) -> Option<[u8; FRAME]> {
 }
 
 /// The frame of some bytes.
-pub(crate) fn from_bytes([low, high, length, data @ ..]: [u8; FRAME]) -> Option<CanFrame> {
+pub fn from_bytes([low, high, length, data @ ..]: [u8; FRAME]) -> Option<CanFrame> {
     let id = StandardId::new(u16::from_le_bytes([low, high]))?;
     CanFrame::new(id, data.get(..usize::from(length))?)
 }
 
 /// An event, read where it lies.
-#[derive(Clone, Copy)]
-pub(crate) struct Event<'a> {
+#[derive(Clone, Copy, Debug)]
+pub struct Event<'a> {
     /// What happens.
-    pub(crate) class: Class,
+    pub class: Class,
     /// Whether its instructions are wanted.
-    pub(crate) is_measured: bool,
+    pub is_measured: bool,
     /// When.
-    pub(crate) now_us: u64,
+    pub now_us: u64,
     /// The frame that comes, if one does.
-    pub(crate) frame: [u8; FRAME],
+    pub frame: [u8; FRAME],
     /// What the host's servo answered.
-    pub(crate) answers: &'a [[u8; FRAME]],
+    pub answers: &'a [[u8; FRAME]],
 }
 
 impl Event<'_> {
     /// Adds the event to a recording.
-    pub(crate) fn write(&self, out: &mut impl Extend<u8>) {
+    pub fn write(&self, out: &mut impl Extend<u8>) {
         out.extend([self.class as u8, u8::from(self.is_measured)]);
         out.extend(self.now_us.to_le_bytes());
         out.extend(self.frame);
@@ -109,7 +110,8 @@ impl Event<'_> {
 }
 
 /// Reads the events of a recording; ends where they end, or where the bytes make no sense.
-pub(crate) struct Events<'a>(pub(crate) &'a [u8]);
+#[derive(Clone, Debug)]
+pub struct Events<'a>(pub &'a [u8]);
 
 impl<'a> Iterator for Events<'a> {
     type Item = Event<'a>;

@@ -1,6 +1,6 @@
 //! One station at one port: what delivers its frames and tells it the time.
 //!
-//! - *Lock-step*: time is [bus time](crate::lockstep_time). Where no frame comes for the deadline,
+//! - *Lock-step*: time is [bus time](protocol::lockstep_time). Where no frame comes for the deadline,
 //!   the station does what is due next. After three deadlines without a frame of the workbench it
 //!   is gone, and time follows the clock until the workbench says something again.
 //! - *Clock pace*: time is the clock, and the station wakes when it is due.
@@ -12,25 +12,18 @@ use bus::FaultyPort;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame, Id, StandardId};
-use protocol::message::{self, Decoded};
 use protocol::table::{FRAMES, Sender};
-use protocol::{AxisIds, CanFrame, Message, Station, SyncCounter};
+use protocol::{CanFrame, LockstepTime, Station};
 
-use crate::lockstep_time::LockstepTime;
 use crate::port::Port;
 
 /// Deadlines without a frame of the workbench after which it counts as gone. One is a lost frame,
 /// two are a lost SYNC and a lost frame; the workbench waits for one and a half.
 const DEADLINES_UNTIL_ALONE: u8 = 3;
 
-/// What a station does at one time before its port is looked at again: heartbeat, deadline, own
-/// timer and timeouts, with room for as many again.
-const DUE_AT_ONCE: u8 = 8;
-
 /// A station with its port.
 pub(crate) struct Leaf {
     station: Box<dyn Station>,
-    ids: AxisIds,
     of_workbench: Vec<StandardId>,
     port: Port,
     faults: Option<FaultyPort>,
@@ -71,7 +64,6 @@ impl Leaf {
         let of_workbench = of_workbench.map(|spec| ids.identifier(spec.kind)).collect();
         Self {
             station,
-            ids,
             of_workbench,
             port,
             faults,
@@ -185,46 +177,22 @@ impl Leaf {
     }
 
     fn take_in_step(&mut self, frame: &CanFrame) -> io::Result<()> {
-        let due_us = self.station.sync_due_us();
-        if let Some(counter) = self.sync(frame) {
-            self.time.sync(counter, due_us);
-            return self.take(frame);
-        }
-        self.take(frame)?;
-        self.time.without_sync(due_us, self.station.sync_due_us());
-        Ok(())
+        self.act(|station, time, send| time.deliver(station, frame, send))
     }
 
     fn take(&mut self, frame: &CanFrame) -> io::Result<()> {
-        self.act(|station, now_us, send| station.take(frame, now_us, send))
+        self.act(|station, time, send| station.take(frame, time.now_us(), send))
     }
 
-    /// Time reaches what is due next, and the station does everything that is due then.
+    /// Time reaches what is due next.
     fn wake(&mut self) -> io::Result<()> {
-        let Some(due_us) = self.station.wake_at_us() else {
-            return Ok(());
-        };
-        self.time.reach(due_us);
-        for _ in 0..DUE_AT_ONCE {
-            let sync_due_us = self.station.sync_due_us();
-            self.act(|station, now_us, send| station.time(now_us, send))?;
-            self.time
-                .without_sync(sync_due_us, self.station.sync_due_us());
-            if self
-                .station
-                .wake_at_us()
-                .is_none_or(|due_us| due_us > self.time.now_us())
-            {
-                break;
-            }
-        }
-        Ok(())
+        self.act(|station, time, send| time.wake(station, send))
     }
 
-    /// Lets the station act at the present time and sends what it says.
+    /// Lets the station act and sends what it says.
     fn act(
         &mut self,
-        act: impl FnOnce(&mut dyn Station, u64, &mut dyn FnMut(CanFrame)),
+        act: impl FnOnce(&mut dyn Station, &mut LockstepTime, &mut dyn FnMut(CanFrame)),
     ) -> io::Result<()> {
         let (mut outcome, port) = (Ok(()), &self.port);
         let mut send = |frame| {
@@ -232,7 +200,7 @@ impl Leaf {
                 outcome = port.send(&frame);
             }
         };
-        act(self.station.as_mut(), self.time.now_us(), &mut send);
+        act(self.station.as_mut(), &mut self.time, &mut send);
         outcome
     }
 
@@ -240,13 +208,5 @@ impl Leaf {
         self.of_workbench
             .iter()
             .any(|id| frame.id() == Id::Standard(*id))
-    }
-
-    /// The counter, where a frame is SYNC.
-    fn sync(&self, frame: &CanFrame) -> Option<SyncCounter> {
-        match message::decode(self.ids, frame) {
-            Ok(Decoded::Message(Message::Sync(counter))) => Some(counter),
-            _ => None,
-        }
     }
 }

@@ -11,7 +11,6 @@
 
 pub mod idle;
 mod leaf;
-pub mod lockstep_time;
 pub mod port;
 pub mod termination;
 

@@ -7,7 +7,13 @@
 //! its cycle was begun without it) moves nothing, so the leaf follows SYNC by its counter as the
 //! node does.
 
-use protocol::{SyncCounter, SyncEvent, SyncTracker};
+use crate::cob::AxisIds;
+use crate::message::{self, Decoded};
+use crate::{CanFrame, Message, Station, SyncCounter, SyncEvent, SyncTracker};
+
+/// What a station does at one time before its port is looked at again: heartbeat, deadline, own
+/// timer and timeouts, with room for as many again.
+const DUE_AT_ONCE: u8 = 8;
 
 /// Bus time of one node, µs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,8 +34,46 @@ impl LockstepTime {
         self.now_us = self.now_us.max(at_us);
     }
 
-    /// A SYNC came; `due_us` is when the node waits for one ([`protocol::Station::sync_due_us`]).
-    pub fn sync(&mut self, counter: SyncCounter, due_us: Option<u64>) {
+    /// A frame came for a station.
+    pub fn deliver(
+        &mut self,
+        station: &mut dyn Station,
+        frame: &CanFrame,
+        send: &mut dyn FnMut(CanFrame),
+    ) {
+        let due_us = station.sync_due_us();
+        let sync = sync(station.ids(), frame);
+        if let Some(counter) = sync {
+            self.sync(counter, due_us);
+        }
+        station.take(frame, self.now_us, send);
+        if sync.is_none() {
+            self.without_sync(due_us, station.sync_due_us());
+        }
+    }
+
+    /// Patience ended: time reaches what is due next, and the station does everything that is due
+    /// then.
+    pub fn wake(&mut self, station: &mut dyn Station, send: &mut dyn FnMut(CanFrame)) {
+        let Some(due_us) = station.wake_at_us() else {
+            return;
+        };
+        self.reach(due_us);
+        for _ in 0..DUE_AT_ONCE {
+            let sync_due_us = station.sync_due_us();
+            station.time(self.now_us, send);
+            self.without_sync(sync_due_us, station.sync_due_us());
+            if station
+                .wake_at_us()
+                .is_none_or(|due_us| due_us > self.now_us)
+            {
+                break;
+            }
+        }
+    }
+
+    /// A SYNC came; `due_us` is when the node waits for one ([`Station::sync_due_us`]).
+    fn sync(&mut self, counter: SyncCounter, due_us: Option<u64>) {
         let Some(due_us) = due_us else {
             // The first SYNC of a node that has just been started.
             self.sync = SyncTracker::default();
@@ -44,7 +88,7 @@ impl LockstepTime {
 
     /// The node did something without SYNC, and may have begun a cycle: the next SYNC is due later
     /// then.
-    pub fn without_sync(&mut self, due_before_us: Option<u64>, due_after_us: Option<u64>) {
+    fn without_sync(&mut self, due_before_us: Option<u64>, due_after_us: Option<u64>) {
         if due_before_us
             .zip(due_after_us)
             .is_some_and(|(before, after)| after > before)
@@ -54,9 +98,20 @@ impl LockstepTime {
     }
 }
 
+/// The counter, where a frame is SYNC.
+fn sync(ids: AxisIds, frame: &CanFrame) -> Option<SyncCounter> {
+    match message::decode(ids, frame) {
+        Ok(Decoded::Message(Message::Sync(counter))) => Some(counter),
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    extern crate std;
+    use std::vec::Vec;
 
     fn count(value: u8) -> SyncCounter {
         SyncCounter::new(value).unwrap()

@@ -1,0 +1,13 @@
+//! The servo node as ARM code on an emulated Cortex-M4: what it heard on the host is played to it
+//! again ([`recorded`], [`report`]), or it takes the host's place on a bus ([`node`]).
+//!
+//! QEMU has neither an STM32G4 nor an FDCAN, so it is the core that is emulated here and not the
+//! board ([`machine`]).
+
+pub mod machine;
+pub mod recorded;
+pub mod report;
+
+/// The format of a recording, which is part of the image too.
+#[path = "../../firmware/emulated-cycle/src/recording.rs"]
+pub mod recording;

@@ -1,0 +1,105 @@
+//! The node as ARM code on an emulated Cortex-M4: it answers as the host's does, bit for bit.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hil_tests::emulated::machine::{self, PROFILE};
+use hil_tests::emulated::recorded::{Circling, Drive, record, with_length};
+use hil_tests::emulated::recording::{Class, Event, Events};
+use hil_tests::emulated::report::Report;
+
+/// Twelve seconds of R 10 F 1000: X turns round six times.
+const CYCLES: u32 = 12_000;
+/// One frame of each kind that the drive hears, on the way and near a reversal; the fourth is the
+/// drive's own.
+const LOST: [(Class, u32); 3] = [
+    (Class::Sync, 1881),
+    (Class::Setpoint, 3766),
+    (Class::Feedback, 7540),
+];
+const TORQUE_LOST: u32 = 9000;
+
+fn target() -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .parent()
+        .unwrap()
+        .to_path_buf()
+}
+
+fn folder() -> PathBuf {
+    let folder = target().join("emulated");
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Records a circle with losses and plays it to the image.
+fn replayed(image: &Path, name: &str, drive: Drive) -> Report {
+    let taken = record(Circling {
+        drive,
+        cycles: CYCLES,
+        is_measured: false,
+        lost: &LOST,
+        torque_lost: Some(TORQUE_LOST),
+    })
+    .unwrap();
+    let counts = taken.counts;
+    assert_eq!(
+        (counts.bridged, counts.by_deadline, counts.refused),
+        (3, 3, 0),
+        "a cycle for each frame that the drive lacks: {counts:?}"
+    );
+    let path = folder().join(name).with_extension("bin");
+    fs::write(&path, taken.bytes).unwrap();
+    Report::of(&machine::replay(image, &path))
+}
+
+#[test]
+fn the_emulated_law_repeats_the_golden_vectors() {
+    let images = machine::images(&target(), "emulated-cycle", PROFILE);
+    let report = machine::report(&images.join("emulated-law"), &[]);
+    assert_eq!(report.trim(), "vectors 400 0");
+}
+
+#[test]
+fn the_emulated_node_answers_a_circle_with_losses_as_the_host_does() {
+    let image = machine::images(&target(), "emulated-cycle", PROFILE).join("emulated-cycle");
+    for (name, drive) in [("everything", Drive::Everything), ("model", Drive::Model)] {
+        let report = replayed(&image, name, drive);
+        println!(
+            "{name}: {} answers to {} events",
+            report.compared, report.replayed
+        );
+        assert!(
+            report.wrong.is_empty(),
+            "{name}: other answers to {:?}",
+            report.wrong
+        );
+        assert!(
+            report.compared > CYCLES && report.replayed > 3 * CYCLES,
+            "{report:?}"
+        );
+    }
+    one_turned_bit_is_noticed(&image);
+}
+
+/// The counter-proof: the lowest bit of the last torque turned.
+fn one_turned_bit_is_noticed(image: &Path) {
+    let whole = fs::read(folder().join("model.bin")).unwrap();
+    let events: Vec<Event<'_>> = Events(&whole[4..]).collect();
+    let is_feedback = |event: &Event<'_>| event.class == Class::Feedback;
+    let last = events.iter().rposition(is_feedback).unwrap();
+    let mut turned = Vec::new();
+    for (at, event) in events.iter().enumerate() {
+        let mut answers = event.answers.to_vec();
+        let torque = answers.first_mut().filter(|_| at == last);
+        if let Some(torque) = torque {
+            torque[3] ^= 1;
+        }
+        let answers = &answers;
+        Event { answers, ..*event }.write(&mut turned);
+    }
+    let path = folder().join("turned.bin");
+    fs::write(&path, with_length(&turned)).unwrap();
+    let report = Report::of(&machine::replay(image, &path));
+    assert_eq!(report.wrong, [u32::try_from(last).unwrap()]);
+}
