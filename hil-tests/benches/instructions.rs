@@ -3,7 +3,7 @@
 //!
 //! One axis of the reference machine follows a circle on the in-process bus, plain and with every
 //! compensation on, and a tap at the servo's place takes down what the servo hears and answers.
-//! `firmware/emulated-cycle`, an image for QEMU's mps2-an386, hears the same, compares its own
+//! `firmware/emulated`, an image for QEMU's mps2-an386, hears the same, compares its own
 //! answers byte for byte, and measures every event of the circle. The table splits a cycle into
 //! SYNC, setpoint and feedback. The worst cycle is one that happened, with its own split; the worst
 //! of each event may stand in another cycle. The benchmark fails on an answer that differs, and on
@@ -32,7 +32,7 @@ fn main() -> ExitCode {
     fs::create_dir_all(&folder).expect("the target folder is writable");
     let profile = option("--profile").unwrap_or_else(|| machine::PROFILE.into());
     let target = folder.ancestors().nth(2).expect("a target folder");
-    let image = machine::images(target, "emulated-cycle", &profile).join("emulated-cycle");
+    let image = machine::images(target, &profile).join("emulated-cycle");
     let budgets = budgets();
     println!(
         "instructions of the servo node, {}, profile {profile}; circle R 10 F 1000, {CYCLES} cycles",

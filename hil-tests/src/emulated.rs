@@ -5,9 +5,14 @@
 //! board ([`machine`]).
 
 pub mod machine;
+pub mod node;
 pub mod recorded;
 pub mod report;
 
-/// The format of a recording, which is part of the image too.
-#[path = "../../firmware/emulated-cycle/src/recording.rs"]
+// Formats that are part of the images too.
+#[path = "../../firmware/emulated/src/cycle/recording.rs"]
 pub mod recording;
+#[path = "../../firmware/emulated/src/node/rig.rs"]
+mod rig;
+#[path = "../../firmware/emulated/src/node/slcan.rs"]
+mod slcan;

@@ -1,12 +1,25 @@
-//! The node as ARM code on an emulated Cortex-M4: it answers as the host's does, bit for bit.
+//! The node as ARM code on an emulated Cortex-M4: it answers as the host's does, bit for bit, and
+//! closes the loop in its place.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use hil_tests::emulated::machine::{self, PROFILE};
+use hil_tests::emulated::node::EmulatedNode;
 use hil_tests::emulated::recorded::{Circling, Drive, record, with_length};
 use hil_tests::emulated::recording::{Class, Event, Events};
 use hil_tests::emulated::report::Report;
+use hil_tests::rig::SERVO;
+use plant_sim::Machine;
+use protocol::{AxisIds, CanFrame, Station};
+use servo::Servo;
+use workbench::ballbar::Point;
+use workbench::compensation::AxisCompensation;
+use workbench::interrupt::Interrupt;
+use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
+use workbench::session::Session;
+use workbench::trajectory::Circle;
 
 /// Twelve seconds of R 10 F 1000: X turns round six times.
 const CYCLES: u32 = 12_000;
@@ -55,14 +68,14 @@ fn replayed(image: &Path, name: &str, drive: Drive) -> Report {
 
 #[test]
 fn the_emulated_law_repeats_the_golden_vectors() {
-    let images = machine::images(&target(), "emulated-cycle", PROFILE);
+    let images = machine::images(&target(), PROFILE);
     let report = machine::report(&images.join("emulated-law"), &[]);
     assert_eq!(report.trim(), "vectors 400 0");
 }
 
 #[test]
 fn the_emulated_node_answers_a_circle_with_losses_as_the_host_does() {
-    let image = machine::images(&target(), "emulated-cycle", PROFILE).join("emulated-cycle");
+    let image = machine::images(&target(), PROFILE).join("emulated-cycle");
     for (name, drive) in [("everything", Drive::Everything), ("model", Drive::Model)] {
         let report = replayed(&image, name, drive);
         println!(
@@ -80,6 +93,43 @@ fn the_emulated_node_answers_a_circle_with_losses_as_the_host_does() {
         );
     }
     one_turned_bit_is_noticed(&image);
+}
+
+/// One turn of R 10 F 1000 that counts, after the half turn before.
+fn circle() -> Circle {
+    Circle {
+        radius_m: 0.010,
+        feed_m_per_s: 1.0 / 60.0,
+        turns: 1,
+        counter_clockwise: true,
+    }
+}
+
+/// Points of the circle on the reference machine with a servo for X, and what went over its bus.
+fn circled(servo_of_x: Box<dyn Station>) -> (Vec<Point>, Vec<(u64, CanFrame)>) {
+    let machine = Machine::reference();
+    let mut link = InProcess::new(&machine, 0).unwrap();
+    link.bus_mut(0).replace(SERVO, servo_of_x);
+    link.start_log();
+    let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
+    session
+        .ready(&vec![AxisCompensation::default(); machine.axes.len()])
+        .unwrap();
+    let points = session.circle(&circle()).unwrap();
+    let logs = session.close().unwrap();
+    (points, logs[0].frames().to_vec())
+}
+
+#[test]
+fn the_emulated_node_closes_the_loop_in_process_and_the_bus_is_that_of_the_hosts_node() {
+    let images = machine::images(&target(), PROFILE);
+    let emulated = circled(Box::new(EmulatedNode::start(&images, &folder())));
+    let host = circled(Box::new(Servo::new(AxisIds::of_axis(0).unwrap())));
+    let differing = host.1.iter().zip(&emulated.1).position(|(a, b)| a != b);
+    assert_eq!(differing, None, "the first frame that differs");
+    assert_eq!(host.1.len(), emulated.1.len());
+    assert_eq!(host.0, emulated.0);
+    println!("{} frames, {} points", host.1.len(), host.0.len());
 }
 
 /// The counter-proof: the lowest bit of the last torque turned.

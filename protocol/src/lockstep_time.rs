@@ -72,6 +72,21 @@ impl LockstepTime {
         }
     }
 
+    /// For how many deadlines it may be silent: one where a frame of the present cycle is missing,
+    /// two where SYNC is. In bus time the own timer (1.3 periods) comes at about twice the deadline
+    /// of a cycle (0.6) too. With one deadline for both, a plant that waits for a servo which waits
+    /// for a lost frame would begin the next cycle while the servo closes the present one, and run
+    /// ahead from there on.
+    #[must_use]
+    pub fn deadlines_to_wait(station: &dyn Station) -> u8 {
+        let due = station.wake_at_us().zip(station.sync_due_us());
+        if due.is_some_and(|(wake_us, sync_us)| wake_us > sync_us) {
+            2
+        } else {
+            1
+        }
+    }
+
     /// A SYNC came; `due_us` is when the node waits for one ([`Station::sync_due_us`]).
     fn sync(&mut self, counter: SyncCounter, due_us: Option<u64>) {
         let Some(due_us) = due_us else {

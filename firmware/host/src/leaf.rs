@@ -85,7 +85,7 @@ impl Leaf {
         loop {
             let mut silent = 0;
             while silent < DEADLINES_UNTIL_ALONE {
-                let deadlines = self.deadlines_to_wait();
+                let deadlines = LockstepTime::deadlines_to_wait(self.station.as_ref());
                 match self
                     .port
                     .receive(Some(deadline * u32::from(deadlines)))
@@ -106,20 +106,6 @@ impl Leaf {
                 }
             }
             self.alone().await?;
-        }
-    }
-
-    /// How long it may be silent: a deadline where a frame of the present cycle is missing, two
-    /// where SYNC is. In bus time the own timer (1.3 periods) comes at about twice the deadline of
-    /// a cycle (0.6) too. With one deadline for both, a plant that waits for a servo which waits
-    /// for a lost frame would begin the next cycle while the servo closes the present one, and run
-    /// ahead from there on.
-    fn deadlines_to_wait(&self) -> u8 {
-        let due = self.station.wake_at_us().zip(self.station.sync_due_us());
-        if due.is_some_and(|(wake_us, sync_us)| wake_us > sync_us) {
-            2
-        } else {
-            1
         }
     }
 

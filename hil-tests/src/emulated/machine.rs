@@ -17,19 +17,19 @@ pub const PROFILE: &str = "firmware";
 /// A replay takes some ten seconds; one that hangs is ended.
 const PATIENCE: Duration = Duration::from_mins(5);
 
-/// Builds the images of a package in a target folder of their own beside that of the running
+/// Builds the images of `firmware/emulated` in a target folder of their own beside that of the running
 /// program, so that features and locks of the host's build do not meet them; gives the folder in
 /// which they lie by their names.
 ///
 /// # Panics
 /// Where it does not compile.
 #[must_use]
-pub fn images(target: &Path, package: &str, profile: &str) -> PathBuf {
+pub fn images(target: &Path, profile: &str) -> PathBuf {
     let folder = target.join("cortex-m");
     targets::install(TARGET);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
-        .args(["build", "--locked", "--package", package])
+        .args(["build", "--locked", "--package", "emulated"])
         .args(["--target", TARGET, "--profile", profile, "--target-dir"])
         .arg(&folder)
         .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -37,7 +37,7 @@ pub fn images(target: &Path, package: &str, profile: &str) -> PathBuf {
     let built = cargo.output().expect("cargo can be started");
     assert!(
         built.status.success(),
-        "{package}: {}",
+        "the images do not compile: {}",
         String::from_utf8_lossy(&built.stderr)
     );
     folder.join(TARGET).join(profile)

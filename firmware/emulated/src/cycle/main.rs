@@ -22,6 +22,7 @@
 #![no_std]
 #![no_main]
 
+#[path = "../host.rs"]
 mod host;
 mod recording;
 

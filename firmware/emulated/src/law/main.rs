@@ -8,6 +8,7 @@
 #![no_std]
 #![no_main]
 
+#[path = "../host.rs"]
 mod host;
 
 use controller::reference::ReferenceState;
@@ -19,11 +20,11 @@ use fixed::types::I56F8;
 
 use host::{exit, report};
 
-#[path = "../../controller/vectors/law.rs"]
+#[path = "../../../controller/vectors/law.rs"]
 mod law;
 
 /// Rows of setpoint of the next cycle, motor, load (10 nm / 256), torque (µN·m).
-const ROWS: &str = include_str!("../../controller/vectors/reference.txt");
+const ROWS: &str = include_str!("../../../controller/vectors/reference.txt");
 
 #[entry]
 fn main() -> ! {

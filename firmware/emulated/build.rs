@@ -7,7 +7,7 @@
 use std::path::PathBuf;
 use std::{env, fs};
 
-const SCRIPT: &str = "emulated-cycle.x";
+const SCRIPT: &str = "mps2-an386.x";
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -17,7 +17,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={SCRIPT}");
     println!("cargo::rustc-link-search={}", out.display());
-    for argument in ["--nmagic", "-Temulated-cycle.x"] {
+    for argument in ["--nmagic", "-Tmps2-an386.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
 }

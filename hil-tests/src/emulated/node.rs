@@ -1,0 +1,157 @@
+//! The emulated node in the place of the host's on an in-process bus: frames go to it as SLCAN lines
+//! over the UART of its machine, and so does the time (`firmware/emulated/src/node`).
+//!
+//! Nothing of the node runs here. The bus asks when it wants to be woken, so it says that with every
+//! answer.
+
+use std::cell::RefCell;
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use protocol::{AxisIds, CanFrame, Station};
+
+use super::machine::qemu;
+use super::rig::{AT, PASSES, WAITS, times_of};
+use super::slcan::{BEL, CR, frame_of, line_of};
+
+/// An answer takes less than a millisecond; a node that does not answer for so long never will.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A node on an emulated Cortex-M4, reset. It ends with the value.
+pub struct EmulatedNode {
+    ids: AxisIds,
+    line: RefCell<Line>,
+    waits_us: [Option<u64>; 2],
+    _machine: Running,
+}
+
+/// A process that ends with the value.
+pub struct Running(pub Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+struct Line {
+    heard: BufReader<UnixStream>,
+    /// Time that the node was told.
+    told_us: Option<u64>,
+}
+
+impl EmulatedNode {
+    /// Starts the image `emulated-node`; its socket lies in a folder. Its ids are those of the first
+    /// axis.
+    ///
+    /// # Panics
+    /// Where the emulator does not start.
+    #[must_use]
+    pub fn start(images: &Path, folder: &Path) -> Self {
+        let path = folder.join(format!("uart-{}.socket", std::process::id()));
+        let _ = std::fs::remove_file(&path);
+        let listener = UnixListener::bind(&path).expect("a socket in the target folder");
+        let mut qemu = qemu();
+        qemu.arg("-serial")
+            .arg(format!("unix:{}", path.display()))
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(images.join("emulated-node"))
+            .stdout(Stdio::null());
+        let machine = Running(qemu.spawn().expect("qemu-system-arm starts"));
+        let (stream, _) = listener.accept().expect("the emulator connects");
+        let _ = std::fs::remove_file(&path);
+        stream
+            .set_read_timeout(Some(PATIENCE))
+            .expect("a socket has a timeout");
+        Self {
+            ids: AxisIds::of_axis(0).expect("an axis 0"),
+            line: RefCell::new(Line {
+                heard: BufReader::new(stream),
+                told_us: None,
+            }),
+            waits_us: [None; 2],
+            _machine: machine,
+        }
+    }
+
+    /// Says a line, and passes on what the node answers until it is ready again.
+    fn say(&mut self, line: &[u8], now_us: Option<u64>, send: &mut dyn FnMut(CanFrame)) {
+        let mut uart = self.line.borrow_mut();
+        uart.say(line, now_us);
+        loop {
+            let answer = uart.hear();
+            match answer.split_first() {
+                None | Some((b'z', [])) => return,
+                Some((&WAITS, times)) => {
+                    self.waits_us = times_of(times).expect("the node says two times");
+                }
+                Some((&BEL, _)) => panic!("the node does not take {}", text(line)),
+                Some(_) => {
+                    let frame = frame_of(&answer);
+                    send(frame.unwrap_or_else(|| panic!("the node says {}", text(&answer))));
+                }
+            }
+        }
+    }
+}
+
+impl Line {
+    fn say(&mut self, line: &[u8], now_us: Option<u64>) {
+        let mut all = Vec::new();
+        if now_us != self.told_us
+            && let Some(now_us) = now_us
+        {
+            all.push(AT);
+            all.extend(format!("{now_us:X}").bytes().chain([CR]));
+        }
+        self.told_us = now_us;
+        all.extend(line);
+        let sent = self.heard.get_mut().write_all(&all);
+        sent.expect("the emulator takes what is sent");
+    }
+
+    /// The next line, without its end.
+    fn hear(&mut self) -> Vec<u8> {
+        let mut line = Vec::new();
+        let heard = self.heard.read_until(CR, &mut line);
+        heard.expect("the node answers in time");
+        assert_eq!(line.pop(), Some(CR), "the emulator ended");
+        line
+    }
+}
+
+fn text(line: &[u8]) -> String {
+    String::from_utf8_lossy(line).trim_end().to_owned()
+}
+
+impl Station for EmulatedNode {
+    fn ids(&self) -> AxisIds {
+        self.ids
+    }
+
+    /// Opening the channel resets the node.
+    fn boot(&mut self, send: &mut dyn FnMut(CanFrame)) {
+        self.say(b"O\r", None, send);
+        self.waits_us = [None; 2];
+    }
+
+    fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
+        self.say(&line_of(frame), Some(now_us), send);
+    }
+
+    fn time(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
+        self.say(&[PASSES, CR], Some(now_us), send);
+    }
+
+    fn wake_at_us(&self) -> Option<u64> {
+        self.waits_us[0]
+    }
+
+    fn sync_due_us(&self) -> Option<u64> {
+        self.waits_us[1]
+    }
+}
