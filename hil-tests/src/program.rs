@@ -1,9 +1,13 @@
 //! The `quadrant` program for scenarios that run every node as a process of its own, and the way
 //! into a kernel that has vcan.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
+use bus::CanPort;
+use protocol::CanFrame;
 use scope::Scope;
 
 /// Builds the program into a target folder, the one of the running tests; gives its path.
@@ -51,8 +55,27 @@ pub fn quadrant(target: &Path) -> PathBuf {
     target.join(program)
 }
 
+/// Longest time in which node processes boot.
+const LONGEST_BOOT: Duration = Duration::from_mins(1);
+
+/// Waits for frames on an interface, in any order: the boot-up messages of nodes. Counting frames
+/// would not do: a node that has booted begins its heartbeats while others are still being loaded.
+///
+/// # Panics
+/// Where one of them does not come.
+pub fn await_frames(listener: &CanPort, mut missing: Vec<CanFrame>) {
+    let mut left = LONGEST_BOOT;
+    while !missing.is_empty() {
+        let heard = listener.receive_within(&mut left);
+        let heard = heard.expect("the interface is there");
+        let heard = heard.unwrap_or_else(|| panic!("no boot-up: {missing:?}"));
+        missing.retain(|boot_up| *boot_up != heard);
+    }
+}
+
 /// Runs ignored tests of the running test binary where the kernel has vcan (`scripts/with-vcan`),
-/// with the program that [`quadrant`] builds as `QUADRANT_PROGRAM`; gives what they printed.
+/// with the program that [`quadrant`] builds as `QUADRANT_PROGRAM`; gives what they printed. `more`
+/// are other variables of the script.
 ///
 /// # Panics
 /// Where they fail, with what they printed before.
@@ -60,7 +83,7 @@ pub fn quadrant(target: &Path) -> PathBuf {
 pub fn ignored_tests_under_vcan(
     target: &Path,
     arguments: &[&str],
-    statistics: Option<&Path>,
+    more: &[(&str, &OsStr)],
 ) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
@@ -73,10 +96,8 @@ pub fn ignored_tests_under_vcan(
         .current_dir(root)
         .env("QUADRANT_PROGRAM", quadrant(target))
         .env("VCAN_TIMEOUT", "600")
+        .envs(more.iter().copied())
         .stdin(Stdio::null());
-    if let Some(file) = statistics {
-        scenarios.env("VCAN_STATS", file);
-    }
     let ran = scenarios.output().expect("the script can be started");
     let out = String::from_utf8_lossy(&ran.stdout).into_owned();
     println!("{out}{}", String::from_utf8_lossy(&ran.stderr));

@@ -1,25 +1,31 @@
 //! The node as ARM code on an emulated Cortex-M4: it answers as the host's does, bit for bit, and
 //! closes the loop in its place.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
+use bus::CanPort;
+use hil_tests::Scope;
 use hil_tests::emulated::machine::{self, PROFILE};
-use hil_tests::emulated::node::EmulatedNode;
+use hil_tests::emulated::node::{EmulatedNode, Running};
 use hil_tests::emulated::recorded::{Circling, Drive, record, with_length};
 use hil_tests::emulated::recording::{Class, Event, Events};
 use hil_tests::emulated::report::Report;
-use hil_tests::rig::SERVO;
+use hil_tests::{program, rig};
 use plant_sim::Machine;
+use protocol::message::{Message, NmtState};
 use protocol::{AxisIds, CanFrame, Station};
 use servo::Servo;
-use workbench::ballbar::Point;
+use workbench::ballbar::{Point, figures};
 use workbench::compensation::AxisCompensation;
 use workbench::interrupt::Interrupt;
 use workbench::network::in_process::InProcess;
-use workbench::network::link::Link;
+use workbench::network::interfaces::Interfaces;
+use workbench::network::link::{Link, axis_ids};
 use workbench::session::Session;
-use workbench::trajectory::Circle;
+use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
 /// Twelve seconds of R 10 F 1000: X turns round six times.
 const CYCLES: u32 = 12_000;
@@ -31,6 +37,8 @@ const LOST: [(Class, u32); 3] = [
     (Class::Feedback, 7540),
 ];
 const TORQUE_LOST: u32 = 9000;
+/// Radius, m, and feed, m/s.
+const REFERENCE: (f64, f64) = (0.010, 1.0 / 60.0);
 
 fn target() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
@@ -95,11 +103,13 @@ fn the_emulated_node_answers_a_circle_with_losses_as_the_host_does() {
     one_turned_bit_is_noticed(&image);
 }
 
-/// One turn of R 10 F 1000 that counts, after the half turn before.
+/// One turn of R 10 F 1000 that counts, after the half turn before; in the everyday loop a smaller
+/// and faster one.
 fn circle() -> Circle {
+    let (radius_m, feed_m_per_s) = Scope::now().pick((0.002, 1.0 / 30.0), REFERENCE, REFERENCE);
     Circle {
-        radius_m: 0.010,
-        feed_m_per_s: 1.0 / 60.0,
+        radius_m,
+        feed_m_per_s,
         turns: 1,
         counter_clockwise: true,
     }
@@ -109,7 +119,7 @@ fn circle() -> Circle {
 fn circled(servo_of_x: Box<dyn Station>) -> (Vec<Point>, Vec<(u64, CanFrame)>) {
     let machine = Machine::reference();
     let mut link = InProcess::new(&machine, 0).unwrap();
-    link.bus_mut(0).replace(SERVO, servo_of_x);
+    link.bus_mut(0).replace(rig::SERVO, servo_of_x);
     link.start_log();
     let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
     session
@@ -130,6 +140,64 @@ fn the_emulated_node_closes_the_loop_in_process_and_the_bus_is_that_of_the_hosts
     assert_eq!(host.1.len(), emulated.1.len());
     assert_eq!(host.0, emulated.0);
     println!("{} frames, {} points", host.1.len(), host.0.len());
+}
+
+/// The emulated node of X is on slcan0, every other node a process: the plant of X on slcan0, those
+/// of Y on vcan0; and then with a process for X.
+#[test]
+fn the_emulated_node_closes_the_loop_over_socketcan_as_a_process_does() {
+    let images = machine::images(&target(), PROFILE);
+    let (_machine, line) = Running::at_serial_line(&images);
+    let scenario = ["--exact", "figures_over_socketcan"];
+    let line = [("VCAN_SLCAN", OsStr::new(&line))];
+    let out = program::ignored_tests_under_vcan(&target(), &scenario, &line);
+    assert!(out.contains("1 passed; 0 failed"), "{out}");
+}
+
+#[test]
+#[ignore = "run by the test above, in a kernel that has vcan and slcan"]
+fn figures_over_socketcan() {
+    let emulated = over(["slcan0", "vcan0"], &[PLANT_X, PLANT_Y, SERVO_Y]);
+    let process = over(["vcan1", "vcan0"], &[PLANT_X, SERVO_X, PLANT_Y, SERVO_Y]);
+    let figures = figures(&emulated.0, circle().radius_m, 0.0, MEASURE_FROM_RAD);
+    println!("on slcan0: {figures:?}, {} cycles missed", emulated.1);
+    assert_eq!((emulated.1, process.1), (0, 0), "cycles missed");
+    assert_eq!(emulated.0, process.0);
+}
+
+/// A node: its axis, how `quadrant` is told to be it, and what it says when it has booted.
+type Node = (usize, &'static [&'static str], Message);
+const PLANT: Message = Message::PlantHeartbeat(NmtState::Initialising);
+const SERVO: Message = Message::ServoHeartbeat(NmtState::Initialising);
+const PLANT_X: Node = (0, &["plant", "--node", "0x11"], PLANT);
+const SERVO_X: Node = (0, &["servo", "--node", "1", "--plant-node", "0x11"], SERVO);
+const PLANT_Y: Node = (1, &["plant", "--node", "0x12"], PLANT);
+const SERVO_Y: Node = (1, &["servo", "--node", "2", "--plant-node", "0x12"], SERVO);
+
+/// Points of the circle with the axes on these interfaces and such nodes as processes, and cycles
+/// that were missed.
+fn over(interfaces: [&str; 2], nodes: &[Node]) -> (Vec<Point>, u32) {
+    let program = std::env::var_os("QUADRANT_PROGRAM").expect("the test above says where it is");
+    let nodes = nodes.iter().map(|(axis, arguments, boot_up)| {
+        let listener = CanPort::open(interfaces[*axis], &[]).unwrap();
+        let mut node = Command::new(&program);
+        node.args(*arguments).args(["--can", interfaces[*axis]]);
+        let node = Running(node.spawn().unwrap());
+        let boot_up = boot_up.encode(axis_ids(*axis).unwrap());
+        program::await_frames(&listener, vec![boot_up]);
+        node
+    });
+    let _nodes: Vec<Running> = nodes.collect();
+    let machine = Machine::reference();
+    let link = Interfaces::open(&machine, &interfaces.join(",")).unwrap();
+    let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
+    session
+        .ready(&vec![AxisCompensation::default(); machine.axes.len()])
+        .unwrap();
+    let points = session.circle(&circle()).unwrap();
+    let missed = session.missed();
+    session.close().unwrap();
+    (points, missed)
 }
 
 /// The counter-proof: the lowest bit of the last torque turned.

@@ -636,7 +636,7 @@ fn over_vcan() -> Vec<Row> {
     let target = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
         .parent()
         .unwrap();
-    let out = program::ignored_tests_under_vcan(target, &["--exact", "rows_over_vcan"], None);
+    let out = program::ignored_tests_under_vcan(target, &["--exact", "rows_over_vcan"], &[]);
     assert!(out.contains("1 passed"), "the rows over vcan did not run");
     out.lines()
         .filter_map(|line| line.split_once("ROW|"))

@@ -55,7 +55,11 @@ fn over_vcan() {
     let (scenarios, passed) = Scope::now().pick(QUICK, ALL, ALL);
     let stats = folder().join("kernel-stats.txt");
     let arguments = [&["--test-threads=1"], scenarios].concat();
-    let out = program::ignored_tests_under_vcan(&target, &arguments, Some(&stats));
+    let out = program::ignored_tests_under_vcan(
+        &target,
+        &arguments,
+        &[("VCAN_STATS", stats.as_os_str())],
+    );
     assert!(out.contains(passed), "not all vcan scenarios ran: {out}");
     assert!(
         std::fs::read_to_string(stats)
@@ -136,9 +140,6 @@ impl Setup<'_> {
 const PLANT_X: usize = 0;
 const SERVO_X: usize = 1;
 
-/// Longest time in which the nodes boot.
-const LONGEST_BOOT: Duration = Duration::from_mins(1);
-
 /// Node processes of both axes; they end with the value.
 struct Nodes(Vec<Child>);
 
@@ -178,20 +179,14 @@ impl Nodes {
     }
 }
 
-/// Hears the boot-up of both nodes of an axis. Counting frames would not do: a node that has booted
-/// begins its heartbeats while others are still being loaded.
+/// Hears the boot-up of both nodes of an axis.
 fn await_boot_ups(listener: &CanPort, axis: usize) {
     let ids = axis_ids(axis).unwrap();
-    let mut missing = vec![
+    let boot_ups = vec![
         Message::PlantHeartbeat(NmtState::Initialising).encode(ids),
         Message::ServoHeartbeat(NmtState::Initialising).encode(ids),
     ];
-    let mut left = LONGEST_BOOT;
-    while !missing.is_empty() {
-        let heard = listener.receive_within(&mut left).unwrap();
-        let heard = heard.unwrap_or_else(|| panic!("no boot-up: {missing:?}"));
-        missing.retain(|boot_up| *boot_up != heard);
-    }
+    program::await_frames(listener, boot_ups);
 }
 
 impl Drop for Nodes {

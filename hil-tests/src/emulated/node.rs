@@ -31,6 +31,34 @@ pub struct EmulatedNode {
 /// A process that ends with the value.
 pub struct Running(pub Child);
 
+impl Running {
+    /// The image `emulated-node` with its UART somewhere, in the words of QEMU.
+    fn with_uart(images: &Path, uart: &str) -> Self {
+        let mut qemu = qemu();
+        qemu.args(["-serial", uart])
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(images.join("emulated-node"))
+            .stdout(Stdio::piped());
+        Self(qemu.spawn().expect("qemu-system-arm starts"))
+    }
+
+    /// The image `emulated-node` as an SLCAN adapter at a serial line, and that line.
+    ///
+    /// # Panics
+    /// Where the emulator does not start.
+    #[must_use]
+    pub fn at_serial_line(images: &Path) -> (Self, String) {
+        let mut machine = Self::with_uart(images, "pty");
+        let said = machine.0.stdout.as_mut().expect("a pipe");
+        let line = BufReader::new(said).lines().find_map(|said| {
+            let said = said.expect("the emulator says text");
+            let place = said.split(' ').find(|word| word.starts_with("/dev/"));
+            place.map(str::to_owned)
+        });
+        (machine, line.expect("the emulator tells its serial line"))
+    }
+}
+
 impl Drop for Running {
     fn drop(&mut self) {
         let _ = self.0.kill();
@@ -55,13 +83,7 @@ impl EmulatedNode {
         let path = folder.join(format!("uart-{}.socket", std::process::id()));
         let _ = std::fs::remove_file(&path);
         let listener = UnixListener::bind(&path).expect("a socket in the target folder");
-        let mut qemu = qemu();
-        qemu.arg("-serial")
-            .arg(format!("unix:{}", path.display()))
-            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-            .arg(images.join("emulated-node"))
-            .stdout(Stdio::null());
-        let machine = Running(qemu.spawn().expect("qemu-system-arm starts"));
+        let machine = Running::with_uart(images, &format!("unix:{}", path.display()));
         let (stream, _) = listener.accept().expect("the emulator connects");
         let _ = std::fs::remove_file(&path);
         stream
@@ -79,7 +101,7 @@ impl EmulatedNode {
     }
 
     /// Says a line, and passes on what the node answers until it is ready again.
-    fn say(&mut self, line: &[u8], now_us: Option<u64>, send: &mut dyn FnMut(CanFrame)) {
+    fn say(&mut self, line: &[u8], now_us: u64, send: &mut dyn FnMut(CanFrame)) {
         let mut uart = self.line.borrow_mut();
         uart.say(line, now_us);
         loop {
@@ -100,15 +122,12 @@ impl EmulatedNode {
 }
 
 impl Line {
-    fn say(&mut self, line: &[u8], now_us: Option<u64>) {
+    fn say(&mut self, line: &[u8], now_us: u64) {
         let mut all = Vec::new();
-        if now_us != self.told_us
-            && let Some(now_us) = now_us
-        {
+        if self.told_us.replace(now_us) != Some(now_us) {
             all.push(AT);
             all.extend(format!("{now_us:X}").bytes().chain([CR]));
         }
-        self.told_us = now_us;
         all.extend(line);
         let sent = self.heard.get_mut().write_all(&all);
         sent.expect("the emulator takes what is sent");
@@ -135,16 +154,16 @@ impl Station for EmulatedNode {
 
     /// Opening the channel resets the node.
     fn boot(&mut self, send: &mut dyn FnMut(CanFrame)) {
-        self.say(b"O\r", None, send);
+        self.say(b"O\r", 0, send);
         self.waits_us = [None; 2];
     }
 
     fn take(&mut self, frame: &CanFrame, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        self.say(&line_of(frame), Some(now_us), send);
+        self.say(&line_of(frame), now_us, send);
     }
 
     fn time(&mut self, now_us: u64, send: &mut dyn FnMut(CanFrame)) {
-        self.say(&[PASSES, CR], Some(now_us), send);
+        self.say(&[PASSES, CR], now_us, send);
     }
 
     fn wake_at_us(&self) -> Option<u64> {

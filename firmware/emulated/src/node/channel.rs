@@ -12,8 +12,8 @@ use servo::Servo;
 use crate::rig;
 use crate::slcan::{self, BEL, CR};
 
-/// Silent intervals of [`Channel::nothing_came`] in a deadline.
-const INTERVALS: u8 = 10;
+/// Intervals of [`Channel::interval_passed`] in a deadline.
+const INTERVALS: u8 = 50;
 
 /// The node, its time and the line that is coming in.
 pub(crate) struct Channel {
@@ -63,12 +63,15 @@ impl Channel {
         }
     }
 
-    /// An interval without a byte: a deadline of them is all the patience there is for a frame of
-    /// the cycle, two for SYNC.
-    pub(crate) fn nothing_came(&mut self, say: &mut dyn FnMut(&[u8])) {
+    /// An interval has passed. A deadline of them without a byte is all the patience there is for a
+    /// frame of the cycle, two for SYNC. Meanwhile there is an empty line, which says nothing: the
+    /// serial line of a user-mode kernel sleeps over some of its wake-ups, and what came last lies
+    /// there until something else comes.
+    pub(crate) fn interval_passed(&mut self, say: &mut dyn FnMut(&[u8])) {
         if !self.is_open || self.told_us.is_some() {
             return;
         }
+        say(&[CR]);
         self.silent = self.silent.saturating_add(1);
         let deadlines = LockstepTime::deadlines_to_wait(&self.servo);
         if self.silent >= INTERVALS.saturating_mul(deadlines) {
@@ -110,8 +113,11 @@ impl Channel {
     }
 
     fn open(&mut self, say: &mut dyn FnMut(&[u8])) {
-        *self = Self::new(self.ids);
-        self.is_open = true;
+        *self = Self {
+            is_open: true,
+            told_us: self.told_us,
+            ..Self::new(self.ids)
+        };
         Station::boot(&mut self.servo, &mut |frame| say(&slcan::line_of(&frame)));
     }
 

@@ -12,6 +12,7 @@
 #![no_main]
 
 mod channel;
+#[expect(dead_code, reason = "it says nothing but why it cannot go on")]
 #[path = "../host.rs"]
 mod host;
 mod rig;
@@ -32,8 +33,8 @@ use channel::Channel;
 const CLOCK_HZ: u64 = 25_000_000;
 /// SysTick counts a millisecond of it.
 const RELOAD: u32 = 24_999;
-/// Bytes are waited for so long; a deadline is ten of these, one second, as the host's leaf has it.
-const INTERVAL: Duration = Duration::from_millis(100);
+/// A deadline is fifty of these, one second, as the host's leaf has it.
+const INTERVAL: Duration = Duration::from_millis(20);
 
 embassy_time_driver::time_driver_impl!(static CLOCK: SystickDriver<4> = SystickDriver::new(CLOCK_HZ, RELOAD));
 
@@ -43,10 +44,15 @@ fn SysTick() {
 }
 
 #[embassy_executor::main]
-async fn main(_spawner: Spawner) {
+async fn main(spawner: Spawner) {
     let mut peripherals = Peripherals::take().expect("main runs once");
     CLOCK.start(&mut peripherals.SYST);
     uart::start();
+    spawner.spawn(node().expect("a task for the node"));
+}
+
+#[embassy_executor::task]
+async fn node() {
     let mut channel = Channel::new(AxisIds::of_axis(0).expect("an axis 0"));
     let (mut bytes, mut next) = ([0; 64], Instant::now() + INTERVAL);
     loop {
@@ -58,7 +64,7 @@ async fn main(_spawner: Spawner) {
             }
             Either::Second(()) => {
                 next += INTERVAL;
-                channel.nothing_came(&mut uart::send);
+                channel.interval_passed(&mut uart::send);
             }
         }
     }

@@ -90,7 +90,10 @@ pub(crate) fn send(bytes: &[u8]) {
     }
 }
 
-#[expect(unsafe_code, reason = "cortex-m-rt's handlers are unsafe to call")]
+#[allow(
+    unsafe_code,
+    reason = "cortex-m-rt wants this signature; its macro copies the attribute to where `expect` finds nothing"
+)]
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
     write(INTERRUPT_CLEAR, RECEIVED_INTERRUPT);
