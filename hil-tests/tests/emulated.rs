@@ -5,6 +5,8 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
+use std::time::Duration;
 
 use bus::CanPort;
 use hil_tests::Scope;
@@ -17,6 +19,7 @@ use hil_tests::{program, rig};
 use plant_sim::Machine;
 use protocol::message::{Message, NmtState};
 use protocol::{AxisIds, CanFrame, Station};
+use quadrant_host::Pace;
 use servo::Servo;
 use workbench::ballbar::{Point, figures};
 use workbench::compensation::AxisCompensation;
@@ -39,6 +42,9 @@ const LOST: [(Class, u32); 3] = [
 const TORQUE_LOST: u32 = 9000;
 /// Radius, m, and feed, m/s.
 const REFERENCE: (f64, f64) = (0.010, 1.0 / 60.0);
+
+/// An emulator and what talks to it need a processor each.
+static ALONE: Mutex<()> = Mutex::new(());
 
 fn target() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
@@ -133,6 +139,7 @@ fn circled(servo_of_x: Box<dyn Station>) -> (Vec<Point>, Vec<(u64, CanFrame)>) {
 #[test]
 fn the_emulated_node_closes_the_loop_in_process_and_the_bus_is_that_of_the_hosts_node() {
     let images = machine::images(&target(), PROFILE);
+    let _alone = ALONE.lock();
     let emulated = circled(Box::new(EmulatedNode::start(&images, &folder())));
     let host = circled(Box::new(Servo::new(AxisIds::of_axis(0).unwrap())));
     let differing = host.1.iter().zip(&emulated.1).position(|(a, b)| a != b);
@@ -147,6 +154,7 @@ fn the_emulated_node_closes_the_loop_in_process_and_the_bus_is_that_of_the_hosts
 #[test]
 fn the_emulated_node_closes_the_loop_over_socketcan_as_a_process_does() {
     let images = machine::images(&target(), PROFILE);
+    let _alone = ALONE.lock();
     let (_machine, line) = Running::at_serial_line(&images);
     let scenario = ["--exact", "figures_over_socketcan"];
     let line = [("VCAN_SLCAN", OsStr::new(&line))];
@@ -174,6 +182,10 @@ const SERVO_X: Node = (0, &["servo", "--node", "1", "--plant-node", "0x11"], SER
 const PLANT_Y: Node = (1, &["plant", "--node", "0x12"], PLANT);
 const SERVO_Y: Node = (1, &["servo", "--node", "2", "--plant-node", "0x12"], SERVO);
 
+/// In lock-step the figures do not depend on how long anybody waits. A guest that shares its
+/// processor pauses for seconds.
+const DEADLINE: Duration = Duration::from_secs(10);
+
 /// Points of the circle with the axes on these interfaces and such nodes as processes, and cycles
 /// that were missed.
 fn over(interfaces: [&str; 2], nodes: &[Node]) -> (Vec<Point>, u32) {
@@ -182,6 +194,7 @@ fn over(interfaces: [&str; 2], nodes: &[Node]) -> (Vec<Point>, u32) {
         let listener = CanPort::open(interfaces[*axis], &[]).unwrap();
         let mut node = Command::new(&program);
         node.args(*arguments).args(["--can", interfaces[*axis]]);
+        node.args(["--deadline-ms", &DEADLINE.as_millis().to_string()]);
         let node = Running(node.spawn().unwrap());
         let boot_up = boot_up.encode(axis_ids(*axis).unwrap());
         program::await_frames(&listener, vec![boot_up]);
@@ -190,6 +203,7 @@ fn over(interfaces: [&str; 2], nodes: &[Node]) -> (Vec<Point>, u32) {
     let _nodes: Vec<Running> = nodes.collect();
     let machine = Machine::reference();
     let link = Interfaces::open(&machine, &interfaces.join(",")).unwrap();
+    let link = link.with_pace(Pace::Lockstep { deadline: DEADLINE });
     let mut session = Session::on(link, &machine, &Interrupt::never()).unwrap();
     session
         .ready(&vec![AxisCompensation::default(); machine.axes.len()])

@@ -13,7 +13,7 @@ use crate::rig;
 use crate::slcan::{self, BEL, CR};
 
 /// Intervals of [`Channel::interval_passed`] in a deadline.
-const INTERVALS: u8 = 50;
+const INTERVALS: u16 = 1000;
 
 /// The node, its time and the line that is coming in.
 pub(crate) struct Channel {
@@ -25,7 +25,7 @@ pub(crate) struct Channel {
     told_us: Option<u64>,
     line: Vec<u8, { slcan::LONGEST }>,
     is_too_long: bool,
-    silent: u8,
+    silent: u16,
 }
 
 /// Why a line is not taken.
@@ -64,9 +64,9 @@ impl Channel {
     }
 
     /// An interval has passed. A deadline of them without a byte is all the patience there is for a
-    /// frame of the cycle, two for SYNC. Meanwhile there is an empty line, which says nothing: the
-    /// serial line of a user-mode kernel sleeps over some of its wake-ups, and what came last lies
-    /// there until something else comes.
+    /// frame of the cycle, two for SYNC. Meanwhile there is an empty line, which says nothing: a
+    /// user-mode kernel misses some signals of its serial line, and what came last lies there until
+    /// something else comes.
     pub(crate) fn interval_passed(&mut self, say: &mut dyn FnMut(&[u8])) {
         if !self.is_open || self.told_us.is_some() {
             return;
@@ -74,7 +74,7 @@ impl Channel {
         say(&[CR]);
         self.silent = self.silent.saturating_add(1);
         let deadlines = LockstepTime::deadlines_to_wait(&self.servo);
-        if self.silent >= INTERVALS.saturating_mul(deadlines) {
+        if self.silent >= INTERVALS.saturating_mul(deadlines.into()) {
             self.silent = 0;
             self.time.wake(&mut self.servo, &mut |frame| {
                 say(&slcan::line_of(&frame));

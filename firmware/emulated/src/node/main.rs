@@ -15,13 +15,13 @@ mod channel;
 #[expect(dead_code, reason = "it says nothing but why it cannot go on")]
 #[path = "../host.rs"]
 mod host;
+mod idle;
 mod rig;
 mod slcan;
 mod uart;
 
 use cortex_m::Peripherals;
-use cortex_m_rt::exception;
-use embassy_executor::Spawner;
+use cortex_m_rt::{entry, exception};
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use protocol::cob::AxisIds;
@@ -33,8 +33,9 @@ use channel::Channel;
 const CLOCK_HZ: u64 = 25_000_000;
 /// SysTick counts a millisecond of it.
 const RELOAD: u32 = 24_999;
-/// A deadline is fifty of these, one second, as the host's leaf has it.
-const INTERVAL: Duration = Duration::from_millis(20);
+/// A deadline is a thousand of these, ten seconds: longer than a guest that shares its processor
+/// pauses.
+const INTERVAL: Duration = Duration::from_millis(10);
 
 embassy_time_driver::time_driver_impl!(static CLOCK: SystickDriver<4> = SystickDriver::new(CLOCK_HZ, RELOAD));
 
@@ -43,12 +44,12 @@ fn SysTick() {
     CLOCK.systick_interrupt();
 }
 
-#[embassy_executor::main]
-async fn main(spawner: Spawner) {
+#[entry]
+fn main() -> ! {
     let mut peripherals = Peripherals::take().expect("main runs once");
     CLOCK.start(&mut peripherals.SYST);
     uart::start();
-    spawner.spawn(node().expect("a task for the node"));
+    idle::run(|spawner| spawner.spawn(node().expect("a task for the node")))
 }
 
 #[embassy_executor::task]

@@ -39,7 +39,7 @@ pub fn line_of(frame: &CanFrame) -> Line {
         Id::Extended(id) => (b'T', id.as_raw(), 8),
     };
     let letter = if frame.is_remote_frame() {
-        letter - b't' + b'r'
+        letter - (b't' - b'r')
     } else {
         letter
     };
