@@ -105,15 +105,15 @@ impl CascadeState {
         let error = setpoint.minus(self.velocity);
         let integral = self
             .integral
-            .plus(config.integral_gain.times(error))
+            .with(config.integral_gain.times(error))
             .limited(config.torque_limit);
         let direct = config.velocity_gain.times(error);
         let feedforward = config
             .acceleration_gain
             .times(input.acceleration)
-            .plus(input.friction);
+            .with(input.friction);
         Proposal {
-            torque: direct.plus(integral).plus(feedforward),
+            torque: direct.with(integral).with(feedforward),
             integral,
             error,
         }

@@ -17,7 +17,13 @@ pub const COEFFICIENT_FRACTION_BITS: u32 = 29;
 
 /// Coefficients of the filter: `[b0, b1, b2, a1, a2]` in Q29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FilterConfig([i32; 5]);
+pub struct FilterConfig {
+    coefficients: [i32; 5],
+    /// It passes the torque through.
+    is_off: bool,
+}
+
+const THROUGH: [i32; 5] = [1 << COEFFICIENT_FRACTION_BITS, 0, 0, 0, 0];
 
 /// Why coefficients are no filter that the drive can run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +44,10 @@ pub enum FilterError {
 
 impl FilterConfig {
     /// Passes the torque through.
-    pub const OFF: Self = Self([1 << COEFFICIENT_FRACTION_BITS, 0, 0, 0, 0]);
+    pub const OFF: Self = Self {
+        coefficients: THROUGH,
+        is_off: true,
+    };
 
     /// `[b0, b1, b2, a1, a2]` in Q29.
     ///
@@ -55,7 +64,10 @@ impl FilterConfig {
         if !decays(a1, a2) {
             return Err(FilterError::Unstable { a1, a2 });
         }
-        Ok(Self(coefficients))
+        Ok(Self {
+            coefficients,
+            is_off: coefficients == THROUGH,
+        })
     }
 }
 
@@ -85,15 +97,20 @@ impl FilterState {
         }
     }
 
-    /// Filters one torque; both sides within `±limit`.
+    /// Filters one torque; both sides within `±limit`, which is whole µN·m.
     pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: Torque) -> Torque {
-        let limit = limit.to_micro_nm_lossy().clamp(0, TORQUE_LIMIT_MICRO_NM);
+        let limit = limit.whole_micro_nm().clamp(0, TORQUE_LIMIT_MICRO_NM);
         let x0 = torque
             .to_micro_nm_lossy()
             .max(limit.saturating_neg())
             .min(limit);
         let [x1, x2, y1, y2] = self.past;
-        let products = config.0.into_iter().zip([x0, x1, x2, y1, y2]);
+        if config.is_off {
+            // What the sum below comes to.
+            self.past = [x0, x1, x0, y1];
+            return Torque::from_micro_nm(x0);
+        }
+        let products = config.coefficients.into_iter().zip([x0, x1, x2, y1, y2]);
         // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the
         // same.
         let sum = products.fold(self.rest, |sum, (c, v)| {

@@ -323,8 +323,8 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
             acceleration: accelerated(config, reference),
             motor_velocity,
             friction: coulomb(config.coulomb, direction)
-                .plus(model.torque)
-                .plus(config.ripple.torque(reference)),
+                .with(model.torque)
+                .with(config.ripple.torque(reference)),
         },
     );
     let limit = config.cascade.torque_limit;

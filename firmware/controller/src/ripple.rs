@@ -38,6 +38,9 @@ pub struct RippleConfig {
 impl RippleConfig {
     /// The torque that overcomes it.
     pub(crate) fn torque(&self, reference: &Reference) -> Torque {
+        if self.waves.iter().all(|wave| wave.amplitude_micro_nm == 0) {
+            return Torque::ZERO;
+        }
         let waves = self
             .waves
             .iter()

@@ -111,6 +111,12 @@ impl PositionError {
         Self(self.0.saturating_sub(other.0))
     }
 
+    /// As a way within one cycle, saturated.
+    #[must_use]
+    pub fn in_a_cycle(self) -> Velocity {
+        Velocity(I20F12::from_bits(sixteenfold(self.0.to_bits())))
+    }
+
     /// Magnitude, saturated.
     #[must_use]
     pub fn magnitude(self) -> Self {
@@ -211,10 +217,22 @@ impl Torque {
         narrowed::<24>(bits.saturating_add(half))
     }
 
+    /// To whole µN·m, rounded down and saturated: in fewer instructions, for torques that are whole.
+    #[must_use]
+    pub fn whole_micro_nm(self) -> i32 {
+        narrowed::<24>(self.0.to_bits())
+    }
+
     /// Sum, saturated.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
+    }
+
+    /// Sum of torques of the law, which has room: a gain times a velocity is 2⁶² of the last bits at
+    /// most, a gain times an acceleration 2⁶¹, everything else below 2⁵⁷.
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
     }
 
     /// Difference, saturated.
@@ -279,7 +297,7 @@ impl VelocityGain {
 }
 
 impl AccelerationGain {
-    /// Gain · acceleration, saturated.
+    /// Gain · acceleration, saturated at a quarter of the range of a torque.
     #[must_use]
     pub fn times(self, acceleration: Acceleration) -> Torque {
         // 24.8 times 20.12 bits: 44.20 bits, exact; brought to 40.24.
@@ -307,14 +325,14 @@ pub(crate) fn narrowed<const BITS: u32>(product: i64) -> i32 {
     }
 }
 
-/// A product with so many bits more below, saturated.
+/// A product with so many bits more below, saturated at a quarter of the range.
 fn raised<const BITS: u32>(product: i64) -> i64 {
     let upper = upper(product);
-    let off = upper.wrapping_add(1_i32.wrapping_shl(31_u32.wrapping_sub(BITS)));
-    if off.cast_unsigned() < 1_u32.wrapping_shl(32_u32.wrapping_sub(BITS)) {
+    let off = upper.wrapping_add(1_i32.wrapping_shl(29_u32.wrapping_sub(BITS)));
+    if off.cast_unsigned() < 1_u32.wrapping_shl(30_u32.wrapping_sub(BITS)) {
         product.wrapping_shl(BITS)
     } else {
-        i64::from(upper.wrapping_shr(31)) ^ i64::MAX
+        i64::from(upper.wrapping_shr(31)) ^ i64::MAX.wrapping_shr(2)
     }
 }
 
@@ -432,7 +450,9 @@ mod tests {
             let way = I24F8::from_bits(value.wrapping_shr(small));
             prop_assert_eq!(sixteenfold(way.to_bits()), I20F12::saturating_from_num(way).to_bits());
             let product = fixed::types::I44F20::from_bits(wide);
-            prop_assert_eq!(raised::<4>(wide), I40F24::saturating_from_num(product).to_bits());
+            let quarter = 1_i64 << 61;
+            let raised_product = I40F24::saturating_from_num(product).to_bits().clamp(-quarter, quarter - 1);
+            prop_assert_eq!(raised::<4>(wide), raised_product);
         }
 
         #[test]
@@ -442,7 +462,7 @@ mod tests {
             let wanted = (exact / 2_f64.powi(32)).clamp(-524_288.0, 524_288.0);
             prop_assert!((velocity.0.to_num::<f64>() - wanted).abs() <= 1.0 / 4096.0);
             let torque = AccelerationGain(I24F8::from_bits(gain)).times(Acceleration(I20F12::from_bits(value)));
-            let wanted = (exact / 2_f64.powi(20)).clamp(-2_f64.powi(39), 2_f64.powi(39));
+            let wanted = (exact / 2_f64.powi(20)).clamp(-2_f64.powi(37), 2_f64.powi(37));
             prop_assert!((torque.0.to_num::<f64>() - wanted).abs() <= wanted.abs() * 1e-15);
         }
     }

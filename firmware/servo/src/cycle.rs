@@ -152,6 +152,9 @@ impl Servo {
     }
 
     pub(crate) fn close_if_complete(&mut self) {
+        if !self.inbox.is_complete(false) {
+            return;
+        }
         let wants_setpoint = self
             .active
             .as_ref()

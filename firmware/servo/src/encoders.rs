@@ -60,26 +60,27 @@ pub struct Encoders {
 
 #[derive(Clone, Copy, Debug)]
 struct Track {
-    at: Measured,
-    velocity: Pair,
-    good: Measured,
+    motor: Followed,
+    load: Followed,
     raw: Raw,
-    predicted_cycles: u16,
-    load_predicted_cycles: u16,
     /// Load − motor, beyond their relation.
     relation_error: PositionError,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Pair {
-    motor: Velocity,
-    load: Velocity,
+/// One encoder, as far as it has been followed.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    at: Position,
+    velocity: Velocity,
+    /// The last position that was read.
+    good: Position,
+    /// Cycles since then.
+    predicted_cycles: u16,
 }
 
 /// Raw counts of the last good feedback, and the counts from which the motor's position is counted.
 #[derive(Clone, Copy, Debug)]
 struct Raw {
-    motor: MotorIncrements,
     base_counts: i32,
     base: Position,
     load: LoadIncrements24,
@@ -90,15 +91,15 @@ impl Encoders {
     /// The last accepted or predicted position; `None` before the first feedback.
     #[must_use]
     pub fn position(&self) -> Option<Measured> {
-        self.track.map(|track| track.at)
+        self.track.as_ref().map(Track::at)
     }
 
     /// Velocity of the encoder that closes the loop.
     #[must_use]
     pub fn velocity(&self, source: PositionSource) -> Velocity {
         self.track.map_or(Velocity::ZERO, |track| match source {
-            PositionSource::Motor => track.velocity.motor,
-            PositionSource::Load => track.velocity.load,
+            PositionSource::Motor => track.motor.velocity,
+            PositionSource::Load => track.load.velocity,
         })
     }
 
@@ -126,18 +127,14 @@ impl Encoders {
         feedback: Feedback,
         encoding: &Encoding,
     ) -> Result<Measured, Implausible> {
-        let next = match self.track {
-            None => Track::first(feedback, encoding),
-            Some(track) => {
-                let (next, scale_is_true) = track.next(feedback, encoding)?;
-                self.scale_warnings = self
-                    .scale_warnings
-                    .saturating_add(u32::from(!scale_is_true));
-                next
-            }
+        let Some(track) = &mut self.track else {
+            return Ok(self.track.insert(Track::first(feedback, encoding)).at());
         };
-        self.track = Some(next);
-        Ok(next.at)
+        let scale_is_true = track.take(feedback, encoding)?;
+        self.scale_warnings = self
+            .scale_warnings
+            .saturating_add(u32::from(!scale_is_true));
+        Ok(track.at())
     }
 
     /// The axis goes on as it moved and as the reference accelerates: the position for a cycle
@@ -145,13 +142,9 @@ impl Encoders {
     pub fn predict(&mut self, acceleration: Acceleration) -> Option<Measured> {
         let track = self.track.as_mut()?;
         let change = Velocity(acceleration.0);
-        track.velocity.motor = track.velocity.motor.plus(change);
-        track.velocity.load = track.velocity.load.plus(change);
-        track.at.motor = track.at.motor.after(track.velocity.motor);
-        track.at.load = track.at.load.after(track.velocity.load);
-        track.predicted_cycles = track.predicted_cycles.saturating_add(1);
-        track.load_predicted_cycles = track.load_predicted_cycles.saturating_add(1);
-        Some(track.at)
+        track.motor.go_on(change);
+        track.load.go_on(change);
+        Some(track.at())
     }
 
     /// Forgets where the axis was; the count of warnings stays.
@@ -165,15 +158,57 @@ impl Encoders {
 const REBASE_AT: i32 = 1 << 30;
 
 impl Raw {
-    fn motor_position(&mut self, counts: MotorIncrements, way: WayPerIncrement) -> Position {
+    fn motor_position(&self, counts: MotorIncrements, way: WayPerIncrement) -> Position {
         let since = counts.0.wrapping_sub(self.base_counts);
-        let position = self.base.moved(way.times(since));
+        self.base.moved(way.times(since))
+    }
+
+    /// The base follows a position that is far away.
+    fn rebase(&mut self, counts: MotorIncrements, position: Position) {
+        let since = counts.0.wrapping_sub(self.base_counts);
         if since.unsigned_abs() > REBASE_AT.unsigned_abs() {
             self.base = position;
             self.base_counts = counts.0;
         }
-        self.motor = counts;
-        position
+    }
+}
+
+impl Followed {
+    const fn standing(at: Position) -> Self {
+        Self {
+            at,
+            velocity: Velocity::ZERO,
+            good: at,
+            predicted_cycles: 0,
+        }
+    }
+
+    /// The velocity since the last good position, where the axis can have reached this one; `jump`
+    /// is what it may be beside what was expected, for each cycle since then.
+    fn reached(&self, position: Position, jump: PositionError) -> Option<Velocity> {
+        let way = position.error_from(self.at);
+        let off = way.minus(self.velocity.way_lossy()).magnitude();
+        if self.predicted_cycles == 0 {
+            // The last position was good, and this is the way since then.
+            return (off <= jump).then(|| way.in_a_cycle());
+        }
+        let cycles = self.predicted_cycles.saturating_add(1);
+        let allowed = PositionError(jump.0.saturating_mul_int(i32::from(cycles)));
+        (off <= allowed).then(|| position.velocity_since(self.good, cycles))
+    }
+
+    const fn take(&mut self, position: Position, velocity: Velocity) {
+        *self = Self {
+            velocity,
+            ..Self::standing(position)
+        };
+    }
+
+    /// A cycle without a reading.
+    fn go_on(&mut self, change: Velocity) {
+        self.velocity = self.velocity.plus(change);
+        self.at = self.at.after(self.velocity);
+        self.predicted_cycles = self.predicted_cycles.saturating_add(1);
     }
 }
 
@@ -183,70 +218,53 @@ impl Track {
     fn first(feedback: Feedback, encoding: &Encoding) -> Self {
         let motor = encoding.way.times(feedback.motor.0);
         let (load_counts, relation_error) = near_relation(motor, feedback.load, encoding.relation);
-        let at = Measured {
-            motor,
-            load: Position::from_counts(load_counts),
-        };
         let raw = Raw {
-            motor: feedback.motor,
             base_counts: feedback.motor.0,
             base: motor,
             load: feedback.load,
             load_counts,
         };
         Self {
-            at,
-            velocity: Pair::default(),
-            good: at,
+            motor: Followed::standing(motor),
+            load: Followed::standing(Position::from_counts(load_counts)),
             raw,
-            predicted_cycles: 0,
-            load_predicted_cycles: 0,
             relation_error,
         }
     }
 
-    fn next(self, feedback: Feedback, encoding: &Encoding) -> Result<(Self, bool), Implausible> {
-        let mut raw = self.raw;
+    const fn at(&self) -> Measured {
+        Measured {
+            motor: self.motor.at,
+            load: self.load.at,
+        }
+    }
+
+    /// Takes a feedback; tells whether the load scale's reading is true. Nothing changes where it
+    /// is implausible.
+    fn take(&mut self, feedback: Feedback, encoding: &Encoding) -> Result<bool, Implausible> {
+        let raw = &mut self.raw;
         let motor = raw.motor_position(feedback.motor, encoding.way);
         let load_counts = raw
             .load_counts
             .saturating_add(i64::from(raw.load.step_to(feedback.load)));
         let load = Position::from_counts(load_counts);
-        let cycles = self.predicted_cycles.saturating_add(1);
-        let load_cycles = self.load_predicted_cycles.saturating_add(1);
-        let motor_is_true = is_near(
-            motor,
-            self.at.motor.after(self.velocity.motor),
-            encoding.jump,
-            cycles,
-        );
-        let load_is_true = is_near(
-            load,
-            self.at.load.after(self.velocity.load),
-            encoding.jump,
-            load_cycles,
-        );
-        if !motor_is_true || (!load_is_true && encoding.source == PositionSource::Load) {
+        let velocity = self.motor.reached(motor, encoding.jump);
+        let load_velocity = self.load.reached(load, encoding.jump);
+        let velocity = velocity.ok_or(Implausible)?;
+        if load_velocity.is_none() && encoding.source == PositionSource::Load {
             return Err(Implausible);
         }
-        let mut next = Self {
-            raw,
-            predicted_cycles: 0,
-            ..self
-        };
-        next.velocity.motor = motor.velocity_since(self.good.motor, cycles);
-        (next.at.motor, next.good.motor) = (motor, motor);
-        if load_is_true {
-            next.raw.load = feedback.load;
-            next.raw.load_counts = load_counts;
-            next.velocity.load = load.velocity_since(self.good.load, load_cycles);
-            (next.at.load, next.good.load) = (load, load);
-            next.load_predicted_cycles = 0;
-        } else {
-            next.at.load = self.at.load.after(self.velocity.load);
-            next.load_predicted_cycles = load_cycles;
+        raw.rebase(feedback.motor, motor);
+        self.motor.take(motor, velocity);
+        match load_velocity {
+            Some(velocity) => {
+                raw.load = feedback.load;
+                raw.load_counts = load_counts;
+                self.load.take(load, velocity);
+            }
+            None => self.load.go_on(Velocity::ZERO),
         }
-        Ok((next, load_is_true))
+        Ok(load_velocity.is_some())
     }
 }
 
@@ -261,11 +279,6 @@ fn near_relation(
     let off = LoadIncrements24::from_counts(expected).step_to(load);
     let error = Position::from_counts(i64::from(off)).error_from(Position::default());
     (expected.saturating_add(i64::from(off)), error)
-}
-
-fn is_near(position: Position, expected: Position, limit: PositionError, cycles: u16) -> bool {
-    let allowed = PositionError(limit.0.saturating_mul_int(i32::from(cycles)));
-    position.error_from(expected).magnitude() <= allowed
 }
 
 #[cfg(test)]

@@ -25,12 +25,6 @@ pub(crate) struct Periodic {
 }
 
 impl Periodic {
-    /// The first event after reset starts the clock.
-    pub(crate) fn start(&mut self, now_us: u64, period_us: u64) {
-        self.heartbeat_due_us
-            .get_or_insert(now_us.saturating_add(period_us));
-    }
-
     /// The first cycle carries a heartbeat, so that a run looks the same wherever it is made.
     pub(crate) const fn beat_now(&mut self, now_us: u64) {
         self.heartbeat_due_us = Some(now_us);
@@ -76,7 +70,7 @@ impl Servo {
         let Some(counter) = self.inbox.counter() else {
             return;
         };
-        let torque = TorqueMicroNm(stage.torque.to_micro_nm_lossy());
+        let torque = TorqueMicroNm(stage.torque.whole_micro_nm());
         self.send(Message::Torque(message::Torque {
             torque,
             control: stage.control,
@@ -85,8 +79,9 @@ impl Servo {
     }
 
     pub(crate) fn send_periodic(&mut self) {
-        let status = self.status();
-        if self.periodic.status_is_due((status.status, status.fault)) {
+        let (word, fault) = (self.status_word(), self.axis.drive.fault());
+        if self.periodic.status_is_due((word, fault)) {
+            let status = self.status(word, fault);
             self.send(Message::Status(status));
             self.axis.last.warning = false;
         }
@@ -111,8 +106,15 @@ impl Servo {
 
     /// Starts the clock of the heartbeats, if this is the first event after reset.
     pub(crate) fn start_clock(&mut self, now_us: u64) {
-        let period_us = self.heartbeat_period_us();
-        self.periodic.start(now_us, period_us);
+        if self.periodic.heartbeat_due_us.is_none() {
+            self.start_heartbeats(now_us);
+        }
+    }
+
+    #[cold]
+    fn start_heartbeats(&mut self, now_us: u64) {
+        let first_us = now_us.saturating_add(self.heartbeat_period_us());
+        self.periodic.heartbeat_due_us = Some(first_us);
     }
 
     fn heartbeat_period_us(&self) -> u64 {
@@ -151,7 +153,7 @@ impl Servo {
         }
     }
 
-    fn status(&self) -> Status {
+    fn status(&self, word: StatusWord, fault: Option<Fault>) -> Status {
         let last = &self.axis.last;
         let rated_mnm = self
             .active
@@ -159,18 +161,18 @@ impl Servo {
             .map_or(1, |settings| settings.rated_torque_mnm);
         let per_mille = last
             .torque
-            .to_micro_nm_lossy()
+            .whole_micro_nm()
             .checked_div(rated_mnm)
             .unwrap_or(0);
         Status {
-            status: self.status_word(),
+            status: word,
             following_error: FollowingError24::saturating(last.following_error.0.to_num()),
             torque: TorquePerMille(i16::try_from(per_mille).unwrap_or(if per_mille < 0 {
                 i16::MIN
             } else {
                 i16::MAX
             })),
-            fault: self.axis.drive.fault(),
+            fault,
         }
     }
 

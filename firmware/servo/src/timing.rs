@@ -17,9 +17,31 @@ use protocol::SyncCounter;
 #[derive(Clone, Copy, Debug)]
 pub struct Timing {
     period_us: u32,
-    began_us: Option<u64>,
+    cycle: Option<Cycle>,
     sync: Option<(u64, SyncCounter)>,
     odd_intervals: u8,
+}
+
+/// When the present cycle began, and what follows from that: taken once a cycle, asked for at every
+/// frame.
+#[derive(Clone, Copy, Debug)]
+struct Cycle {
+    began_us: u64,
+    deadline_us: u64,
+    sync_due_us: u64,
+    own_timer_us: u64,
+}
+
+impl Cycle {
+    fn of(began_us: u64, period_us: u32) -> Self {
+        let sync_due_us = began_us.saturating_add(u64::from(period_us));
+        Self {
+            began_us,
+            deadline_us: began_us.saturating_add(tenths(period_us, DEADLINE_TENTHS)),
+            sync_due_us,
+            own_timer_us: sync_due_us.saturating_add(tenths(period_us, PATIENCE_TENTHS)),
+        }
+    }
 }
 
 /// Share of the period after which a cycle closes without its frames, in tenths.
@@ -37,27 +59,34 @@ impl Timing {
     pub const fn new(period_us: u32) -> Self {
         Self {
             period_us,
-            began_us: None,
+            cycle: None,
             sync: None,
             odd_intervals: 0,
         }
     }
 
     /// The same node with the period of another parameter set.
-    pub const fn set_period(&mut self, period_us: u32) {
+    pub fn set_period(&mut self, period_us: u32) {
         self.period_us = period_us;
         self.odd_intervals = 0;
+        if let Some(cycle) = self.cycle {
+            self.begin(cycle.began_us);
+        }
+    }
+
+    fn begin(&mut self, at_us: u64) {
+        self.cycle = Some(Cycle::of(at_us, self.period_us));
     }
 
     /// A cycle begins with a SYNC frame.
     pub fn begin_by_sync(&mut self, now_us: u64, counter: SyncCounter) {
         self.note_sync(now_us, counter);
-        self.began_us = Some(now_us);
+        self.begin(now_us);
     }
 
     /// A cycle begins without its SYNC: when it was due.
     pub fn begin_without_sync(&mut self, now_us: u64) {
-        self.began_us = Some(self.sync_due_us().map_or(now_us, |due| due.min(now_us)));
+        self.begin(self.sync_due_us().map_or(now_us, |due| due.min(now_us)));
     }
 
     /// The SYNC of a cycle that was begun without it came after all; it sets the phase where it
@@ -66,10 +95,10 @@ impl Timing {
         self.note_sync(now_us, counter);
         let half = u64::from(self.period_us >> 1);
         if self
-            .began_us
+            .began_us()
             .is_none_or(|began| now_us.saturating_sub(began) < half)
         {
-            self.began_us = Some(now_us);
+            self.begin(now_us);
         }
     }
 
@@ -96,29 +125,26 @@ impl Timing {
 
     /// When the present cycle began.
     #[must_use]
-    pub const fn began_us(&self) -> Option<u64> {
-        self.began_us
+    pub fn began_us(&self) -> Option<u64> {
+        self.cycle.map(|cycle| cycle.began_us)
     }
 
     /// When the present cycle closes without its frames.
     #[must_use]
     pub fn deadline_us(&self) -> Option<u64> {
-        self.began_us
-            .map(|began| began.saturating_add(tenths(self.period_us, DEADLINE_TENTHS)))
+        self.cycle.map(|cycle| cycle.deadline_us)
     }
 
     /// When the next SYNC is due.
     #[must_use]
     pub fn sync_due_us(&self) -> Option<u64> {
-        self.began_us
-            .map(|began| began.saturating_add(u64::from(self.period_us)))
+        self.cycle.map(|cycle| cycle.sync_due_us)
     }
 
     /// When the node goes on without it.
     #[must_use]
     pub fn own_timer_us(&self) -> Option<u64> {
-        self.sync_due_us()
-            .map(|due| due.saturating_add(tenths(self.period_us, PATIENCE_TENTHS)))
+        self.cycle.map(|cycle| cycle.own_timer_us)
     }
 
     /// Whether the last SYNC frame is longer ago than a timeout.
