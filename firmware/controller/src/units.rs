@@ -217,7 +217,8 @@ impl Torque {
         narrowed::<24>(bits.saturating_add(half))
     }
 
-    /// To whole µN·m, rounded down and saturated: in fewer instructions, for torques that are whole.
+    /// To whole µN·m, rounded down and saturated: in fewer instructions, for torques that are
+    /// whole.
     #[must_use]
     pub fn whole_micro_nm(self) -> i32 {
         narrowed::<24>(self.0.to_bits())
@@ -229,8 +230,8 @@ impl Torque {
         Self(self.0.saturating_add(other.0))
     }
 
-    /// Sum of torques of the law, which has room: a gain times a velocity is 2⁶² of the last bits at
-    /// most, a gain times an acceleration 2⁶¹, everything else below 2⁵⁷.
+    /// Sum of torques of the law, which has room: a gain times a velocity is 2⁶² of the last bits
+    /// at most, a gain times an acceleration 2⁶¹, everything else below 2⁵⁷.
     pub(crate) fn with(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
     }

@@ -1,8 +1,8 @@
 //! One station at one port: what delivers its frames and tells it the time.
 //!
-//! - *Lock-step*: time is [bus time](protocol::lockstep_time). Where no frame comes for the deadline,
-//!   the station does what is due next. After three deadlines without a frame of the workbench it
-//!   is gone, and time follows the clock until the workbench says something again.
+//! - *Lock-step*: time is [bus time](protocol::lockstep_time). Where no frame comes for the
+//!   deadline, the station does what is due next. After three deadlines without a frame of the
+//!   workbench it is gone, and time follows the clock until the workbench says something again.
 //! - *Clock pace*: time is the clock, and the station wakes when it is due.
 
 use std::convert::Infallible;

@@ -25,6 +25,7 @@ pub struct Timing {
 /// When the present cycle began, and what follows from that: taken once a cycle, asked for at every
 /// frame.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "what they share is their unit")]
 struct Cycle {
     began_us: u64,
     deadline_us: u64,

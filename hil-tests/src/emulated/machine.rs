@@ -17,9 +17,9 @@ pub const PROFILE: &str = "firmware";
 /// A replay takes some ten seconds; one that hangs is ended.
 const PATIENCE: Duration = Duration::from_mins(5);
 
-/// Builds the images of `firmware/emulated` in a target folder of their own beside that of the running
-/// program, so that features and locks of the host's build do not meet them; gives the folder in
-/// which they lie by their names.
+/// Builds the images of `firmware/emulated` in a target folder of their own beside that of the
+/// running program, so that features and locks of the host's build do not meet them; gives the
+/// folder in which they lie by their names.
 ///
 /// # Panics
 /// Where it does not compile.

@@ -1,8 +1,8 @@
-//! The emulated node in the place of the host's on an in-process bus: frames go to it as SLCAN lines
-//! over the UART of its machine, and so does the time (`firmware/emulated/src/node`).
+//! The emulated node in the place of the host's on an in-process bus: frames go to it as SLCAN
+//! lines over the UART of its machine, and so does the time (`firmware/emulated/src/node`).
 //!
-//! Nothing of the node runs here. The bus asks when it wants to be woken, so it says that with every
-//! answer.
+//! Nothing of the node runs here. The bus asks when it wants to be woken, so it says that with
+//! every answer.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Write};
@@ -73,8 +73,8 @@ struct Line {
 }
 
 impl EmulatedNode {
-    /// Starts the image `emulated-node`; its socket lies in a folder. Its ids are those of the first
-    /// axis.
+    /// Starts the image `emulated-node`; its socket lies in a folder. Its ids are those of the
+    /// first axis.
     ///
     /// # Panics
     /// Where the emulator does not start.

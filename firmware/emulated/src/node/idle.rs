@@ -1,6 +1,6 @@
-//! The executor's idle loop. Embassy's own waits for an event (`wfe`), which QEMU takes for a hint to
-//! yield: the core then spins, and what reaches the UART waits for the emulator's lock, for seconds
-//! where the machine has other work. Waiting for an interrupt (`wfi`) stops the core.
+//! The executor's idle loop. Embassy's own waits for an event (`wfe`), which QEMU takes for a hint
+//! to yield: the core then spins, and what reaches the UART waits for the emulator's lock, for
+//! seconds where the machine has other work. Waiting for an interrupt (`wfi`) stops the core.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
