@@ -42,7 +42,7 @@ pub fn parameters(
     set.loop_gains(axis, period_s)?;
     set.encoder(axis)?;
     set.filter(axis, period_s)?;
-    set.limits(axis)?;
+    set.limits(axis, period_s)?;
     set.mounting(axis)?;
     set.compensation(compensation)?;
     set.checked()
@@ -177,7 +177,7 @@ impl Set {
 
     /// The ramps brake as hard as a path may; the drive itself may do a tenth more, to catch up
     /// after a loss. The travel is the software limit.
-    fn limits(&mut self, axis: &MachineAxis) -> Outcome<()> {
+    fn limits(&mut self, axis: &MachineAxis, period_s: f64) -> Outcome<()> {
         let limits = &axis.limits;
         let (acceleration, key) = (limits.acceleration_m_per_s2, "acceleration_m_per_s2");
         self.put(
@@ -194,7 +194,11 @@ impl Set {
         self.put(Parameter::SlowDownDeceleration, key, acceleration)?;
         self.put(Parameter::PositionMin, "travel_m", -limits.travel_m)?;
         self.put(Parameter::PositionMax, "travel_m", limits.travel_m)?;
-        self.put(Parameter::EncoderJumpLimit, "encoder jump", ENCODER_JUMP_M)?;
+        self.put(
+            Parameter::EncoderJumpLimit,
+            "encoder jump",
+            encoder_jump_m(axis, period_s),
+        )?;
         self.put(
             Parameter::FollowingErrorWindow,
             "following error window",
@@ -418,8 +422,16 @@ impl Set {
     }
 }
 
-/// An encoder may jump by this without being implausible: it leaves room for a gap that closes.
-const ENCODER_JUMP_M: f64 = 1.0e-4;
+/// What a motor may be beside where its last velocity leads without being implausible. Its own
+/// force moves it by `F / m P²` within a cycle; twice that, since the load pushes too. A gap that
+/// closes wants room as well.
+fn encoder_jump_m(axis: &MachineAxis, period_s: f64) -> f64 {
+    let acceleration = axis.actual.force_limit_n / axis.actual.mechanics.motor_inertia_kg;
+    (2.0 * acceleration * period_s * period_s).max(GAP_CLOSES_M)
+}
+
+/// Room for a gap that closes.
+const GAP_CLOSES_M: f64 = 1.0e-4;
 /// Acceleration of the drive over that of a path. A path that takes all that the drive may leaves
 /// nothing to catch up with: one setpoint lost at a step of 5 m/s² then costs 160 µm, with a tenth
 /// of reserve 17 µm (2026-11-21, `cargo test -p hil-tests --test silence`).
@@ -493,6 +505,21 @@ mod tests {
             set.set(entry.parameter, value);
         }
         set.settings().unwrap()
+    }
+
+    #[test]
+    fn a_motor_that_its_own_force_moves_is_plausible_at_long_periods_too() {
+        let mut machine = Machine::reference();
+        let jump_m = |machine: &Machine| {
+            let settings = settings(machine, &AxisCompensation::default());
+            settings.limits.encoder_jump.0.to_num::<f64>() * COUNT_M
+        };
+        assert_same("at 1 ms", jump_m(&machine), GAP_CLOSES_M);
+        machine.period_s = 8.0e-3;
+        let actual = &machine.axes[0].actual;
+        let moved_m = actual.force_limit_n / actual.mechanics.motor_inertia_kg * 64.0e-6;
+        let allowed = jump_m(&machine) / moved_m;
+        assert!((1.9..2.1).contains(&allowed), "{allowed}");
     }
 
     fn assert_same(what: &str, got: f64, wanted: f64) {
