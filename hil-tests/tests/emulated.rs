@@ -140,7 +140,7 @@ fn circled(servo_of_x: Box<dyn Station>) -> (Vec<Point>, Vec<(u64, CanFrame)>) {
 fn the_emulated_node_closes_the_loop_in_process_and_the_bus_is_that_of_the_hosts_node() {
     let images = machine::images(&target(), PROFILE);
     let _alone = ALONE.lock();
-    let emulated = circled(Box::new(EmulatedNode::start(&images, &folder())));
+    let emulated = circled(Box::new(EmulatedNode::start(&images)));
     let host = circled(Box::new(Servo::new(AxisIds::of_axis(0).unwrap())));
     let differing = host.1.iter().zip(&emulated.1).position(|(a, b)| a != b);
     assert_eq!(differing, None, "the first frame that differs");

@@ -8,7 +8,8 @@
 //! | [`Acceleration`] | 10 nm per cycle² | `I20F12` | ±5.2 km/s² at 1 kHz, 2.4 µm/s² |
 //! | [`Torque`] | µN·m | `I40F24` | ±550 kN·m |
 //!
-//! Every sum saturates. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
+//! Every sum saturates, but for those of the law's torques, whose terms are bounded so that it has
+//! room. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
 //! cannot overflow, and saturate only when they are brought back to 32 bits.
 
 use fixed::types::{I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};

@@ -72,7 +72,7 @@ fn have_qemu() {
     }
     eprintln!("installing qemu-system-arm");
     let install = "run() { if [ \"$(id -u)\" = 0 ]; then \"$@\"; else sudo -n \"$@\"; fi; }
-        run apt-get -qq update && run env DEBIAN_FRONTEND=noninteractive \
+        run apt-get -qq update; run env DEBIAN_FRONTEND=noninteractive \
         apt-get -qq -y -o DPkg::Lock::Timeout=300 --no-install-recommends install qemu-system-arm >&2";
     let installed = Command::new("sh").args(["-c", install]).status();
     assert!(

@@ -5,11 +5,11 @@
 //! every answer.
 
 use std::cell::RefCell;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
 use std::process::{Child, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use protocol::{AxisIds, CanFrame, Station};
 
@@ -32,6 +32,25 @@ pub struct EmulatedNode {
 pub struct Running(pub Child);
 
 impl Running {
+    /// The connection that the process makes; it may end instead.
+    fn connects(&mut self, listener: &UnixListener) -> UnixStream {
+        let waits = listener.set_nonblocking(true);
+        waits.expect("a socket can be asked");
+        let begun = Instant::now();
+        loop {
+            if let Ok((stream, _)) = listener.accept() {
+                stream.set_nonblocking(false).expect("a socket can wait");
+                return stream;
+            }
+            let ended = self.0.try_wait().expect("a child can be asked");
+            assert!(
+                ended.is_none() && begun.elapsed() < PATIENCE,
+                "the emulator does not connect to its serial line: {ended:?}"
+            );
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
     /// The image `emulated-node` with its UART somewhere, in the words of QEMU.
     fn with_uart(images: &Path, uart: &str) -> Self {
         let mut qemu = qemu();
@@ -73,19 +92,18 @@ struct Line {
 }
 
 impl EmulatedNode {
-    /// Starts the image `emulated-node`; its socket lies in a folder. Its ids are those of the
-    /// first axis.
+    /// Starts the image `emulated-node`. Its ids are those of the first axis.
     ///
     /// # Panics
     /// Where the emulator does not start.
     #[must_use]
-    pub fn start(images: &Path, folder: &Path) -> Self {
-        let path = folder.join(format!("uart-{}.socket", std::process::id()));
-        let _ = std::fs::remove_file(&path);
-        let listener = UnixListener::bind(&path).expect("a socket in the target folder");
-        let machine = Running::with_uart(images, &format!("unix:{}", path.display()));
-        let (stream, _) = listener.accept().expect("the emulator connects");
-        let _ = std::fs::remove_file(&path);
+    pub fn start(images: &Path) -> Self {
+        // Not in the target folder: the path of a socket has a hundred characters at most.
+        let folder = tempfile::tempdir().expect("a folder for temporary files");
+        let path = folder.path().join("uart");
+        let listener = UnixListener::bind(&path).expect("a socket in it");
+        let mut machine = Running::with_uart(images, &format!("unix:{}", path.display()));
+        let stream = machine.connects(&listener);
         stream
             .set_read_timeout(Some(PATIENCE))
             .expect("a socket has a timeout");
@@ -136,10 +154,17 @@ impl Line {
     /// The next line, without its end.
     fn hear(&mut self) -> Vec<u8> {
         let mut line = Vec::new();
-        let heard = self.heard.read_until(CR, &mut line);
-        heard.expect("the node answers in time");
-        assert_eq!(line.pop(), Some(CR), "the emulator ended");
-        line
+        loop {
+            let mut byte = [0];
+            let heard = self.heard.read_exact(&mut byte);
+            heard.expect("the node answers in time");
+            match byte {
+                [CR] => return line,
+                // A line that is not taken has no end.
+                [BEL] => return vec![BEL],
+                [byte] => line.push(byte),
+            }
+        }
     }
 }
 
