@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use hil_tests::emulated::machine;
-use hil_tests::emulated::recorded::{Circling, Drive, record};
+use hil_tests::emulated::recorded::{Circling, Drive, Measured, record};
 use hil_tests::emulated::recording::Class;
 use hil_tests::emulated::report::Report;
 use serde::Deserialize;
@@ -47,6 +47,10 @@ fn main() -> ExitCode {
         &budgets.everything,
     );
     let model = one(&folder, &image, "model", Drive::Model, &budgets.model);
+    println!(
+        "\nthe longest frame outside of a cycle, a commit of the model: {:.0}",
+        longest_other(&folder, &image)
+    );
     if plain && everything && model {
         ExitCode::SUCCESS
     } else {
@@ -66,7 +70,7 @@ fn one(folder: &Path, image: &Path, name: &str, drive: Drive, budget: &Budget) -
     let circling = Circling {
         drive,
         cycles: CYCLES,
-        is_measured: true,
+        measured: Measured::Circle,
         lost: &[],
         torque_lost: None,
     };
@@ -76,6 +80,24 @@ fn one(folder: &Path, image: &Path, name: &str, drive: Drive, budget: &Budget) -
     fs::write(folder.join(name).with_extension("txt"), &report)
         .expect("the target folder is writable");
     Run::of(&report).print(name, budget)
+}
+
+/// Instructions of the frame that takes longest among those that belong to no cycle, from boot-up
+/// on.
+fn longest_other(folder: &Path, image: &Path) -> f64 {
+    let circling = Circling {
+        drive: Drive::Model,
+        cycles: 1,
+        measured: Measured::Everything,
+        lost: &[],
+        torque_lost: None,
+    };
+    let recording = folder.join("commit.bin");
+    let taken = record(circling).expect("the circle begins");
+    fs::write(&recording, taken.bytes).expect("the target folder is writable");
+    let report = Report::of(&machine::replay(image, &recording));
+    let others = report.events.iter().filter(|(of, _)| *of == Class::Other);
+    others.map(|(_, taken)| *taken).fold(0.0, f64::max)
 }
 
 // ---- the figures

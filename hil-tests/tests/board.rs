@@ -128,6 +128,19 @@ fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
         "the reset vector points to Reset"
     );
     assert_eq!(file.entry() | 1, reset | 1);
+    // Numbers of interrupts: RM0440 table 97.
+    for (name, number) in [("PVD_PVM", 1), ("FDCAN1_IT0", 21), ("USART3", 39)] {
+        let handler = file.symbols().find(|symbol| symbol.name() == Ok(name));
+        let handler = handler.unwrap_or_else(|| panic!("no {name}")).address();
+        assert_eq!(u64::from(words[16 + number]) | 1, handler | 1, "{name}");
+        assert_ne!(handler | 1, default_handler(&file) | 1, "{name}");
+    }
+}
+
+fn default_handler(file: &object::File<'_>) -> u64 {
+    let mut symbols = file.symbols();
+    let found = symbols.find(|symbol| symbol.name() == Ok("DefaultHandler_"));
+    found.map_or(0, |symbol| symbol.address())
 }
 
 #[test]

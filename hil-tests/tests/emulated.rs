@@ -12,7 +12,7 @@ use bus::CanPort;
 use hil_tests::Scope;
 use hil_tests::emulated::machine::{self, PROFILE};
 use hil_tests::emulated::node::{EmulatedNode, Running};
-use hil_tests::emulated::recorded::{Circling, Drive, record, with_length};
+use hil_tests::emulated::recorded::{Circling, Drive, Measured, record, with_length};
 use hil_tests::emulated::recording::{Class, Event, Events};
 use hil_tests::emulated::report::Report;
 use hil_tests::{program, rig};
@@ -64,7 +64,7 @@ fn replayed(image: &Path, name: &str, drive: Drive) -> Report {
     let taken = record(Circling {
         drive,
         cycles: CYCLES,
-        is_measured: false,
+        measured: Measured::Nothing,
         lost: &LOST,
         torque_lost: Some(TORQUE_LOST),
     })

@@ -1,59 +1,117 @@
 //! The drive node on ST's B-G431B-ESC1 (STM32G431CB).
 //!
 //! The same sans-I/O node as on the host, at clock pace: frames from FDCAN1 (PA11 receive, PB9
-//! transmit) and the time go in, what it says goes out. One task waits for a frame or for the time
-//! when the node is due ([`Station::wake_at_us`]: the deadline of a cycle, its own SYNC timer, a
-//! heartbeat). That time is absolute, so a busy bus does not put it off. Contract: from the arrival
-//! of the frame that completes a cycle to the torque frame in the transmit FIFO there is no waiting
-//! but for a free FIFO slot; the computation is bounded because the node has no loop over anything
-//! but its own tables.
+//! transmit) and the time go in, what it says goes out.
+//!
+//! ```text
+//! FDCAN interrupt ─▶ queue of 32 ─▶ control executor ─▶ torque ────────▶ mailbox
+//!   (priority 1)                    (priority 2)    └─▶ others, in line ─▶ two of three mailboxes
+//! hardware timer (priority 0) ──────────┘           └─▶ watchdog, while the contract is kept
+//! thread: log
+//! ```
+//!
+//! **Contract** ([`board_timing::contract`]). The node runs in an interrupt executor of its own, so
+//! that nothing but the interrupts of CAN and of the timer comes before it. Frames wait in a queue
+//! that the interrupt fills, however long a commit of parameters takes. Nothing in the control path
+//! awaits a transmission: a torque finds a mailbox, since all other frames leave one of the three
+//! to it, and the mailboxes go by identifier. What is due is looked at before the queue, so that a
+//! busy bus does not put it off. What is late is counted; beyond contract the watchdog is not fed
+//! any more, also before SYNC has ever come.
+//!
+//! **Bus-off**: the interrupt begins the recovery (128 times 11 recessive bits) at once and for
+//! ever. Frames in the mailboxes stay there; what waits in line beyond its room is dropped, the
+//! newest first. The drive meanwhile does what it does about frames that do not come.
+//!
+//! **End** ([`last_words`]): panic, processor fault and low voltage.
+//!
+//! **Node ids** are those of axis 0, or of the environment when the image is built:
+//! `SERVO_NODE=2 PLANT_NODE=18 cargo fw`.
 //!
 //! Not proven here: that the board boots and keeps this contract. The image is linked and its
-//! budgets are checked; timing on the target is a later issue. The node reads its position from the
-//! bus, from the plant, as in hardware-in-the-loop tests; there is no inverter control in it.
+//! budgets are checked. The node reads its position from the bus, from the plant, as in
+//! hardware-in-the-loop tests; there is no inverter control in it.
 #![no_std]
 #![no_main]
 
+mod last_words;
+
 use core::num::{NonZeroU8, NonZeroU16};
 
+use board_timing::contract::{Contract, LONGEST_SLEEP_US, WATCHDOG_US, has_room_beside_torque};
 use board_timing::{BitTiming, HSE_HZ, ONE_MEGABIT, PLL_M, PLL_N, PLL_Q, PLL_R};
 use defmt::{error, info, unwrap, warn};
 use defmt_rtt as _;
-use embassy_executor::Spawner;
+use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_futures::select::{Either, select};
 use embassy_stm32::can::config::{
     FrameTransmissionConfig, GlobalFilter, NominalBitTiming, TxBufferMode,
 };
 use embassy_stm32::can::filter::{Action, FilterType, StandardFilter, StandardFilterSlot};
-use embassy_stm32::can::{self, CanConfigurator, CanRx, CanTx, Frame, OperatingMode};
+use embassy_stm32::can::{
+    self, BufferedCan, BufferedCanReceiver, BufferedCanSender, CanConfigurator, Frame,
+    OperatingMode, RxBuf, TxBuf,
+};
 use embassy_stm32::gpio::{Level, Output, Speed};
-use embassy_stm32::peripherals::FDCAN1;
+use embassy_stm32::interrupt::{self, InterruptExt, Priority};
+use embassy_stm32::peripherals::{FDCAN1, IWDG};
 use embassy_stm32::rcc::{
     Hse, HseMode, Pll, PllMul, PllPreDiv, PllQDiv, PllRDiv, PllSource, Sysclk, mux,
 };
 use embassy_stm32::time::Hertz;
-use embassy_stm32::{Config, bind_interrupts};
+use embassy_stm32::wdg::IndependentWatchdog;
+use embassy_stm32::{Config, bind_interrupts, pac};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame as _, StandardId};
-use heapless::Vec;
-use panic_probe as _;
-use protocol::cob::{AxisIds, HEARD_BY_SERVO, NodeId};
+use heapless::Deque;
+use protocol::cob::{AxisIds, FrameKind, HEARD_BY_SERVO, NodeId};
 use protocol::{CanFrame, Station};
 use servo::Servo;
+use servo::leaf::{LeafReport, StartedBy};
+use static_cell::StaticCell;
 
 bind_interrupts!(struct Interrupts {
     FDCAN1_IT0 => can::IT0InterruptHandler<FDCAN1>;
     FDCAN1_IT1 => can::IT1InterruptHandler<FDCAN1>;
 });
 
+/// The executor of the node runs in the interrupt of a peripheral that nobody uses.
+static CONTROL: InterruptExecutor = InterruptExecutor::new();
+
+#[allow(unsafe_code, reason = "embassy's handlers are unsafe to call")]
+#[embassy_stm32::interrupt]
+unsafe fn USART3() {
+    // SAFETY: called here only, and the interrupt is unmasked by the executor's start.
+    unsafe {
+        CONTROL.on_interrupt();
+    }
+}
+
 /// Node ids of this board; another axis gets others.
-const SERVO_NODE: u8 = 0x01;
-const PLANT_NODE: u8 = 0x11;
+const SERVO_NODE: u8 = node(option_env!("SERVO_NODE"), 0x01);
+const PLANT_NODE: u8 = node(option_env!("PLANT_NODE"), 0x11);
+
+/// A decimal number.
+const fn node(text: Option<&str>, default: u8) -> u8 {
+    let Some(text) = text else {
+        return default;
+    };
+    match u8::from_str_radix(text, 10) {
+        Ok(node) => node,
+        Err(_) => panic!("SERVO_NODE and PLANT_NODE are decimal numbers from 1 to 127"),
+    }
+}
+
 /// The board's 120 Ω across the bus: on where the board ends it.
 const TERMINATION: Level = Level::Low;
-/// Frames that one event can cause: what was due (EMCY, torque, status, heartbeat) and then as many
-/// for the frame that came, doubled.
-type Outbox = Vec<CanFrame, 16>;
+/// Frames other than torque that wait for a mailbox: those of one event, doubled.
+type Line = Deque<CanFrame, 16>;
+
+/// Received frames that wait for the control executor: those of ten cycles.
+const HEARD: usize = 32;
+static RECEIVED: StaticCell<RxBuf<HEARD>> = StaticCell::new();
+/// Frames on their way into a mailbox; the interrupt takes each at once.
+const SENDING: usize = 4;
+static SENT: StaticCell<TxBuf<SENDING>> = StaticCell::new();
 
 // Register codes, held to the plain numbers that the host checks.
 const M: PllPreDiv = PllPreDiv::DIV2;
@@ -137,9 +195,13 @@ fn listen(can: &CanConfigurator<'_>) {
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let peripherals = embassy_stm32::init(clock_tree());
-    // Kept alive: dropping an output disconnects its pin. CAN_SHDN low switches the transceiver on.
-    let _transceiver_on = Output::new(peripherals.PC11, Level::Low, Speed::Low);
-    let _termination = Output::new(peripherals.PC14, TERMINATION, Speed::Low);
+    let started_by = last_words::started_by();
+    last_words::watch_supply();
+    // CAN_SHDN low switches the transceiver on.
+    let switches = [
+        Output::new(peripherals.PC11, Level::Low, Speed::Low),
+        Output::new(peripherals.PC14, TERMINATION, Speed::Low),
+    ];
 
     let mut can = CanConfigurator::new(
         peripherals.FDCAN1,
@@ -147,22 +209,39 @@ async fn main(spawner: Spawner) {
         peripherals.PB9,
         Interrupts,
     );
-    // Transmit as a FIFO: in priority mode a full mailbox aborts the pending frame with the lower
-    // identifier.
+    // Mailboxes go by identifier, lowest first.
     can.set_config(
         can.config()
             .set_nominal_bit_timing(NOMINAL)
             .set_frame_transmit(FrameTransmissionConfig::ClassicCanOnly)
-            .set_tx_buffer_mode(TxBufferMode::Fifo)
+            .set_tx_buffer_mode(TxBufferMode::Priority)
             .set_global_filter(GlobalFilter::reject_all())
             .set_automatic_bus_off_recovery(true),
     );
     listen(&can);
-    let (transmit, receive, properties) = can.start(OperatingMode::NormalOperationMode).split();
-    spawner.spawn(unwrap!(node(transmit, receive)));
-    info!("servo {} for plant {} on FDCAN1", SERVO_NODE, PLANT_NODE);
+    interrupt::FDCAN1_IT0.set_priority(Priority::P1);
+    let can = can.start(OperatingMode::NormalOperationMode);
+    let can = can.buffered(SENT.init(TxBuf::new()), RECEIVED.init(RxBuf::new()));
+    interrupt::USART3.set_priority(Priority::P2);
+    let dog = IndependentWatchdog::new(peripherals.IWDG, WATCHDOG_US);
+    let control = unwrap!(control(can.writer(), can.reader(), dog, started_by));
+    CONTROL.start(interrupt::USART3).spawn(control);
+    info!(
+        "servo {} for plant {} on FDCAN1, started by {}",
+        SERVO_NODE,
+        PLANT_NODE,
+        started_by.code()
+    );
+    spawner.spawn(unwrap!(log(can, switches)));
+}
+
+/// Says now and then how the bus is. It keeps peripheral and pins, which end with their values.
+#[embassy_executor::task]
+async fn log(can: BufferedCan<'static, SENDING, HEARD>, switches: [Output<'static>; 2]) {
+    let _kept = switches;
     loop {
         Timer::after(Duration::from_secs(10)).await;
+        let properties = can.properties();
         info!(
             "transmit errors {}, receive errors {}",
             properties.tx_error_count(),
@@ -172,34 +251,123 @@ async fn main(spawner: Spawner) {
 }
 
 #[embassy_executor::task]
-async fn node(mut transmit: CanTx<'static>, mut receive: CanRx<'static>) {
-    let mut servo = Servo::new(IDS);
-    let mut out = Outbox::new();
-    Station::boot(&mut servo, &mut |frame| post(&mut out, frame));
+async fn control(
+    transmit: BufferedCanSender,
+    receive: BufferedCanReceiver,
+    mut dog: IndependentWatchdog<'static, IWDG>,
+    started_by: StartedBy,
+) {
+    let mut node = Node {
+        servo: Servo::new(IDS),
+        contract: Contract::default(),
+        transmit,
+        line: Line::new(),
+    };
+    dog.unleash();
+    Station::boot(&mut node.servo, &mut |frame| wait(&mut node.line, frame));
     loop {
-        send(&mut transmit, &mut out).await;
-        let due = servo
-            .wake_at_us()
-            .map_or(Instant::MAX, Instant::from_micros);
-        match select(receive.read(), Timer::at(due)).await {
-            Either::First(Ok(envelope)) => {
-                if let Some(frame) = frame_of(&envelope.frame) {
-                    servo.take(&frame, Instant::now().as_micros(), &mut |frame| {
-                        post(&mut out, frame);
-                    });
-                }
-            }
+        node.send_others();
+        node.servo.report(LeafReport {
+            started_by,
+            missed_deadlines: node.contract.missed(),
+            latest_us: node.contract.latest_us(),
+        });
+        if node.contract.is_kept() {
+            dog.pet();
+        }
+        let now_us = Instant::now().as_micros();
+        // What is due goes before what has come.
+        let due_us = node.servo.wake_at_us();
+        if let Some(due_us) = due_us.filter(|due_us| *due_us <= now_us) {
+            node.time(due_us, now_us);
+            continue;
+        }
+        let latest_us = now_us.saturating_add(LONGEST_SLEEP_US);
+        let until_us = due_us.map_or(latest_us, |due_us| due_us.min(latest_us));
+        let wake = Timer::at(Instant::from_micros(until_us));
+        match select(receive.receive(), wake).await {
+            Either::First(Ok(envelope)) => node.take(&envelope.frame, envelope.ts),
             Either::First(Err(bus)) => warn!("bus: {}", bus),
-            Either::Second(()) => servo.time(Instant::now().as_micros(), &mut |frame| {
-                post(&mut out, frame);
-            }),
+            Either::Second(()) => {}
         }
     }
 }
 
-fn post(out: &mut Outbox, frame: CanFrame) {
-    if out.push(frame).is_err() {
-        error!("the node said more in one event than its outbox holds");
+/// The drive node, its contract, and what it has to say.
+struct Node {
+    servo: Servo,
+    contract: Contract,
+    transmit: BufferedCanSender,
+    line: Line,
+}
+
+impl Node {
+    /// Something was due.
+    fn time(&mut self, due_us: u64, now_us: u64) {
+        let Self {
+            servo,
+            transmit,
+            line,
+            ..
+        } = self;
+        servo.time(now_us, &mut |frame| post(transmit, line, frame));
+        self.contract.done(due_us, Instant::now().as_micros());
+    }
+
+    /// A frame came at a time.
+    fn take(&mut self, frame: &Frame, at: Instant) {
+        let Some(frame) = frame_of(frame) else {
+            return;
+        };
+        let Self {
+            servo,
+            transmit,
+            line,
+            ..
+        } = self;
+        let now_us = Instant::now().as_micros();
+        servo.take(&frame, now_us, &mut |frame| post(transmit, line, frame));
+        let now_us = Instant::now().as_micros();
+        self.contract.done(at.as_micros(), now_us);
+    }
+
+    /// Frames that are no torque take their mailboxes.
+    fn send_others(&mut self) {
+        while has_room_beside_torque(pac::FDCAN1.txbrp().read().0.count_ones()) {
+            let Some(frame) = self.line.pop_front() else {
+                return;
+            };
+            transmit(&mut self.transmit, &frame);
+        }
+    }
+}
+
+/// A torque takes its mailbox at once, everything else waits for one.
+fn post(sender: &mut BufferedCanSender, line: &mut Line, frame: CanFrame) {
+    let torque = IDS.identifier(FrameKind::Torque);
+    if frame.id() == embedded_can::Id::Standard(torque) {
+        transmit(sender, &frame);
+    } else {
+        wait(line, frame);
+    }
+}
+
+fn wait(line: &mut Line, frame: CanFrame) {
+    if line.push_back(frame).is_err() {
+        error!("a frame was dropped: more wait for a mailbox than the line holds");
+    }
+}
+
+/// The interrupt, which comes before this executor, takes the frame into a mailbox at once.
+fn transmit(sender: &mut BufferedCanSender, frame: &CanFrame) {
+    let id = match frame.id() {
+        embedded_can::Id::Standard(id) => id,
+        embedded_can::Id::Extended(_) => StandardId::MAX,
+    };
+    let frame = Frame::new_data(id, frame.payload());
+    let sent = frame.is_ok_and(|frame| sender.try_write(frame).is_ok());
+    if !sent {
+        error!("a frame was dropped: no mailbox is free");
     }
 }
 
@@ -208,20 +376,4 @@ fn frame_of(frame: &Frame) -> Option<CanFrame> {
         return CanFrame::new_remote(*frame.id(), frame.dlc());
     }
     CanFrame::new(*frame.id(), frame.data())
-}
-
-async fn send(transmit: &mut CanTx<'static>, out: &mut Outbox) {
-    for frame in &*out {
-        let id = match frame.id() {
-            embedded_can::Id::Standard(id) => id,
-            embedded_can::Id::Extended(_) => StandardId::MAX,
-        };
-        match Frame::new_data(id, frame.payload()) {
-            Ok(frame) => {
-                transmit.write(&frame).await;
-            }
-            Err(_) => error!("a frame of the node does not fit the peripheral"),
-        }
-    }
-    out.clear();
 }

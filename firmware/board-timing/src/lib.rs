@@ -1,10 +1,13 @@
-//! Clock tree and CAN bit timing of the B-G431B-ESC1 as plain numbers.
+//! Clock tree and CAN bit timing of the B-G431B-ESC1, and the latency contract of a board, as plain
+//! numbers.
 //!
 //! The board leaf turns them into register codes; linking is not booting, so what can be checked
 //! without the board is checked here, when the program is compiled and by tests on the host.
 //! Limits: STM32G431 datasheet DS12589 table 36 (PLL), RM0440 §44.3 (FDCAN bit timing).
 #![no_std]
 #![forbid(unsafe_code)]
+
+pub mod contract;
 
 /// Crystal on the board, Hz.
 pub const HSE_HZ: u32 = 8_000_000;

@@ -189,6 +189,7 @@ impl Servo {
                 let said = core::mem::take(&mut self.outbox);
                 *self = Self {
                     outbox: said,
+                    leaf: self.leaf,
                     ..Self::new(self.ids)
                 };
                 self.send(BOOT_UP);

@@ -215,6 +215,7 @@ impl Servo {
             following_error: self.axis.last.following_error.0.to_num(),
             refined_level: self.axis.refined_level_millionths(),
             counts: self.counts(),
+            leaf: self.leaf,
         }
     }
 }

@@ -45,6 +45,7 @@ pub mod encoders;
 mod frames_in;
 mod frames_out;
 pub mod inbox;
+pub mod leaf;
 pub mod objects;
 pub mod parameters;
 pub mod physical;
@@ -66,6 +67,7 @@ use axis::Axis;
 use drive::Drive;
 use frames_out::Periodic;
 use inbox::Inbox;
+use leaf::LeafReport;
 use parameters::ParameterSet;
 use sdo_server::SdoServer;
 use settings::Settings;
@@ -96,6 +98,8 @@ pub struct Servo {
     server: SdoServer,
     active: Option<Settings>,
     committed: Option<Settings>,
+    /// What the leaf reports of itself.
+    leaf: LeafReport,
     /// What the present event has to say.
     outbox: Outbox,
 }
@@ -119,6 +123,7 @@ impl Servo {
             server: SdoServer::default(),
             active,
             committed: None,
+            leaf: LeafReport::default(),
             outbox: Outbox::new(),
         }
     }
@@ -163,6 +168,11 @@ impl Servo {
     #[must_use]
     pub const fn bridged(&self) -> (u16, u16) {
         self.axis.watchdog.misses()
+    }
+
+    /// The leaf reports of itself: what objects 2203h tell.
+    pub const fn report(&mut self, leaf: LeafReport) {
+        self.leaf = leaf;
     }
 
     /// What happened on the bus since reset.

@@ -519,11 +519,17 @@ pub const LOAD_POSITION: Address = Address::new(0x2201, 2);
 pub const FAULT_DETAIL: Address = Address::new(0x2202, 0);
 /// Factor on the levels of friction that turns have refined, 1e-6.
 pub const REFINED_LEVEL: Address = Address::new(0x2159, 4);
+/// Why the node started ([`crate::leaf::StartedBy`]).
+pub const STARTED_BY: Address = Address::new(0x2203, 1);
+/// Deadlines that its leaf missed since.
+pub const MISSED_DEADLINES: Address = Address::new(0x2203, 2);
+/// The latest that the leaf was, µs.
+pub const LATEST: Address = Address::new(0x2203, 3);
 /// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
 
 /// Objects beside the parameters that can be read, with what they say.
-pub const READINGS: [(Address, &str); 27] = [
+pub const READINGS: [(Address, &str); 30] = [
     (DEVICE_TYPE, "device type"),
     (ERROR_REGISTER, "error register"),
     (HEARTBEAT_PERIOD, "heartbeat period, ms"),
@@ -552,6 +558,12 @@ pub const READINGS: [(Address, &str); 27] = [
     ),
     (LOAD_POSITION, "load scale, 10 nm"),
     (FAULT_DETAIL, "detail of the last fault"),
+    (
+        STARTED_BY,
+        "why the node started: 0 power, 1 pin, 2 software, 3 watchdog, 4 panic, 5 processor fault, 6 low voltage",
+    ),
+    (MISSED_DEADLINES, "deadlines that the board missed since"),
+    (LATEST, "the latest that the board was, us"),
     (
         REFINED_LEVEL,
         "factor on the friction levels that turns have refined, 1e-6; another model sets it to one",

@@ -8,6 +8,7 @@
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
+use crate::leaf::LeafReport;
 use crate::objects::{self, Entry, Misfit, Parameter};
 use crate::parameters::{ParameterSet, SetError};
 use crate::settings::Settings;
@@ -44,6 +45,8 @@ pub struct Readings {
     pub refined_level: i32,
     /// Counts since reset.
     pub counts: Counts,
+    /// What the leaf reports of itself, objects 2203h.
+    pub leaf: LeafReport,
 }
 
 /// Which set an upload reads.
@@ -243,6 +246,9 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
         objects::MOTOR_POSITION => Expedited::i32(readings.motor_position),
         objects::LOAD_POSITION => Expedited::i32(readings.load_position),
         objects::FOLLOWING_ERROR => Expedited::i32(readings.following_error),
+        objects::STARTED_BY => Expedited::u8(readings.leaf.started_by.code()),
+        objects::MISSED_DEADLINES => Expedited::u32(readings.leaf.missed_deadlines),
+        objects::LATEST => Expedited::u32(readings.leaf.latest_us),
         objects::REFINED_LEVEL => Expedited::i32(readings.refined_level),
         Address {
             index: objects::DIAGNOSTICS_INDEX,

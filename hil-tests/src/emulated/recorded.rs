@@ -56,7 +56,11 @@ impl Tap {
     fn note(&self, class: Class, now_us: u64, frame: [u8; FRAME], answers: &[CanFrame]) {
         let answers: Vec<[u8; FRAME]> = answers.iter().map(bytes).collect();
         let mut taken = self.taken.borrow_mut();
-        let is_measured = taken.is_circle && self.run.is_measured;
+        let is_measured = match self.run.measured {
+            Measured::Nothing => false,
+            Measured::Circle => taken.is_circle,
+            Measured::Everything => true,
+        };
         Event {
             class,
             is_measured,
@@ -128,6 +132,17 @@ fn bytes(frame: &CanFrame) -> [u8; FRAME] {
     recording::to_bytes(frame).expect("our nodes send data frames with standard identifiers")
 }
 
+/// Events whose instructions are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measured {
+    /// None.
+    Nothing,
+    /// Those of the circle.
+    Circle,
+    /// All, from boot-up on.
+    Everything,
+}
+
 /// A circle of R 10 F 1000 at 1 kHz, of which X is recorded: it reverses after 1.9 s and after
 /// 3.8 s.
 #[derive(Clone, Copy)]
@@ -136,8 +151,8 @@ pub struct Circling {
     pub drive: Drive,
     /// Cycles of the circle.
     pub cycles: u32,
-    /// Whether the instructions of the circle's events are wanted.
-    pub is_measured: bool,
+    /// Whose instructions are wanted.
+    pub measured: Measured,
     /// Frames that do not reach the servo, with the cycle of the circle, from 1 on.
     pub lost: &'static [(Class, u32)],
     /// The cycle, counted from the first SYNC, whose torque does not reach the plant.
