@@ -7,6 +7,7 @@
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use board_timing::SYSTEM_HZ;
 use cortex_m_rt::{ExceptionFrame, exception};
 use defmt::error;
 use embassy_stm32::interrupt::InterruptExt;
@@ -22,10 +23,14 @@ const CODE: u32 = 0xFF;
 #[unsafe(link_section = ".uninit.last_words")]
 static LAST_WORDS: AtomicU32 = AtomicU32::new(0);
 
-/// Stops transmitting, notes why, and resets.
-fn end(why: StartedBy) -> ! {
+/// Stops transmitting and notes why.
+fn fall_silent(why: StartedBy) {
     pac::FDCAN1.cccr().modify(|w| w.set_init(true));
     LAST_WORDS.store(MARK | u32::from(why.code()), Ordering::Relaxed);
+}
+
+fn end(why: StartedBy) -> ! {
+    fall_silent(why);
     cortex_m::peripheral::SCB::sys_reset()
 }
 
@@ -49,14 +54,22 @@ pub(crate) fn started_by() -> StartedBy {
     }
 }
 
-/// Watches the supply: 2.9 V falling (RM0440 §6.2.2, PLS 110). The 3.3 V of the board come from a
-/// converter that has some milliseconds left then.
+/// Waits until the supply is there, and watches it from then on: 2.9 V falling (RM0440 §6.2.2,
+/// PLS 110).
 pub(crate) fn watch_supply() {
     pac::PWR.cr2().modify(|w| {
         w.set_pls(0b110);
         w.set_pvde(true);
     });
+    loop {
+        // The detector needs some microseconds.
+        cortex_m::asm::delay(SYSTEM_HZ / 10_000);
+        if !pac::PWR.sr2().read().pvdo() {
+            break;
+        }
+    }
     // EXTI line 16 is the detector's output; it rises when the supply falls.
+    pac::EXTI.pr(0).write(|w| w.set_line(16, true));
     pac::EXTI.rtsr(0).modify(|w| w.set_line(16, true));
     pac::EXTI.imr(0).modify(|w| w.set_line(16, true));
     interrupt::PVD_PVM.unpend();
@@ -67,6 +80,9 @@ pub(crate) fn watch_supply() {
     // SAFETY: nothing here relies on this interrupt being masked.
     unsafe {
         interrupt::PVD_PVM.enable();
+    }
+    if pac::PWR.sr2().read().pvdo() {
+        end(StartedBy::LowVoltage);
     }
 }
 
@@ -87,6 +103,7 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
+    fall_silent(StartedBy::Panic);
     error!("{}", defmt::Display2Format(info));
     end(StartedBy::Panic)
 }

@@ -13,10 +13,10 @@
 //! **Contract** ([`board_timing::contract`]). The node runs in an interrupt executor of its own, so
 //! that nothing but the interrupts of CAN and of the timer comes before it. Frames wait in a queue
 //! that the interrupt fills, however long a commit of parameters takes. Nothing in the control path
-//! awaits a transmission: a torque finds a mailbox, since all other frames leave one of the three
-//! to it, and the mailboxes go by identifier. What is due is looked at before the queue, so that a
-//! busy bus does not put it off. What is late is counted; beyond contract the watchdog is not fed
-//! any more, also before SYNC has ever come.
+//! awaits a transmission: all other frames leave one of the three mailboxes to the torque, an older
+//! torque that is still there is cancelled, and the mailboxes go by identifier. What is due is
+//! looked at before the queue, so that a busy bus does not put it off. What is late is counted;
+//! beyond contract the watchdog is not fed any more.
 //!
 //! **Bus-off**: the interrupt begins the recovery (128 times 11 recessive bits) at once and for
 //! ever. Frames in the mailboxes stay there; what waits in line beyond its room is dropped, the
@@ -37,7 +37,9 @@ mod last_words;
 
 use core::num::{NonZeroU8, NonZeroU16};
 
-use board_timing::contract::{Contract, LONGEST_SLEEP_US, WATCHDOG_US, has_room_beside_torque};
+use board_timing::contract::{
+    Contract, Due, LONGEST_SLEEP_US, LONGEST_WAIT_US, WATCHDOG_US, has_room_beside_torque,
+};
 use board_timing::{BitTiming, HSE_HZ, ONE_MEGABIT, PLL_M, PLL_N, PLL_Q, PLL_R};
 use defmt::{error, info, unwrap, warn};
 use defmt_rtt as _;
@@ -109,8 +111,8 @@ type Line = Deque<CanFrame, 16>;
 /// Received frames that wait for the control executor: those of ten cycles.
 const HEARD: usize = 32;
 static RECEIVED: StaticCell<RxBuf<HEARD>> = StaticCell::new();
-/// Frames on their way into a mailbox; the interrupt takes each at once.
-const SENDING: usize = 4;
+/// A frame on its way into a mailbox; the interrupt takes it at once.
+const SENDING: usize = 1;
 static SENT: StaticCell<TxBuf<SENDING>> = StaticCell::new();
 
 // Register codes, held to the plain numbers that the host checks.
@@ -197,6 +199,8 @@ async fn main(spawner: Spawner) {
     let peripherals = embassy_stm32::init(clock_tree());
     let started_by = last_words::started_by();
     last_words::watch_supply();
+    let mut dog = IndependentWatchdog::new(peripherals.IWDG, WATCHDOG_US);
+    dog.unleash();
     // CAN_SHDN low switches the transceiver on.
     let switches = [
         Output::new(peripherals.PC11, Level::Low, Speed::Low),
@@ -223,7 +227,6 @@ async fn main(spawner: Spawner) {
     let can = can.start(OperatingMode::NormalOperationMode);
     let can = can.buffered(SENT.init(TxBuf::new()), RECEIVED.init(RxBuf::new()));
     interrupt::USART3.set_priority(Priority::P2);
-    let dog = IndependentWatchdog::new(peripherals.IWDG, WATCHDOG_US);
     let control = unwrap!(control(can.writer(), can.reader(), dog, started_by));
     CONTROL.start(interrupt::USART3).spawn(control);
     info!(
@@ -262,9 +265,13 @@ async fn control(
         contract: Contract::default(),
         transmit,
         line: Line::new(),
+        torques: 0,
     };
-    dog.unleash();
+    let mut due = Due::default();
     Station::boot(&mut node.servo, &mut |frame| wait(&mut node.line, frame));
+    // Heartbeats begin with the first event.
+    let now_us = Instant::now().as_micros();
+    node.time(now_us, now_us);
     loop {
         node.send_others();
         node.servo.report(LeafReport {
@@ -276,15 +283,18 @@ async fn control(
             dog.pet();
         }
         let now_us = Instant::now().as_micros();
+        due.says(node.servo.wake_at_us(), now_us);
         // What is due goes before what has come.
-        let due_us = node.servo.wake_at_us();
-        if let Some(due_us) = due_us.filter(|due_us| *due_us <= now_us) {
-            node.time(due_us, now_us);
+        if let Some(since_us) = due.since_us(now_us) {
+            node.time(since_us, now_us);
             continue;
         }
-        let latest_us = now_us.saturating_add(LONGEST_SLEEP_US);
-        let until_us = due_us.map_or(latest_us, |due_us| due_us.min(latest_us));
-        let wake = Timer::at(Instant::from_micros(until_us));
+        let longest_us = if node.line.is_empty() {
+            LONGEST_SLEEP_US
+        } else {
+            LONGEST_WAIT_US
+        };
+        let wake = Timer::at(Instant::from_micros(due.until_us(now_us, longest_us)));
         match select(receive.receive(), wake).await {
             Either::First(Ok(envelope)) => node.take(&envelope.frame, envelope.ts),
             Either::First(Err(bus)) => warn!("bus: {}", bus),
@@ -299,41 +309,50 @@ struct Node {
     contract: Contract,
     transmit: BufferedCanSender,
     line: Line,
+    /// Mailboxes that the last torque took, a bit each.
+    torques: u32,
 }
 
 impl Node {
-    /// Something was due.
-    fn time(&mut self, due_us: u64, now_us: u64) {
+    /// Something has been due since a time.
+    fn time(&mut self, since_us: u64, now_us: u64) {
+        let has_torque = self.servo.drive().is_energised();
         let Self {
             servo,
             transmit,
             line,
+            torques,
             ..
         } = self;
-        servo.time(now_us, &mut |frame| post(transmit, line, frame));
-        self.contract.done(due_us, Instant::now().as_micros());
+        servo.time(now_us, &mut |frame| post(transmit, line, torques, frame));
+        let now_us = Instant::now().as_micros();
+        self.contract.done(since_us, now_us, has_torque);
     }
 
-    /// A frame came at a time.
+    /// A frame came; `at` is when the interrupt took it.
     fn take(&mut self, frame: &Frame, at: Instant) {
         let Some(frame) = frame_of(frame) else {
             return;
         };
+        let has_torque = self.servo.drive().is_energised();
         let Self {
             servo,
             transmit,
             line,
+            torques,
             ..
         } = self;
         let now_us = Instant::now().as_micros();
-        servo.take(&frame, now_us, &mut |frame| post(transmit, line, frame));
+        servo.take(&frame, now_us, &mut |frame| {
+            post(transmit, line, torques, frame);
+        });
         let now_us = Instant::now().as_micros();
-        self.contract.done(at.as_micros(), now_us);
+        self.contract.done(at.as_micros(), now_us, has_torque);
     }
 
     /// Frames that are no torque take their mailboxes.
     fn send_others(&mut self) {
-        while has_room_beside_torque(pac::FDCAN1.txbrp().read().0.count_ones()) {
+        while has_room_beside_torque(taken().count_ones()) {
             let Some(frame) = self.line.pop_front() else {
                 return;
             };
@@ -342,14 +361,24 @@ impl Node {
     }
 }
 
+/// Mailboxes that are taken, a bit each: requested, or about to be.
+fn taken() -> u32 {
+    pac::FDCAN1.txbrp().read().0 | pac::FDCAN1.txbar().read().0
+}
+
 /// A torque takes its mailbox at once, everything else waits for one.
-fn post(sender: &mut BufferedCanSender, line: &mut Line, frame: CanFrame) {
+fn post(sender: &mut BufferedCanSender, line: &mut Line, torques: &mut u32, frame: CanFrame) {
     let torque = IDS.identifier(FrameKind::Torque);
-    if frame.id() == embedded_can::Id::Standard(torque) {
-        transmit(sender, &frame);
-    } else {
+    if frame.id() != embedded_can::Id::Standard(torque) {
         wait(line, frame);
+        return;
     }
+    // An older torque that has not gone out is worth nothing any more.
+    let older = *torques & taken();
+    pac::FDCAN1.txbcr().write(|w| w.0 = older);
+    let before = taken();
+    transmit(sender, &frame);
+    *torques = older | (taken() & !before);
 }
 
 fn wait(line: &mut Line, frame: CanFrame) {
@@ -358,14 +387,19 @@ fn wait(line: &mut Line, frame: CanFrame) {
     }
 }
 
-/// The interrupt, which comes before this executor, takes the frame into a mailbox at once.
+/// The interrupt, which comes before this executor, takes the frame into a mailbox at once. Where
+/// none is free the frame is dropped: on a bus that nobody acknowledges on.
 fn transmit(sender: &mut BufferedCanSender, frame: &CanFrame) {
     let id = match frame.id() {
         embedded_can::Id::Standard(id) => id,
         embedded_can::Id::Extended(_) => StandardId::MAX,
     };
+    let has_room = !pac::FDCAN1.txfqs().read().tfqf();
     let frame = Frame::new_data(id, frame.payload());
-    let sent = frame.is_ok_and(|frame| sender.try_write(frame).is_ok());
+    let sent = has_room && frame.is_ok_and(|frame| sender.try_write(frame).is_ok());
+    // The interrupt is behind us when the mailboxes are looked at next.
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
     if !sent {
         error!("a frame was dropped: no mailbox is free");
     }
