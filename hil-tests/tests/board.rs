@@ -1,4 +1,4 @@
-//! The board image links within its budgets, and no panic is reachable from the control path.
+//! The board images link within their budgets, and no panic is reachable from the control path.
 //! Linking is not booting.
 
 use std::path::{Path, PathBuf};
@@ -65,6 +65,7 @@ struct Image {
 #[serde(rename_all = "kebab-case")]
 struct Budgets {
     board_g431: Image,
+    board_g474: Image,
 }
 
 fn check(what: &str, used: u64, budget: &Budget) {
@@ -82,8 +83,20 @@ fn check(what: &str, used: u64, budget: &Budget) {
 }
 
 #[test]
-fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
-    let image = build("board-g431", "thumbv7em-none-eabihf", "firmware");
+fn the_board_images_link_within_their_budgets_with_vector_table_and_entry() {
+    let text = std::fs::read_to_string(root().join("hil-tests/budgets.toml")).unwrap();
+    let budgets: Budgets = toml::from_str(&text).unwrap();
+    for (board, budget) in [
+        ("board-g431", &budgets.board_g431),
+        ("board-g474", &budgets.board_g474),
+    ] {
+        println!("{board}");
+        links(board, budget);
+    }
+}
+
+fn links(board: &str, budget: &Image) {
+    let image = build(board, "thumbv7em-none-eabihf", "firmware");
     let bytes = std::fs::read(&image).unwrap();
     let file = object::File::parse(&*bytes).unwrap();
     let (mut flash, mut ram) = (0, 0);
@@ -99,10 +112,8 @@ fn the_board_image_links_within_its_budgets_with_vector_table_and_entry() {
         flash += if is_stored { section.size() } else { 0 };
         ram += if in_ram { section.size() } else { 0 };
     }
-    let text = std::fs::read_to_string(root().join("hil-tests/budgets.toml")).unwrap();
-    let budgets: Budgets = toml::from_str(&text).unwrap();
-    check("flash of the STM32G431CB", flash, &budgets.board_g431.flash);
-    check("static RAM", ram, &budgets.board_g431.static_ram);
+    check("flash", flash, &budget.flash);
+    check("static RAM", ram, &budget.static_ram);
 
     let table = file.section_by_name(".vector_table").unwrap();
     assert_eq!(table.address(), 0x0800_0000);

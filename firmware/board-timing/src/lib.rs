@@ -1,33 +1,85 @@
-//! Clock tree and CAN bit timing of the B-G431B-ESC1, and the latency contract of a board, as plain
+//! Clock trees and CAN bit timing of the boards, and the latency contract of a board, as plain
 //! numbers.
 //!
 //! The board leaf turns them into register codes; linking is not booting, so what can be checked
 //! without the board is checked here, when the program is compiled and by tests on the host.
-//! Limits: STM32G431 datasheet DS12589 table 36 (PLL), RM0440 §44.3 (FDCAN bit timing).
+//! Limits: STM32G431 datasheet DS12589 table 36 (PLL; that of the STM32G474 is taken to be the
+//! same), RM0440 §44.3 (FDCAN bit timing).
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod contract;
 
-/// Crystal on the board, Hz.
-pub const HSE_HZ: u32 = 8_000_000;
-/// PLL input divider M.
-pub const PLL_M: u32 = 2;
-/// PLL multiplier N.
-pub const PLL_N: u32 = 85;
-/// PLL divider R: system clock.
-pub const PLL_R: u32 = 2;
-/// PLL divider Q: FDCAN.
-pub const PLL_Q: u32 = 2;
+/// Crystal and PLL of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClockTree {
+    /// Crystal, Hz.
+    pub crystal_hz: u32,
+    /// PLL input divider M.
+    pub pll_m: u32,
+    /// PLL multiplier N.
+    pub pll_n: u32,
+    /// PLL divider R: system clock.
+    pub pll_r: u32,
+    /// PLL divider Q: FDCAN.
+    pub pll_q: u32,
+}
 
-/// PLL input, Hz.
-pub const PLL_INPUT_HZ: u32 = HSE_HZ / PLL_M;
-/// VCO, Hz.
-pub const VCO_HZ: u32 = PLL_INPUT_HZ * PLL_N;
-/// System clock, Hz.
-pub const SYSTEM_HZ: u32 = VCO_HZ / PLL_R;
-/// FDCAN kernel clock, Hz.
-pub const FDCAN_HZ: u32 = VCO_HZ / PLL_Q;
+impl ClockTree {
+    const fn of(crystal_hz: u32, pll_m: u32) -> Self {
+        Self {
+            crystal_hz,
+            pll_m,
+            pll_n: 85,
+            pll_r: 2,
+            pll_q: 2,
+        }
+    }
+
+    /// PLL input, Hz.
+    #[must_use]
+    pub const fn pll_input_hz(self) -> u32 {
+        self.crystal_hz / self.pll_m
+    }
+
+    /// VCO, Hz.
+    #[must_use]
+    pub const fn vco_hz(self) -> u32 {
+        self.pll_input_hz() * self.pll_n
+    }
+
+    /// System clock, Hz.
+    #[must_use]
+    pub const fn system_hz(self) -> u32 {
+        self.vco_hz() / self.pll_r
+    }
+
+    /// FDCAN kernel clock, Hz.
+    #[must_use]
+    pub const fn fdcan_hz(self) -> u32 {
+        self.vco_hz() / self.pll_q
+    }
+
+    const fn is_within_limits(self) -> bool {
+        self.pll_input_hz() >= 2_660_000
+            && self.pll_input_hz() <= 16_000_000
+            && self.vco_hz() >= 96_000_000
+            && self.vco_hz() <= 344_000_000
+            && self.system_hz() == SYSTEM_HZ
+            && self.fdcan_hz() == FDCAN_HZ
+            && self.crystal_hz.is_multiple_of(self.pll_m)
+    }
+}
+
+/// ST's B-G431B-ESC1, crystal of 8 MHz.
+pub const B_G431B_ESC1: ClockTree = ClockTree::of(8_000_000, 2);
+/// ST's NUCLEO-G474RE, crystal of 24 MHz.
+pub const NUCLEO_G474RE: ClockTree = ClockTree::of(24_000_000, 6);
+
+/// System clock of all boards, Hz.
+pub const SYSTEM_HZ: u32 = 170_000_000;
+/// FDCAN kernel clock of all boards, Hz.
+pub const FDCAN_HZ: u32 = 170_000_000;
 
 /// One CAN bit: a sync quantum, `segment_1` quanta up to the sample point, `segment_2` after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,9 +123,8 @@ pub const ONE_MEGABIT: BitTiming = BitTiming {
 };
 
 const _: () = {
-    assert!(PLL_INPUT_HZ >= 2_660_000 && PLL_INPUT_HZ <= 16_000_000);
-    assert!(VCO_HZ >= 96_000_000 && VCO_HZ <= 344_000_000);
-    assert!(SYSTEM_HZ == 170_000_000);
+    assert!(B_G431B_ESC1.is_within_limits());
+    assert!(NUCLEO_G474RE.is_within_limits());
     assert!(ONE_MEGABIT.gives(FDCAN_HZ, 1_000_000));
     assert!(ONE_MEGABIT.jump_width <= ONE_MEGABIT.segment_2);
 };
@@ -83,11 +134,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_clock_tree_gives_170_mhz_from_the_crystal() {
-        assert_eq!(
-            (PLL_INPUT_HZ, VCO_HZ, SYSTEM_HZ, FDCAN_HZ),
-            (4_000_000, 340_000_000, 170_000_000, 170_000_000)
-        );
+    fn the_clock_trees_give_170_mhz_from_their_crystals() {
+        for tree in [B_G431B_ESC1, NUCLEO_G474RE] {
+            assert_eq!(
+                (tree.pll_input_hz(), tree.vco_hz()),
+                (4_000_000, 340_000_000)
+            );
+            assert_eq!(
+                (tree.system_hz(), tree.fdcan_hz()),
+                (170_000_000, 170_000_000)
+            );
+        }
+        assert!(!ClockTree::of(25_000_000, 6).is_within_limits());
     }
 
     #[test]
