@@ -33,6 +33,7 @@ pub mod counter;
 pub mod dbc;
 pub mod fault;
 pub mod frame;
+pub mod leaf;
 pub mod load;
 pub mod lockstep_time;
 pub mod message;

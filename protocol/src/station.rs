@@ -14,6 +14,7 @@
 
 use crate::cob::AxisIds;
 use crate::frame::CanFrame;
+use crate::leaf::LeafReport;
 
 /// A node: frames and time in, frames out.
 pub trait Station {
@@ -31,4 +32,6 @@ pub trait Station {
     fn wake_at_us(&self) -> Option<u64>;
     /// When the next SYNC is due by the node's own count; `None` before the first one.
     fn sync_due_us(&self) -> Option<u64>;
+    /// The leaf reports of itself, to a node that has objects for it.
+    fn report(&mut self, _leaf: LeafReport) {}
 }

@@ -1,5 +1,6 @@
 //! Results on stdout, for people. Machines get JSON.
 
+use board_timing::contract::RECEIVE_TO_TORQUE_US;
 use identification::{Identification, figures};
 
 use crate::ballbar::REVERSALS;
@@ -86,6 +87,12 @@ pub fn print_timing(report: &TimingReport) {
         );
     }
     println!("  bus load, computed {:>6.1} %", report.bus_load_percent);
+    for drive in report.drives.iter().filter(|drive| drive.latest_us > 0) {
+        println!(
+            "  drive of {}: {} deadlines missed by more than {RECEIVE_TO_TORQUE_US} µs since it started, the latest {} µs late",
+            drive.axis, drive.missed_deadlines, drive.latest_us
+        );
+    }
     let late = report
         .times
         .iter()

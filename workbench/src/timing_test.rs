@@ -75,6 +75,20 @@ pub struct TimingReport {
     pub missed_cycles: u64,
     /// What was timed; `cycle` comes first.
     pub times: Vec<Spread>,
+    /// What each drive says of itself since it started: only a board, or a program at the pace of
+    /// the clock, counts.
+    pub drives: Vec<DriveReport>,
+}
+
+/// What a drive says of itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct DriveReport {
+    /// Its axis.
+    pub axis: String,
+    /// Deadlines that it missed.
+    pub missed_deadlines: u32,
+    /// The latest that it was, µs.
+    pub latest_us: u32,
 }
 
 /// Times the cycles of a machine for so long, s of its own time.
@@ -82,7 +96,8 @@ pub struct TimingReport {
 /// # Errors
 /// Where it cannot be moved, or an interface is gone.
 pub fn run(stand: &Stand<'_>, duration_s: f64) -> Outcome<TimingReport> {
-    let (times, steps, scheduling) = timed(stand, duration_s)?;
+    let timed = timed(stand, duration_s)?;
+    let times = &timed.times;
     progress::step("bare frames there and back");
     let (place, pace, trips) = match &stand.place {
         Place::InProcess => {
@@ -103,12 +118,13 @@ pub fn run(stand: &Stand<'_>, duration_s: f64) -> Outcome<TimingReport> {
         machine: stand.machine.name.clone(),
         place,
         pace,
-        scheduling,
+        scheduling: timed.scheduling,
         period_us: 1.0e6 * stand.machine.period_s,
         bus_load_percent: f64::from(stand.machine.bus_load_per_mille()) / 10.0,
         cycles: times.cycles + times.missed,
         missed_cycles: times.missed,
-        times: spreads(&times, steps.as_ref(), &trips),
+        times: spreads(times, timed.steps.as_ref(), &trips),
+        drives: timed.drives,
     })
 }
 
@@ -119,12 +135,18 @@ const fn pace_name(pace: Pace) -> &'static str {
     }
 }
 
-/// Times by the stopwatch, what each drive does for a torque where it is in this process, and what
-/// the system granted.
-fn timed(
-    stand: &Stand<'_>,
-    duration_s: f64,
-) -> Outcome<(Times, Option<Durations>, Option<String>)> {
+/// A run of the machine.
+struct Timed {
+    /// By the stopwatch.
+    times: Times,
+    /// What each drive does for a torque, where it is in this process.
+    steps: Option<Durations>,
+    /// What the system granted.
+    scheduling: Option<String>,
+    drives: Vec<DriveReport>,
+}
+
+fn timed(stand: &Stand<'_>, duration_s: f64) -> Outcome<Timed> {
     let steps = Rc::new(RefCell::new(no_durations()));
     let is_here = stand.place == Place::InProcess;
     let link: Box<dyn Link> = if is_here {
@@ -142,8 +164,20 @@ fn timed(
         *steps.borrow_mut() = no_durations();
         button.start();
         session.follow(duration_s, to_and_fro(stand.machine, duration_s), |_, _| ())?;
-        let steps = is_here.then(|| steps.borrow().clone());
-        Ok((button.stop(), steps, scheduling))
+        let times = button.stop();
+        let own = session.leaf_reports()?;
+        let drives = own.iter().zip(stand.axis_names());
+        let drives = drives.map(|(own, axis)| DriveReport {
+            axis,
+            missed_deadlines: own.missed_deadlines,
+            latest_us: own.latest_us,
+        });
+        Ok(Timed {
+            times,
+            steps: is_here.then(|| steps.borrow().clone()),
+            scheduling,
+            drives: drives.collect(),
+        })
     })
 }
 

@@ -12,7 +12,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use defmt::error;
 use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::{interrupt, pac};
-use servo::leaf::StartedBy;
+use protocol::leaf::StartedBy;
 
 /// "Qua", and a code in the last byte: nothing that memory holds by itself after power-up.
 const MARK: u32 = 0x5175_6100;

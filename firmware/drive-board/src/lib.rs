@@ -58,9 +58,9 @@ use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame as _, StandardId};
 use heapless::{Deque, Vec};
 use protocol::cob::{AxisIds, FrameKind, HEARD_BY_SERVO, NodeId};
+use protocol::leaf::{LeafReport, StartedBy};
 use protocol::{CanFrame, Station};
 use servo::Servo;
-use servo::leaf::{LeafReport, StartedBy};
 use static_cell::StaticCell;
 
 /// Pins that a board has to keep as they are.

@@ -8,10 +8,12 @@
 use std::convert::Infallible;
 use std::io;
 
+use board_timing::contract::{Contract, Due};
 use bus::FaultyPort;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame, Id, StandardId};
+use protocol::leaf::{LeafReport, StartedBy};
 use protocol::table::{FRAMES, Sender};
 use protocol::{CanFrame, LockstepTime, Station};
 
@@ -109,15 +111,34 @@ impl Leaf {
         }
     }
 
-    /// Runs by the clock until the port fails.
+    /// Runs by the clock until the port fails, and counts what it was late for. A program has no
+    /// watchdog: beyond contract nothing more happens.
     pub(crate) async fn by_the_clock(&mut self) -> io::Result<Infallible> {
         let clock = ClockTime::from(self.time.now_us());
+        let (mut contract, mut due) = (Contract::default(), Due::default());
         loop {
-            if let Some(frame) = self.frame_or_wake(clock).await? {
-                self.time.reach(clock.now_us());
-                self.deliver(frame, Self::take)?;
+            due.says(self.station.wake_at_us(), clock.now_us());
+            match self.frame_or_wake(clock).await? {
+                Some(frame) => {
+                    self.time.reach(clock.now_us());
+                    self.deliver(frame, Self::take)?;
+                }
+                None => self.was_woken(&due, &mut contract, clock.now_us()),
             }
         }
+    }
+
+    /// What was due is done.
+    fn was_woken(&mut self, due: &Due, contract: &mut Contract, now_us: u64) {
+        let Some(since_us) = due.since_us(now_us) else {
+            return;
+        };
+        contract.done(since_us, now_us, false);
+        self.station.report(LeafReport {
+            started_by: StartedBy::Power,
+            missed_deadlines: contract.missed(),
+            latest_us: contract.latest_us(),
+        });
     }
 
     /// The workbench is gone: time follows the clock until it says something. The peer's frames

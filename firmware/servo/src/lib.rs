@@ -45,7 +45,6 @@ pub mod encoders;
 mod frames_in;
 mod frames_out;
 pub mod inbox;
-pub mod leaf;
 pub mod objects;
 pub mod parameters;
 pub mod physical;
@@ -60,6 +59,7 @@ use controller::reference::Reference;
 use controller::units::{PositionError, Torque};
 use heapless::Vec;
 use protocol::cob::AxisIds;
+use protocol::leaf::LeafReport;
 use protocol::message::{EmergencyMessage, NmtCommand, NmtState};
 use protocol::{CanFrame, Fault, SyncTracker};
 
@@ -67,7 +67,6 @@ use axis::Axis;
 use drive::Drive;
 use frames_out::Periodic;
 use inbox::Inbox;
-use leaf::LeafReport;
 use parameters::ParameterSet;
 use sdo_server::SdoServer;
 use settings::Settings;
@@ -168,11 +167,6 @@ impl Servo {
     #[must_use]
     pub const fn bridged(&self) -> (u16, u16) {
         self.axis.watchdog.misses()
-    }
-
-    /// The leaf reports of itself: what objects 2203h tell.
-    pub const fn report(&mut self, leaf: LeafReport) {
-        self.leaf = leaf;
     }
 
     /// What happened on the bus since reset.

@@ -519,7 +519,7 @@ pub const LOAD_POSITION: Address = Address::new(0x2201, 2);
 pub const FAULT_DETAIL: Address = Address::new(0x2202, 0);
 /// Factor on the levels of friction that turns have refined, 1e-6.
 pub const REFINED_LEVEL: Address = Address::new(0x2159, 4);
-/// Why the node started ([`crate::leaf::StartedBy`]).
+/// Why the node started ([`protocol::leaf::StartedBy`]).
 pub const STARTED_BY: Address = Address::new(0x2203, 1);
 /// Deadlines that its leaf missed since.
 pub const MISSED_DEADLINES: Address = Address::new(0x2203, 2);

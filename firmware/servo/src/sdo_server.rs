@@ -5,10 +5,10 @@
 //! names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
 //! look at.
 
+use protocol::leaf::LeafReport;
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
-use crate::leaf::LeafReport;
 use crate::objects::{self, Entry, Misfit, Parameter};
 use crate::parameters::{ParameterSet, SetError};
 use crate::settings::Settings;

@@ -1,6 +1,7 @@
 //! The node as a station of a bus.
 
 use protocol::cob::AxisIds;
+use protocol::leaf::LeafReport;
 use protocol::{CanFrame, Station};
 
 use crate::Servo;
@@ -28,5 +29,9 @@ impl Station for Servo {
 
     fn sync_due_us(&self) -> Option<u64> {
         self.timing.sync_due_us()
+    }
+
+    fn report(&mut self, leaf: LeafReport) {
+        self.leaf = leaf;
     }
 }
