@@ -4,7 +4,6 @@
 use std::path::Path;
 
 use plant_sim::Machine;
-use protocol::leaf::{LeafReport, StartedBy};
 use servo::objects;
 
 use crate::ballbar::Point;
@@ -291,27 +290,6 @@ impl<'a, L: Link> Session<'a, L> {
             Ok(1.0e-6 * f64::from(own.to_i32()))
         };
         axes.map(read).collect()
-    }
-
-    /// What the leaf of each drive reports of itself.
-    ///
-    /// # Errors
-    /// Where a drive does not answer.
-    pub fn leaf_reports(&mut self) -> Outcome<Vec<LeafReport>> {
-        let axes = 0..self.machine.axes.len();
-        let mut read = |axis: usize| {
-            let code = self.master.upload(axis, objects::STARTED_BY)?.to_u32();
-            let started_by = u8::try_from(code).ok().and_then(StartedBy::from_code);
-            Ok(LeafReport {
-                started_by: started_by.unwrap_or_default(),
-                missed_deadlines: self
-                    .master
-                    .upload(axis, objects::MISSED_DEADLINES)?
-                    .to_u32(),
-                latest_us: self.master.upload(axis, objects::LATEST)?.to_u32(),
-            })
-        };
-        axes.map(&mut read).collect()
     }
 
     /// What is seen: the table, by an instrument at the machine, or the load scale.

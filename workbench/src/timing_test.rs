@@ -8,6 +8,7 @@ use std::rc::Rc;
 use plant_sim::Machine;
 use quadrant_host::Pace;
 use serde::Serialize;
+use servo::objects;
 
 use crate::error::Outcome;
 use crate::network::in_process::InProcess;
@@ -165,18 +166,21 @@ fn timed(stand: &Stand<'_>, duration_s: f64) -> Outcome<Timed> {
         button.start();
         session.follow(duration_s, to_and_fro(stand.machine, duration_s), |_, _| ())?;
         let times = button.stop();
-        let own = session.leaf_reports()?;
-        let drives = own.iter().zip(stand.axis_names());
-        let drives = drives.map(|(own, axis)| DriveReport {
-            axis,
-            missed_deadlines: own.missed_deadlines,
-            latest_us: own.latest_us,
+        let names = stand.axis_names().into_iter().enumerate();
+        let drives = names.map(|(index, axis)| {
+            let mut read = |object| session.master_mut().upload(index, object);
+            Ok(DriveReport {
+                axis,
+                missed_deadlines: read(objects::MISSED_DEADLINES)?.to_u32(),
+                latest_us: read(objects::LATEST)?.to_u32(),
+            })
         });
+        let drives = drives.collect::<Outcome<_>>()?;
         Ok(Timed {
             times,
             steps: is_here.then(|| steps.borrow().clone()),
             scheduling,
-            drives: drives.collect(),
+            drives,
         })
     })
 }

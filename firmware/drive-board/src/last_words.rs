@@ -8,6 +8,7 @@ use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use board_timing::SYSTEM_HZ;
+use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use defmt::error;
 use embassy_stm32::interrupt::InterruptExt;
@@ -31,7 +32,7 @@ fn fall_silent(why: StartedBy) {
 
 fn end(why: StartedBy) -> ! {
     fall_silent(why);
-    cortex_m::peripheral::SCB::sys_reset()
+    SCB::sys_reset()
 }
 
 /// Why the board started; told once, since the flags are cleared.
@@ -105,5 +106,5 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 fn panic(info: &PanicInfo<'_>) -> ! {
     fall_silent(StartedBy::Panic);
     error!("{}", defmt::Display2Format(info));
-    end(StartedBy::Panic)
+    SCB::sys_reset()
 }

@@ -267,20 +267,7 @@ struct Node {
 impl Node {
     /// Something has been due since a time.
     fn time(&mut self, since_us: u64, now_us: u64) {
-        let has_torque = self.servo.drive().is_energised();
-        let Self {
-            servo,
-            transmit,
-            line,
-            torques,
-            ..
-        } = self;
-        let torque = embedded_can::Id::from(servo.ids().identifier(FrameKind::Torque));
-        servo.time(now_us, &mut |frame| {
-            post(transmit, line, torques, (frame, frame.id() == torque));
-        });
-        let now_us = Instant::now().as_micros();
-        self.contract.done(since_us, now_us, has_torque);
+        self.happens(since_us, |servo, send| servo.time(now_us, send));
     }
 
     /// A frame came; `at` is when the interrupt took it.
@@ -288,21 +275,31 @@ impl Node {
         let Some(frame) = frame_of(frame) else {
             return;
         };
-        let has_torque = self.servo.drive().is_energised();
+        let now_us = Instant::now().as_micros();
+        self.happens(at.as_micros(), |servo, send| {
+            servo.take(&frame, now_us, send);
+        });
+    }
+
+    /// An event that waits since a time: what it makes the node say goes out.
+    fn happens(&mut self, since_us: u64, event: impl FnOnce(&mut Servo, &mut dyn FnMut(CanFrame))) {
         let Self {
             servo,
+            contract,
             transmit,
             line,
             torques,
-            ..
         } = self;
-        let now_us = Instant::now().as_micros();
+        let has_torque = servo.drive().is_energised();
         let torque = embedded_can::Id::from(servo.ids().identifier(FrameKind::Torque));
-        servo.take(&frame, now_us, &mut |frame| {
-            post(transmit, line, torques, (frame, frame.id() == torque));
+        event(servo, &mut |frame| {
+            if frame.id() == torque {
+                post(transmit, torques, &frame);
+            } else {
+                wait(line, frame);
+            }
         });
-        let now_us = Instant::now().as_micros();
-        self.contract.done(at.as_micros(), now_us, has_torque);
+        contract.done(since_us, Instant::now().as_micros(), has_torque);
     }
 
     /// Frames that are no torque take their mailboxes.
@@ -321,25 +318,19 @@ fn taken() -> u32 {
     pac::FDCAN1.txbrp().read().0 | pac::FDCAN1.txbar().read().0
 }
 
-/// A torque takes its mailbox at once, everything else waits for one.
-fn post(
-    sender: &mut BufferedCanSender,
-    line: &mut Line,
-    torques: &mut u32,
-    (frame, is_torque): (CanFrame, bool),
-) {
-    if !is_torque {
-        wait(line, frame);
-        return;
-    }
+/// A torque takes its mailbox at once.
+fn post(sender: &mut BufferedCanSender, torques: &mut u32, torque: &CanFrame) {
     // An older torque that has not gone out is worth nothing any more.
     let older = *torques & taken();
     pac::FDCAN1.txbcr().write(|w| w.0 = older);
     let before = taken();
-    transmit(sender, &frame);
+    transmit(sender, torque);
     *torques = older | (taken() & !before);
 }
 
+/// Everything else waits for one.
+// Apart, as what sends: inlined into every event they take 2 KB of flash.
+#[inline(never)]
 fn wait(line: &mut Line, frame: CanFrame) {
     if line.push_back(frame).is_err() {
         error!("a frame was dropped: more wait for a mailbox than the line holds");
@@ -348,6 +339,7 @@ fn wait(line: &mut Line, frame: CanFrame) {
 
 /// The interrupt, which comes before this executor, takes the frame into a mailbox at once. Where
 /// none is free the frame is dropped: on a bus that nobody acknowledges on.
+#[inline(never)]
 fn transmit(sender: &mut BufferedCanSender, frame: &CanFrame) {
     let id = match frame.id() {
         embedded_can::Id::Standard(id) => id,
