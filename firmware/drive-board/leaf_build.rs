@@ -1,4 +1,5 @@
-//! The build script of every board: link arguments, here and not in RUSTFLAGS, which an exported variable would silently replace.
+//! The build script of every board: link arguments, here and not in RUSTFLAGS, which an exported
+//! variable would silently replace.
 
 use std::path::PathBuf;
 use std::{env, fs};
