@@ -21,6 +21,7 @@ pub mod intervals;
 pub mod losses;
 pub mod matrix;
 pub mod paths;
+pub mod pictures;
 pub mod program;
 pub mod records;
 pub mod rig;

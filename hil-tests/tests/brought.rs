@@ -7,7 +7,7 @@ use plant_sim::Machine;
 use plant_sim::friction::Law;
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use serde_json::Value;
-use workbench::commands::commission;
+use workbench::commands::commission::{self, Wanted};
 use workbench::interrupt::Interrupt;
 use workbench::network::place::Place;
 
@@ -135,7 +135,12 @@ fn of_machine(brought: &Brought) -> Vec<Measured> {
     let mut machine = Machine::reference();
     (brought.change)(&mut machine);
     let out = folder.path();
-    let ended = commission::commission(&machine, Place::InProcess, out, &Interrupt::never());
+    let ended = commission::commission(
+        &machine,
+        Place::InProcess,
+        &Wanted::into(out),
+        &Interrupt::never(),
+    );
     ended.unwrap_or_else(|why| panic!("{name}: {why}"));
     let read = |file: &str| std::fs::read_to_string(out.join(file)).unwrap();
     let summary: Value = serde_json::from_str(&read("summary.json")).unwrap();

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use hil_tests::Scope;
 use hil_tests::golden::{self, row};
+use hil_tests::pictures;
 use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
 use workbench::cli::{Commission, MachineArguments};
-use workbench::commands::commission;
+use workbench::commands::commission::{self, Wanted};
 use workbench::interrupt::Interrupt;
 use workbench::network::place::Place;
 
@@ -19,6 +20,8 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
         &Commission {
             machine,
             out: out.path().to_path_buf(),
+            tolerance_um: None,
+            log: false,
         },
         &Interrupt::never(),
     )
@@ -95,6 +98,55 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     rows.push(row("largest burst after", burst("circle_after"), "µm"));
     golden::check("commission", &rows);
     check_files(out.path());
+    check_certificate(out.path(), &summary);
+    let circle = std::fs::read_to_string(out.path().join("circle.svg")).unwrap();
+    pictures::check("circle.svg", &circle);
+}
+
+/// The certificate says what `summary.json` says, to a hundredth of a micrometre.
+fn check_certificate(out: &Path, summary: &serde_json::Value) {
+    let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+    let (certificate, _) = report.split_once("</section>").unwrap();
+    let rows = [
+        ("largest burst", "peak_max_um"),
+        ("G of both directions", "circular_deviation_g_both_um"),
+        ("G counter-clockwise, 3 turns", "circular_deviation_g_um"),
+        ("G clockwise", "circular_deviation_g_clockwise_um"),
+        ("hysteresis H", "circular_hysteresis_h_um"),
+        ("radial deviation Fmax", "radial_deviation_fmax_um"),
+        ("radial deviation Fmin", "radial_deviation_fmin_um"),
+    ];
+    for (name, key) in rows {
+        let cell = |run: &str| {
+            let value = summary[run][key].as_f64().unwrap();
+            format!("<td>{value:.2}</td>").replace('-', "−")
+        };
+        let row = format!(
+            "<td>{name}</td>{}{}",
+            cell("circle_before"),
+            cell("circle_after")
+        );
+        assert!(certificate.contains(&row), "{row}");
+    }
+    let causes = summary["circle_before"]["causes"].as_array().unwrap();
+    for cause in causes {
+        let (name, um) = (
+            cause["cause"].as_str().unwrap(),
+            cause["um"].as_f64().unwrap(),
+        );
+        let row = format!("<td>{name}</td><td>{um:.2}</td>");
+        assert!(certificate.contains(&row), "{row}");
+    }
+    for key in ["date", "program"] {
+        assert!(
+            certificate.contains(summary[key].as_str().unwrap()),
+            "{key}"
+        );
+    }
+    assert!(
+        !certificate.contains("PASS") && !certificate.contains("FAIL"),
+        "no tolerance was given"
+    );
 }
 
 fn check_files(out: &Path) {
@@ -104,8 +156,10 @@ fn check_files(out: &Path) {
         "presliding",
         "Residual against velocity",
         "Residual against position",
-        "(6) Error",
-        "ring to ring",
+        "(6) error before",
+        "from ring to ring",
+        "SIMULATION",
+        "Causes, ranked by what they cost",
     ] {
         assert!(report.contains(part), "{part} is not in the report");
     }
@@ -121,7 +175,8 @@ fn check_files(out: &Path) {
     }
     for file in [
         "records.candump.log",
-        "circle-after.candump.log",
+        "circle-before.csv",
+        "circle-after.csv",
         "records-X/train.csv",
         "records-Y/validate.csv",
         "records-X/dataset.toml",
@@ -171,7 +226,7 @@ fn a_machine_that_oscillates_or_has_nothing_to_compensate_gets_a_report_and_no_c
         commission::commission(
             &machine,
             Place::InProcess,
-            folder.path(),
+            &Wanted::into(folder.path()),
             &Interrupt::never(),
         )
         .unwrap();

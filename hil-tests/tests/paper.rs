@@ -8,12 +8,12 @@ use hil_tests::rig::{circle, dry_friction, gap_inside, gap_outside, quiet_refere
 use hil_tests::{Scope, on_all_cores};
 use plant_sim::Machine;
 use workbench::ballbar::{self, Point};
-use workbench::commissioning::reversal_curves::six_curves;
+use workbench::commissioning::reversal_curves::{ReversalRun, six_curves};
 use workbench::commissioning::reversal_run::reversal_rows;
 use workbench::compensation::AxisCompensation;
 use workbench::network::master::AxisCycle;
 use workbench::network::place::Place;
-use workbench::presentation::plots::{self, Trace};
+use workbench::presentation::plots::{self, Ink, Polar, Trace};
 use workbench::session::{Session, Stand};
 use workbench::trajectory::{Circle, MEASURE_FROM_RAD};
 
@@ -41,6 +41,16 @@ fn keep(name: &str, svg: &str) {
     std::fs::write(folder.join(name), text).unwrap();
 }
 
+fn polar(title: &str, traces: &[Trace<'_>]) -> String {
+    plots::polar(&Polar {
+        title,
+        axes: ["X", "Y"],
+        traces,
+        bursts: Default::default(),
+        tolerance_um: None,
+    })
+}
+
 /// Gaps outside the loop, µm; that of the polar plot first.
 const GAPS_UM: [f64; 5] = [100.0, 400.0, 20.0, 50.0, 200.0];
 
@@ -62,12 +72,14 @@ fn step(gap_um: f64) -> Measured {
     if gap_um == 100.0 {
         let trace = Trace {
             name: "gap 100 µm outside".into(),
+            ink: Ink::Before,
+            is_dashed: false,
             points: &points[..points.len() / 3],
             radius_m: 0.1,
         };
         keep(
             "fig-1a-step.svg",
-            &plots::polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]).unwrap(),
+            &polar("Fig. 1(a): step, R 100 mm, F 500 mm/min", &[trace]),
         );
     }
     row(
@@ -141,12 +153,14 @@ fn fig_5_a_gap_inside_the_loop_gives_bursts_that_grow_with_it() {
         if gap_um == 400.0 {
             let trace = Trace {
                 name: "gap 400 µm inside".into(),
+                ink: Ink::Before,
+                is_dashed: false,
                 points: &points[..points.len() / 3],
                 radius_m: 0.01,
             };
             keep(
                 "fig-5b-gap-inside.svg",
-                &plots::polar("Fig. 5(b): gap inside, R 10 mm, F 500 mm/min", &[trace]).unwrap(),
+                &polar("Fig. 5(b): gap inside, R 10 mm, F 500 mm/min", &[trace]),
             );
         }
     }
@@ -169,11 +183,12 @@ fn fig_8_dry_friction_makes_the_table_stagnate_until_the_torque_passes_it() {
         &circle(100.0, 2000.0),
     )
     .unwrap();
-    for (place, svg) in six_curves(&machine, "Fig. 8(a)", &rows)
-        .unwrap()
-        .iter()
-        .enumerate()
-    {
+    let run = ReversalRun {
+        name: "",
+        inks: [Ink::Before, Ink::After],
+        rows: &rows,
+    };
+    for (place, svg) in six_curves(&machine, &[run]).iter().enumerate() {
         keep(&format!("fig-8a-{}.svg", place + 1), svg);
     }
     let still = |row: &(f64, AxisCycle), next: &(f64, AxisCycle)| {
@@ -217,17 +232,19 @@ fn fig_1_and_8_friction_inside_the_loop_gives_bursts_on_the_polar_plot() {
         ballbar::figures(points, circle.radius_m, 0.0, MEASURE_FROM_RAD).peak_max_um
     };
     let traces = [
-        ("presliding and Stribeck (reference)", &points),
-        ("dry friction", &dry),
+        ("presliding and Stribeck (reference)", Ink::Before, &points),
+        ("dry friction", Ink::After, &dry),
     ]
-    .map(|(name, points)| Trace {
+    .map(|(name, ink, points)| Trace {
         name: name.into(),
+        ink,
+        is_dashed: false,
         points: &points[..points.len() / 3],
         radius_m: 0.1,
     });
     keep(
         "fig-1b-burst.svg",
-        &plots::polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces).unwrap(),
+        &polar("Fig. 1(b): burst, R 100 mm, F 2000 mm/min", &traces),
     );
     golden::check(
         "paper-fig-1",

@@ -11,7 +11,7 @@ use std::path::Path;
 use hil_tests::golden::{self, row};
 use hil_tests::records::{self, plans::plans};
 use identification::{Dataset, Identification, Report, identify};
-use workbench::presentation::plots::{self, Curve};
+use workbench::presentation::plots::{self, Curve, Ink, Plot};
 
 /// The record: Stribeck friction of 1.6 times the sliding friction at breakaway, which falls over
 /// 6 mm/s. Nobody tells the identification.
@@ -124,11 +124,11 @@ fn residual(result: &Identification, models: &[&str]) -> String {
     let of = |(index, name): (usize, &&str)| {
         let slow = result.curves.moving.iter();
         let slow = slow.filter(|row| row[0].abs() < SHOWN_M_PER_S);
-        Curve {
-            name: format!("residual of the {name} model"),
-            points: slow.map(|row| (1.0e3 * row[0], row[2 + index])).collect(),
-            dots: true,
-        }
+        Curve::cloud(
+            &format!("residual of the {name} model"),
+            Ink::Other(index),
+            slow.map(|row| (1.0e3 * row[0], row[2 + index])),
+        )
     };
     let list: Vec<Curve> = models.iter().enumerate().map(of).collect();
     let title = match models {
@@ -144,34 +144,33 @@ fn residual(result: &Identification, models: &[&str]) -> String {
 /// What the model without the effect leaves of the training record, and the effect.
 fn effect(result: &Identification) -> String {
     let found = &result.curves.effects[0];
-    let dots = |which: usize, name: &str| Curve {
-        name: name.into(),
-        points: found
-            .points
-            .iter()
-            .filter(|point| point[0].abs() < SHOWN_M_PER_S)
-            .map(|point| (1.0e3 * point[0], point[which]))
-            .collect(),
-        dots: true,
+    let cloud = |which: usize, name: &str, ink: Ink| {
+        let slow = found.points.iter();
+        let slow = slow.filter(|point| point[0].abs() < SHOWN_M_PER_S);
+        Curve::cloud(
+            name,
+            ink,
+            slow.map(|point| (1.0e3 * point[0], point[which])),
+        )
     };
-    let list = [dots(1, "extended model without it"), dots(2, found.effect)];
+    let list = [
+        cloud(1, "extended model without it", Ink::Before),
+        cloud(2, found.effect, Ink::After),
+    ];
     let title = format!("{}: {} (training)", found.effect, found.equation);
     curves(&title, "velocity, mm/s", "effort, N", &list)
 }
 
 fn free_run(result: &Identification) -> String {
-    let line = |which: usize, name: &str| Curve {
-        name: name.into(),
-        points: result
-            .curves
-            .free_run
-            .iter()
-            .take_while(|point| point[0] < FREE_RUN_SHOWN_S)
-            .map(|point| (point[0], point[which]))
-            .collect(),
-        dots: false,
+    let line = |which: usize, name: &str, ink: Ink| {
+        let shown = result.curves.free_run.iter();
+        let shown = shown.take_while(|point| point[0] < FREE_RUN_SHOWN_S);
+        Curve::line(name, ink, shown.map(|point| (point[0], point[which])))
     };
-    let list = [line(1, "declared"), line(2, "extended")];
+    let list = [
+        line(1, "declared", Ink::Before),
+        line(2, "extended", Ink::After),
+    ];
     curves(
         "Free run: simulated − recorded position (validation)",
         "time, s",
@@ -180,21 +179,16 @@ fn free_run(result: &Identification) -> String {
     )
 }
 
-/// Points of a curve in a picture: enough to see, few enough to keep.
-const POINTS: usize = 700;
-
 fn curves(title: &str, x: &str, y: &str, list: &[Curve]) -> String {
-    let thinned = |curve: &Curve| Curve {
-        name: curve.name.clone(),
-        points: every(curve.points.len().div_ceil(POINTS), &curve.points),
-        dots: curve.dots,
+    let plot = Plot {
+        title,
+        x,
+        y,
+        size_px: (640.0, 380.0),
+        x_range: None,
+        is_logarithmic: false,
     };
-    let list: Vec<Curve> = list.iter().map(thinned).collect();
-    plots::curves(title, x, y, (640, 380), &list).unwrap()
-}
-
-fn every(stride: usize, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    points.iter().copied().step_by(stride.max(1)).collect()
+    plots::curves(&plot, list)
 }
 
 /// The ranking as bars: the share of the held-out error that each candidate removes.

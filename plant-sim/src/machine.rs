@@ -21,7 +21,7 @@ mod together;
 
 pub use actual::refusal;
 pub use forms::{
-    ActuatorForm, Bus, EncodersForm, Gains, Limits, MechanicsForm, PositionSensor, Timing,
+    ActuatorForm, Bus, EncodersForm, Gains, Geometry, Limits, MechanicsForm, PositionSensor, Timing,
 };
 pub use source::MachineError;
 
@@ -61,6 +61,8 @@ pub struct MachineAxis {
     pub limits: Limits,
     /// Gains of the drive.
     pub gains: Gains,
+    /// How it stands to the others, and how true its scale is.
+    pub geometry: Geometry,
     /// What its model says.
     pub declared: Vec<EffectName>,
 }
@@ -119,6 +121,19 @@ impl Machine {
                 .map(|axis| together::axis(source, axis, &form.axis))
                 .collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Where the first two axes have moved the table, when each is where it says, m: out of square
+    /// and by untrue scales. What an instrument at the table sees of a plane.
+    #[must_use]
+    pub fn in_plane(&self, [x_m, y_m]: [f64; 2]) -> [f64; 2] {
+        let of = |place: usize| self.axes.get(place).map(|axis| axis.geometry);
+        let [x, y] = [0, 1].map(|place| of(place).unwrap_or_default());
+        let stretched = |at_m: f64, own: Geometry| at_m * (1.0 + 1.0e-6 * own.scale_ppm);
+        [
+            stretched(x_m, x) + y.squareness_rad * y_m,
+            stretched(y_m, y) + x.squareness_rad * x_m,
+        ]
     }
 
     /// Format and bit rates as the load computation wants them.
@@ -187,6 +202,22 @@ mod tests {
             (machine.axes_per_bus(), machine.bus_load_per_mille()),
             (1, 488)
         );
+    }
+
+    #[test]
+    fn an_axis_out_of_square_and_a_long_scale_move_the_table_and_are_not_taken_over_by_like() {
+        let text = Machine::reference_text().replacen(
+            "[[axis]]\nname = \"Y\"",
+            "[axis.geometry]\nscale_ppm = 50.0\n\n[[axis]]\nname = \"Y\"",
+            1,
+        ) + "\n[axis.geometry]\nsquareness_rad = 2.0e-5\n";
+        let machine = Machine::parse("m.toml", &text).unwrap();
+        let [x_m, y_m] = machine.in_plane([0.1, 0.2]);
+        assert!((x_m - (0.1 + 5.0e-6 + 4.0e-6)).abs() < 1.0e-15, "{x_m}");
+        assert_eq!(y_m, 0.2);
+        let wrong = text.replace("2.0e-5", "2.0");
+        let refusal = Machine::parse("m.toml", &wrong).unwrap_err().to_string();
+        assert!(refusal.contains("squareness_rad"), "{refusal}");
     }
 
     #[test]

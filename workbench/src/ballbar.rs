@@ -15,6 +15,7 @@
 //!   axes.
 
 mod burst;
+mod causes;
 mod ellipse;
 mod median;
 mod point;
@@ -26,13 +27,13 @@ use serde::Serialize;
 
 use burst::Deviating;
 use ellipse::ellipse_um;
-use roundness::circular_deviation_um;
 use step::step_um;
 
+pub use causes::{BothDirections, Cause, CircleAxis, causes};
 pub use median::median;
 pub use point::{Point, radial_um};
 pub use reversals::{REVERSALS, apart, window_rad};
-pub use roundness::hysteresis_um;
+pub use roundness::{circular_deviation_um, hysteresis_um};
 
 /// Figures of one circle.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,11 +5,11 @@ use std::path::Path;
 use plant_sim::Machine;
 use serde::Serialize;
 
-use crate::ballbar::{self, CircleFigures, Point};
+use crate::ballbar::{self, BothDirections, Cause, CircleAxis, CircleFigures, Point};
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::progress;
-use crate::session::{Session, Stand};
+use crate::session::{AT_TABLE, Session, Stand};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD};
 
 /// What `circle --json` says.
@@ -32,9 +32,26 @@ pub struct CircleReport {
     /// What drives that refine themselves have made of the levels of friction: a factor on each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refined_levels: Option<Vec<f64>>,
-    /// Figures.
+    /// Figures of the counter-clockwise turns.
     #[serde(flatten)]
     pub figures: CircleFigures,
+    /// Circular deviation G of each counter-clockwise turn, of the clockwise one, and of both
+    /// directions about one centre.
+    #[serde(flatten)]
+    pub roundness: Roundness,
+    /// What the deviation comes from, the largest first.
+    pub causes: Vec<Cause>,
+}
+
+/// Circular deviations beside that of all counter-clockwise turns.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Roundness {
+    /// Of each counter-clockwise turn.
+    pub circular_deviation_g_turns_um: Vec<f64>,
+    /// Of the clockwise turn.
+    pub circular_deviation_g_clockwise_um: f64,
+    /// Of both directions at once.
+    pub circular_deviation_g_both_um: f64,
 }
 
 /// A circle that was run.
@@ -43,7 +60,20 @@ pub struct CircleRun {
     pub report: CircleReport,
     /// Turns that count, counter-clockwise.
     pub points: Vec<Point>,
+    /// The clockwise turn.
+    pub clockwise: Vec<Point>,
 }
+
+impl CircleRun {
+    /// The first of the counter-clockwise turns that count.
+    #[must_use]
+    pub fn one_turn(&self) -> &[Point] {
+        &self.points[..self.points.len() / TURNS]
+    }
+}
+
+/// Counter-clockwise turns that count.
+const TURNS: usize = 3;
 
 /// Noise of the circles that are shown is another than that of records and of tuning.
 const CIRCLE_RUN: u64 = 0;
@@ -82,7 +112,15 @@ pub fn run_after(
             ));
             session.circle(&Circle { turns, ..*circle })?;
         }
-        let (points, figures) = measured(session, stand.machine, circle)?;
+        let [points, clockwise] = turns_of(session, circle)?;
+        let seen = Seen {
+            machine: stand.machine,
+            circle,
+            points: &points,
+            clockwise: &clockwise,
+            is_at_table: session.sees() == AT_TABLE,
+        };
+        let (figures, roundness, causes) = session.meanwhile(|| seen.evaluated())?;
         let report = CircleReport {
             machine: stand.machine.name.clone(),
             radius_mm: 1.0e3 * circle.radius_m,
@@ -93,8 +131,14 @@ pub fn run_after(
             missed_cycles: session.missed(),
             refined_levels: refines.then(|| session.refined_levels()).transpose()?,
             figures,
+            roundness,
+            causes,
         };
-        Ok(CircleRun { report, points })
+        Ok(CircleRun {
+            report,
+            points,
+            clockwise,
+        })
     })
 }
 
@@ -102,12 +146,8 @@ fn refines(axis: &AxisCompensation) -> bool {
     matches!(&axis.reversal, Compensation::Model(model) if model.self_tuning > 0.0)
 }
 
-/// The turns that count, and the figures of both directions.
-fn measured(
-    session: &mut Session<'_>,
-    machine: &Machine,
-    circle: &Circle,
-) -> Outcome<(Vec<Point>, CircleFigures)> {
+/// The turns that count, counter-clockwise and clockwise.
+fn turns_of(session: &mut Session<'_>, circle: &Circle) -> Outcome<[Vec<Point>; 2]> {
     progress::step(&format!(
         "circle R {} mm, F {} mm/min",
         1.0e3 * circle.radius_m,
@@ -119,16 +159,56 @@ fn measured(
         counter_clockwise: false,
         ..*circle
     })?;
-    let radius_m = circle.radius_m;
-    let figures = session.meanwhile(|| {
-        let figures = ballbar::figures(&points, radius_m, backlash_m(machine), MEASURE_FROM_RAD);
-        let hysteresis_um = ballbar::hysteresis_um(&points, &clockwise, radius_m);
-        CircleFigures {
+    Ok([points, clockwise])
+}
+
+/// A circle in both directions.
+struct Seen<'a> {
+    machine: &'a Machine,
+    circle: &'a Circle,
+    points: &'a [Point],
+    clockwise: &'a [Point],
+    is_at_table: bool,
+}
+
+impl Seen<'_> {
+    fn evaluated(&self) -> (CircleFigures, Roundness, Vec<Cause>) {
+        let (radius_m, backlash_m) = (self.circle.radius_m, backlash_m(self.machine));
+        let figures = ballbar::figures(self.points, radius_m, backlash_m, MEASURE_FROM_RAD);
+        let hysteresis_um = ballbar::hysteresis_um(self.points, self.clockwise, radius_m);
+        let causes = ballbar::causes(&BothDirections {
+            counter_clockwise: self.points,
+            clockwise: self.clockwise,
+            radius_m,
+            feed_m_per_s: self.circle.feed_m_per_s,
+            axes: [0, 1].map(|axis| CircleAxis {
+                name: self.machine.axes[axis].name.clone(),
+                lead_m: self.machine.axes[axis].actual.lead_m_per_rev,
+            }),
+            window_rad: ballbar::window_rad(radius_m, backlash_m),
+            bursts_um: figures.peak_um,
+            is_at_table: self.is_at_table,
+        });
+        let figures = CircleFigures {
             circular_hysteresis_h_um: Some(hysteresis_um),
             ..figures
+        };
+        (figures, self.roundness(), causes)
+    }
+
+    fn roundness(&self) -> Roundness {
+        let turn = (self.points.len() / TURNS).max(1);
+        let turns = self
+            .points
+            .chunks_exact(turn)
+            .map(ballbar::circular_deviation_um);
+        let both = [self.points, self.clockwise].concat();
+        Roundness {
+            circular_deviation_g_turns_um: turns.collect(),
+            circular_deviation_g_clockwise_um: ballbar::circular_deviation_um(self.clockwise),
+            circular_deviation_g_both_um: ballbar::circular_deviation_um(&both),
         }
-    })?;
-    Ok((points, figures))
+    }
 }
 
 /// Largest backlash of the machine's axes that its files tell of; it widens the window about the

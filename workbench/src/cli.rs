@@ -11,7 +11,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 pub use machine_arguments::{MachineArguments, Pace, PaceArguments, machine_file};
 pub use values::{circle, feed};
-use values::{fault_plan, node_id};
+use values::{fault_plan, micrometres, node_id};
 
 /// A servo axis that removes its own reversal errors, and the bench that proves it.
 #[derive(Debug, Parser)]
@@ -28,6 +28,8 @@ pub enum Command {
     /// Commission a machine: record, fit, find the missing effect, tune, download, circle before
     /// and after
     Commission(Commission),
+    /// Compare runs of `commission`: burst and G from run to run, and which parameters changed
+    Compare(Compare),
     /// Identify a recorded axis: which effect does its declared model lack? Offline
     Identify(Identify),
     /// Run one reference circle over the bus and print its figures
@@ -55,6 +57,41 @@ pub struct Commission {
     /// Folder for report, records and results
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Largest circular deviation G of both directions, µm: the certificate says pass or fail
+    #[arg(long, value_name = "UM", value_parser = micrometres)]
+    pub tolerance_um: Option<f64>,
+    /// Write the frames of the circles before and after as candump logs too
+    #[arg(long)]
+    pub log: bool,
+}
+
+/// The circles of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Circles {
+    /// Without compensation
+    Before,
+    /// With what the run has downloaded
+    After,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, clap::Args)]
+pub struct Compare {
+    /// Folders of `commission`, the earliest first
+    #[arg(required = true, num_args = 2.., value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Write table, trend and circles as a page
+    #[arg(long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+    /// Write the circles over each other
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Which circles that plot shows
+    #[arg(long, value_enum, default_value_t = Circles::After)]
+    pub circles: Circles,
+    /// Write the comparison as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
 }
 
 /// Arguments of `identify`.

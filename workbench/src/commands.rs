@@ -4,6 +4,7 @@
 mod asked_compensation;
 pub mod circle;
 pub mod commission;
+pub mod compare;
 pub mod contour;
 pub mod identify;
 pub mod machine;

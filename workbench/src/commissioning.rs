@@ -9,13 +9,17 @@
 //! reversal_curves   the six curves of the paper's Fig. 8(a) of them
 //! unfit             the report of a machine whose loops oscillate
 //! result            summary.json, circle.svg, report.html
+//! result_page       the report: certificate, chain, axes
+//! run_folder        an earlier run, read back
 //! ```
 
 pub mod feeds;
 pub mod fitness;
 pub mod identified_axes;
 pub mod result;
+pub mod result_page;
 pub mod reversal_curves;
 pub mod reversal_run;
+pub mod run_folder;
 pub mod trials;
 pub mod unfit;

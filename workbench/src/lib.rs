@@ -10,7 +10,7 @@
 //! network                                    master and nodes on any bus
 //! drive_parameters, compensation             what the drive is told
 //! model_file, output_files                   what is left on disk
-//! error, interrupt, progress                 the operator
+//! error, interrupt, progress, stdout         the operator
 //! ```
 //!
 //! Whoever moves axes gets an [`interrupt`] token, so that the operator can stop them.
@@ -33,6 +33,7 @@ pub mod output_files;
 pub mod presentation;
 pub mod progress;
 pub mod session;
+pub mod stdout;
 pub mod timing_test;
 pub mod trajectory;
 pub mod tuning;

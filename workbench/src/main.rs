@@ -9,10 +9,11 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use workbench::cli::{Cli, Command};
 use workbench::commands::{
-    circle, commission, contour, identify, machine, plant, servo, timing, tune,
+    circle, commission, compare, contour, identify, machine, plant, servo, timing, tune,
 };
 use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
+use workbench::stdout;
 
 /// A reader that has seen enough (`| head`) is no error; Rust's start-up code turns the signal off,
 /// and printing then panics.
@@ -64,7 +65,7 @@ fn moving(command: impl FnOnce(&Interrupt) -> Outcome<()>) -> (Outcome<()>, Opti
 
 /// 0, 2 with a line on stderr, or that of the signal that ended the work.
 fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
-    let Err(failure) = outcome else {
+    let Err(failure) = outcome.and_then(|()| stdout::finish()) else {
         return ExitCode::SUCCESS;
     };
     eprintln!("quadrant: {failure}");
@@ -74,6 +75,7 @@ fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
 
 fn main() -> ExitCode {
     end_quietly_on_a_closed_pipe();
+    stdout::take_over();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         // Help and version go to stdout as they are.
@@ -98,6 +100,7 @@ fn dispatch(command: Command) -> (Outcome<()>, Option<i32>) {
         Command::Tune(arguments) => moving(|interrupt| tune::run(&arguments, interrupt)),
         Command::Timing(arguments) => moving(|interrupt| timing::run(&arguments, interrupt)),
         Command::Identify(arguments) => still(identify::run(&arguments)),
+        Command::Compare(arguments) => still(compare::run(&arguments)),
         Command::Plant(arguments) => still(plant::run(&arguments)),
         Command::Servo(arguments) => still(servo::run(&arguments)),
         Command::Machine => {

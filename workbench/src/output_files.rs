@@ -1,17 +1,75 @@
-//! Files that commands leave behind.
+//! Files that commands leave behind: looked at before anything moves, whole or not there at all.
 
-use std::path::Path;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::error::{Failure, Outcome};
 
-/// Writes a file.
+/// A folder with this file in it is ours: its files may be overwritten.
+const MARKER: &str = ".quadrant";
+const MARKER_TEXT: &str = "Results of quadrant: another run into this folder overwrites them.\n";
+
+/// Writes a file: into another one beside it, which then takes its name, so that a full disk leaves
+/// the old one as it was.
 ///
 /// # Errors
 /// Where it cannot be written.
 pub fn write(path: &Path, text: &str) -> Outcome<()> {
-    std::fs::write(path, text).map_err(|error| Failure::file(path, &error))
+    let failed = |error: std::io::Error| Failure::file(path, &error);
+    // A pipe or a device has no place beside it.
+    if path.exists() && !path.is_file() {
+        return fs::write(path, text).map_err(failed);
+    }
+    let part = beside(path);
+    fs::write(&part, text)
+        .and_then(|()| fs::rename(&part, path))
+        .map_err(|error| {
+            // What is half there is of no use to anybody.
+            let _ = fs::remove_file(&part);
+            failed(error)
+        })
+}
+
+/// The name of a file while it is being written.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// Looks whether files can be written, before a machine moves for what they are to hold.
+///
+/// # Errors
+/// The first one that cannot.
+pub fn check<'a>(paths: impl IntoIterator<Item = Option<&'a PathBuf>>) -> Outcome<()> {
+    paths
+        .into_iter()
+        .flatten()
+        .try_for_each(|path| check_one(path))
+}
+
+fn check_one(path: &Path) -> Outcome<()> {
+    let failed = |error: std::io::Error| Failure::file(path, &error);
+    if path.is_dir() {
+        return Err(Failure::new(format!(
+            "{}: is a folder; name a file",
+            path.display()
+        )));
+    }
+    if path.exists() {
+        return fs::OpenOptions::new()
+            .append(true)
+            .open(path)
+            .map(drop)
+            .map_err(failed);
+    }
+    let part = beside(path);
+    fs::write(&part, "")
+        .and_then(|()| fs::remove_file(&part))
+        .map_err(failed)
 }
 
 /// Makes a folder, and those above it.
@@ -19,7 +77,25 @@ pub fn write(path: &Path, text: &str) -> Outcome<()> {
 /// # Errors
 /// Where it cannot be made.
 pub fn make_folder(path: &Path) -> Outcome<()> {
-    std::fs::create_dir_all(path).map_err(|error| Failure::file(path, &error))
+    fs::create_dir_all(path).map_err(|error| Failure::file(path, &error))
+}
+
+/// Makes a folder for results, or takes one that is empty or of an earlier run.
+///
+/// # Errors
+/// Where somebody else's files are in it, or nothing can be written there.
+pub fn claim_folder(path: &Path) -> Outcome<()> {
+    make_folder(path)?;
+    let failed = |error: std::io::Error| Failure::file(path, &error);
+    let is_empty = fs::read_dir(path).map_err(failed)?.next().is_none();
+    let marker = path.join(MARKER);
+    if !is_empty && !marker.exists() {
+        return Err(Failure::new(format!(
+            "{}: holds files that are not results of quadrant (no {MARKER} among them); name another folder or an empty one",
+            path.display()
+        )));
+    }
+    write(&marker, MARKER_TEXT)
 }
 
 /// The JSON text of a result.
@@ -30,4 +106,56 @@ pub fn json(result: &impl Serialize) -> Outcome<String> {
     serde_json::to_string_pretty(result)
         .map(|text| text + "\n")
         .map_err(|error| Failure::new(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_be_written_stays_as_it_was_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        write(&path, "old").unwrap();
+        // A folder in the place of the file that is written first.
+        fs::create_dir(beside(&path)).unwrap();
+        let refusal = write(&path, "new").unwrap_err().to_string();
+        assert!(refusal.contains("result.json"), "{refusal}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+    }
+
+    #[test]
+    fn a_full_device_is_told_by_its_name() {
+        let refusal = write(Path::new("/dev/full"), "text")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refusal.contains("/dev/full: No space left on device"),
+            "{refusal}"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_refused_beforehand() {
+        let folder = tempfile::tempdir().unwrap();
+        let good = folder.path().join("a.json");
+        let wrong = folder.path().join("missing").join("b.svg");
+        assert_eq!(check([Some(&good), None]), Ok(()));
+        assert!(!good.exists());
+        let refusal = check([Some(&good), Some(&wrong)]).unwrap_err().to_string();
+        assert!(refusal.contains("b.svg: No such file"), "{refusal}");
+        assert!(check([Some(&folder.path().to_path_buf())]).is_err());
+    }
+
+    #[test]
+    fn a_folder_with_files_of_others_is_refused_and_one_of_ours_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = folder.path().join("out");
+        claim_folder(&own).unwrap();
+        fs::write(own.join("summary.json"), "{}").unwrap();
+        assert_eq!(claim_folder(&own), Ok(()));
+        fs::write(folder.path().join("thesis.tex"), "").unwrap();
+        let refusal = claim_folder(folder.path()).unwrap_err().to_string();
+        assert!(refusal.contains("not results of quadrant"), "{refusal}");
+    }
 }

@@ -265,6 +265,7 @@ impl<'a, L: Link> Session<'a, L> {
         let setpoints = |[x, y]: [f64; 2]| [vec![x, y], rest.clone()].concat();
         self.go_to(&setpoints(circle.at(0.0)))?;
         let mut points = Vec::new();
+        let machine = self.machine;
         let measured = MEASURE_FROM_RAD..circle.measure_to_rad();
         self.follow(
             circle.duration_s(),
@@ -272,7 +273,7 @@ impl<'a, L: Link> Session<'a, L> {
             |time_s, axes| {
                 let angle_rad = circle.angle_rad(time_s);
                 if measured.contains(&angle_rad) && axes.iter().all(AxisCycle::shows_table) {
-                    points.push(point(angle_rad, axes));
+                    points.push(point(machine, angle_rad, axes));
                 }
             },
         )?;
@@ -296,7 +297,7 @@ impl<'a, L: Link> Session<'a, L> {
     #[must_use]
     pub fn sees(&self) -> &'static str {
         if self.master.axis(0).truth.is_some() {
-            "table"
+            AT_TABLE
         } else {
             "load scale"
         }
@@ -324,15 +325,29 @@ impl<'a, L: Link> Session<'a, L> {
     }
 }
 
+/// What an instrument at the machine sees.
+pub const AT_TABLE: &str = "table";
+
 /// Rest after a move, so that nothing of it is left on the record.
 const SETTLE_S: f64 = 0.3;
 
-fn point(angle_rad: f64, axes: &[AxisCycle]) -> Point {
+/// Where an instrument at the table sees it, where there is one; it sees both axes at once.
+fn point(machine: &Machine, angle_rad: f64, axes: &[AxisCycle]) -> Point {
     let of = |value: &dyn Fn(&AxisCycle) -> f64| [value(&axes[0]), value(&axes[1])];
+    let is_seen = axes.iter().all(|axis| axis.truth.is_some());
+    let in_plane = |place| {
+        if is_seen {
+            machine.in_plane(place)
+        } else {
+            place
+        }
+    };
     Point {
         angle_rad,
-        table_m: of(&AxisCycle::table_m),
-        motor_m: of(&|axis| axis.truth.map_or(axis.motor_m, |truth| truth.motor_m)),
+        table_m: in_plane(of(&AxisCycle::table_m)),
+        motor_m: in_plane(of(&|axis| {
+            axis.truth.map_or(axis.motor_m, |truth| truth.motor_m)
+        })),
         reference_m: of(&|axis| axis.reference_m),
     }
 }

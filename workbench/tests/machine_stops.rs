@@ -342,6 +342,8 @@ fn a_fault_in_the_middle_of_commissioning_leaves_the_record_so_far_and_says_wher
             ..MachineArguments::default()
         },
         out: out.clone(),
+        tolerance_um: None,
+        log: false,
     };
     let text = commission::run(&arguments, &Interrupt::never())
         .unwrap_err()

@@ -10,10 +10,11 @@ pub const IDENTIFICATION: [&str; 10] = [
 ];
 
 /// The floors of `workbench`, from the ground up: `commands` use everything.
-pub const WORKBENCH: [&str; 22] = [
+pub const WORKBENCH: [&str; 23] = [
     "error",
     "interrupt",
     "progress",
+    "stdout",
     "output_files",
     "model_file",
     "compensation",

@@ -93,6 +93,8 @@ pub(super) struct AxisForm {
     pub limits: Option<Spanned<Limits>>,
     pub gains: Option<Spanned<Gains>>,
     pub actual: Option<Spanned<ActualForm>>,
+    /// Not taken from another axis: each stands askew in its own way.
+    pub geometry: Option<Spanned<Geometry>>,
     pub declared: Option<Spanned<DeclaredForm>>,
     /// What an identification said, for people: with intervals and units. The simulator reads
     /// `actual`.
@@ -140,6 +142,21 @@ ranged! {
         /// Where the table stands at power-up.
         #[serde(default)]
         pub start_m: f64 [-10.0 => 10.0],
+    }
+}
+
+ranged! {
+    /// `[axis.geometry]`: how the way of an axis differs from what its scale says. An instrument at
+    /// the table sees it, no encoder does.
+    #[derive(Clone, Copy, Debug, Default, PartialEq)]
+    pub struct Geometry {
+        /// Angle of the axis out of its nominal direction, towards the positive direction of the
+        /// other axis of the plane.
+        #[serde(default)]
+        pub squareness_rad: f64 [-0.01 => 0.01],
+        /// The way is longer than its scale says by so many millionths.
+        #[serde(default)]
+        pub scale_ppm: f64 [-1.0e4 => 1.0e4],
     }
 }
 

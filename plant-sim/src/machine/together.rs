@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::MachineAxis;
 use super::actual::{self, Actual, Side};
 use super::forms::{
-    ActuatorForm, AxisForm, DeclaredForm, EncodersForm, Gains, LONGEST_PERIOD_S, Limits,
+    ActuatorForm, AxisForm, DeclaredForm, EncodersForm, Gains, Geometry, LONGEST_PERIOD_S, Limits,
     MechanicsForm,
 };
 use super::source::{MachineError, Source, Start};
@@ -58,9 +58,22 @@ pub(super) fn axis(
         force_record_noise_n: tables.actuator.get_ref().force_record_noise_n,
         limits: *tables.limits.get_ref(),
         gains: *tables.gains.get_ref(),
+        geometry: geometry(source, form.geometry.as_ref())?,
         actual: tables.parameters(actual),
         declared,
     })
+}
+
+/// How an axis stands; true where nothing is said of it.
+fn geometry(
+    source: Source<'_>,
+    form: Option<&Spanned<Geometry>>,
+) -> Result<Geometry, MachineError> {
+    let Some(table) = form else {
+        return Ok(Geometry::default());
+    };
+    source.check(table)?;
+    Ok(*table.get_ref())
 }
 
 /// What an axis without friction lacks.

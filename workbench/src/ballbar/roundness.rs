@@ -5,8 +5,10 @@ use std::f64::consts::TAU;
 use super::point::{Point, radial_um};
 
 /// Circular deviation G, µm: separation of the circles about the least-squares centre that enclose
-/// the path.
-pub(super) fn circular_deviation_um(points: &[Point]) -> f64 {
+/// the path. ISO 230-4:2022 defines it by the centre of the smallest separation and lets that of
+/// the least-squares circle stand for it; ours is never smaller.
+#[must_use]
+pub fn circular_deviation_um(points: &[Point]) -> f64 {
     let Some(center) = least_squares_center(points) else {
         return 0.0;
     };

@@ -40,6 +40,13 @@ pub fn feed(feed_mm_min: f64) -> Outcome<f64> {
     Ok(above_zero("--feed-mm-min", feed_mm_min, "mm/min")? / 6.0e4)
 }
 
+/// A length in µm, above zero.
+pub(super) fn micrometres(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|um| um.is_finite() && *um > 0.0);
+    value.ok_or_else(|| format!("must be above zero µm, got {text}"))
+}
+
 fn above_zero(option: &str, value: f64, unit: &str) -> Outcome<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)

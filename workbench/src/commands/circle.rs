@@ -7,10 +7,10 @@ use crate::compensation;
 use crate::console;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output_files::{json, write};
-use crate::presentation::plots::{self, Trace};
+use crate::output_files::{self, json, write};
+use crate::presentation::circle_pictures::{Shown, circles};
+use crate::presentation::plots::{Ink, standalone};
 use crate::session::Stand;
-use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::check_circle;
 
 /// Runs the circle, prints its figures and writes what was asked for.
@@ -21,6 +21,9 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
     let (machine, place) = arguments.machine.machine_and_place()?;
     let circle = cli::circle(arguments.radius_mm, arguments.feed_mm_min)?;
     check_circle(&machine, &circle)?;
+    output_files::check(
+        [&arguments.json, &arguments.plot, &arguments.candump].map(Option::as_ref),
+    )?;
     let stand = Stand {
         machine: &machine,
         place,
@@ -42,20 +45,22 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
         write(path, &json(&run.report)?)?;
     }
     if let Some(path) = &arguments.plot {
-        write(path, &plots::standalone(&plot(arguments, &run, &circle)?))?;
+        write(path, &standalone(&plot(&stand, &run)))?;
     }
     Ok(())
 }
 
-fn plot(arguments: &cli::CircleArguments, run: &CircleRun, circle: &Circle) -> Outcome<String> {
+fn plot(stand: &Stand<'_>, run: &CircleRun) -> String {
+    let report = &run.report;
     let title = format!(
-        "R {} mm, F {} mm/min",
-        arguments.radius_mm, arguments.feed_mm_min
+        "Circle R {} mm, F {} mm/min, compensation {}",
+        report.radius_mm, report.feed_mm_min, report.compensation
     );
-    let trace = Trace {
-        name: run.report.compensation.clone(),
-        points: &run.points,
-        radius_m: circle.radius_m,
+    let axes = &stand.machine.axes;
+    let shown = Shown {
+        name: "",
+        ink: Ink::After,
+        run,
     };
-    plots::polar(&title, &[trace])
+    circles(&title, [&axes[0].name, &axes[1].name], &[shown], None)
 }

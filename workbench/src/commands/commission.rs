@@ -14,7 +14,8 @@ use crate::cli;
 use crate::commissioning::feeds;
 use crate::commissioning::fitness::{self, Oscillation};
 use crate::commissioning::identified_axes;
-use crate::commissioning::result::{Commissioned, burst_reduction_percent};
+use crate::commissioning::result::{Commissioned, burst_reduction_percent, now};
+use crate::commissioning::run_folder::circle_csv;
 use crate::commissioning::trials::{self, Trials};
 use crate::commissioning::unfit;
 use crate::compensation::{self, AxisCompensation};
@@ -23,8 +24,9 @@ use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::network::candump::dbc;
 use crate::network::place::Place;
-use crate::output_files::{make_folder, write};
+use crate::output_files::{claim_folder, write};
 use crate::progress;
+use crate::say;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::{check_circle, fitting_circle};
@@ -36,7 +38,35 @@ use crate::trajectory::circle_limits::{check_circle, fitting_circle};
 /// until then is in the folder.
 pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = arguments.machine.machine_and_place()?;
-    commission(&machine, place, &arguments.out, interrupt)
+    let wanted = Wanted {
+        out: &arguments.out,
+        tolerance_um: arguments.tolerance_um,
+        log: arguments.log,
+    };
+    commission(&machine, place, &wanted, interrupt)
+}
+
+/// What is wanted of the job.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted<'a> {
+    /// Folder for everything that it leaves.
+    pub out: &'a Path,
+    /// What circular deviation G may be, µm.
+    pub tolerance_um: Option<f64>,
+    /// Whether the frames of the circles are kept.
+    pub log: bool,
+}
+
+impl<'a> Wanted<'a> {
+    /// Everything in a folder, without tolerance and without the frames of circles.
+    #[must_use]
+    pub const fn into(out: &'a Path) -> Self {
+        Self {
+            out,
+            tolerance_um: None,
+            log: false,
+        }
+    }
 }
 
 /// The same with a machine at its place.
@@ -46,12 +76,13 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
 pub fn commission(
     machine: &Machine,
     place: Place,
-    out: &Path,
+    wanted: &Wanted<'_>,
     interrupt: &Interrupt,
 ) -> Outcome<()> {
+    let out = wanted.out;
     let circle = fitting_circle(machine);
     check_circle(machine, &circle)?;
-    make_folder(out)?;
+    claim_folder(out)?;
     print_machine(machine);
     let stand = Stand {
         machine,
@@ -60,7 +91,7 @@ pub fn commission(
     };
     let oscillations = fitness::oscillations(&stand)?;
     for oscillation in &oscillations {
-        println!("{}", oscillation.sentence());
+        say!("{}", oscillation.sentence());
     }
     if oscillations.iter().any(Oscillation::is_unfit) {
         return end_unfit(machine, &oscillations, out);
@@ -68,15 +99,15 @@ pub fn commission(
     identified_axes::record(&stand, out)?;
     let kept =
         |failure: Failure| Failure::new(format!("{failure}; the records are in {}", out.display()));
-    after_recording(&stand, &circle, &oscillations, out).map_err(kept)?;
-    println!("report: {}", out.join("report.html").display());
+    after_recording(&stand, &circle, &oscillations, wanted).map_err(kept)?;
+    say!("report: {}", out.join("report.html").display());
     Ok(())
 }
 
 /// A machine that oscillates is not commissioned: the report says what to change first.
 fn end_unfit(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
     unfit::report(machine, oscillations, out)?;
-    println!(
+    say!(
         "not commissioned; report: {}",
         out.join("report.html").display()
     );
@@ -88,17 +119,19 @@ fn after_recording(
     stand: &Stand<'_>,
     circle: &Circle,
     oscillations: &[Oscillation],
-    out: &Path,
+    wanted: &Wanted<'_>,
 ) -> Outcome<()> {
+    let out = wanted.out;
     write(&out.join("quadrant.dbc"), &dbc(stand.machine)?)?;
     let results = identify(stand, out)?;
-    let before = circle_before(stand, circle, out)?;
+    let before = circle_before(stand, circle, wanted)?;
     let trials = try_out(stand, circle, &results, out)?;
-    let after = circle_after(stand, circle, &trials.taken, out)?;
+    let after = circle_after(stand, circle, &trials.taken, wanted)?;
     let reduction_percent = burst_reduction_percent(&before.report, &after.report);
-    println!(
+    say!(
         "circle after, {}: largest burst {:.2} µm, {reduction_percent:.1} % less",
-        trials.method, after.report.figures.peak_max_um
+        trials.method,
+        after.report.figures.peak_max_um
     );
     let commissioned = Commissioned {
         stand,
@@ -109,14 +142,19 @@ fn after_recording(
         before: &before,
         trials: &trials,
         after: &after,
+        tolerance_um: wanted.tolerance_um,
+        date: now(),
     };
     feeds::print(&commissioned.feeds);
+    if let Some(judged) = commissioned.judged() {
+        say!("{}", judged.sentence());
+    }
     commissioned.write(out)
 }
 
 fn print_machine(machine: &Machine) {
     let load = machine.bus_load_per_mille();
-    println!(
+    say!(
         "machine {}: {} axes, computed bus load {}.{} %",
         machine.name,
         machine.axes.len(),
@@ -128,7 +166,7 @@ fn print_machine(machine: &Machine) {
 fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
     let results = identified_axes::identify(stand, out)?;
     for (axis, result) in stand.machine.axes.iter().zip(&results) {
-        println!("axis {}:", axis.name);
+        say!("axis {}:", axis.name);
         console::print_identification(result);
     }
     let model = identified_axes::model(stand.machine, &results);
@@ -136,12 +174,16 @@ fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
     Ok(results)
 }
 
-fn circle_before(stand: &Stand<'_>, circle: &Circle, out: &Path) -> Outcome<CircleRun> {
+fn circle_before(stand: &Stand<'_>, circle: &Circle, wanted: &Wanted<'_>) -> Outcome<CircleRun> {
     progress::step("circle without compensation");
-    let log = out.join("circle-before.candump.log");
-    let run = circle_test::run(stand, circle, &stand.uncompensated(), Some(&log))?;
+    let run = kept_circle(
+        stand,
+        circle,
+        &stand.uncompensated(),
+        ("circle-before", wanted),
+    )?;
     let burst_um = run.report.figures.peak_max_um;
-    println!("circle before: largest burst {burst_um:.2} µm");
+    say!("circle before: largest burst {burst_um:.2} µm");
     Ok(run)
 }
 
@@ -151,7 +193,13 @@ fn try_out(
     results: &[Identification],
     out: &Path,
 ) -> Outcome<Trials> {
-    let trials = trials::run(stand, circle, results)?;
+    let lacks = results.iter().any(|result| !result.report.found.is_empty());
+    let declared = if lacks {
+        identified_axes::declared(stand, out)?
+    } else {
+        Vec::new()
+    };
+    let trials = trials::run(stand, circle, &declared, results)?;
     let text = compensation::text(&stand.axis_names(), &trials.taken)?;
     write(&out.join("compensation.toml"), &text)?;
     Ok(trials)
@@ -161,9 +209,22 @@ fn circle_after(
     stand: &Stand<'_>,
     circle: &Circle,
     compensation: &[AxisCompensation],
-    out: &Path,
+    wanted: &Wanted<'_>,
 ) -> Outcome<CircleRun> {
     progress::step("downloading the compensation; circle with it");
-    let log = out.join("circle-after.candump.log");
-    circle_test::run(stand, circle, compensation, Some(&log))
+    kept_circle(stand, circle, compensation, ("circle-after", wanted))
+}
+
+/// A circle whose points are kept as CSV, and its frames where they are wanted.
+fn kept_circle(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    compensation: &[AxisCompensation],
+    (name, wanted): (&str, &Wanted<'_>),
+) -> Outcome<CircleRun> {
+    let log = wanted.out.join(format!("{name}.candump.log"));
+    let log = wanted.log.then_some(log);
+    let run = circle_test::run(stand, circle, compensation, log.as_deref())?;
+    write(&wanted.out.join(format!("{name}.csv")), &circle_csv(&run))?;
+    Ok(run)
 }

@@ -6,7 +6,7 @@ use crate::console;
 use crate::contour_test;
 use crate::error::Outcome;
 use crate::interrupt::Interrupt;
-use crate::output_files::{json, write};
+use crate::output_files::{self, json, write};
 use crate::session::Stand;
 use crate::trajectory::Contour;
 
@@ -16,6 +16,7 @@ use crate::trajectory::Contour;
 /// Where an argument, a file or the machine is wrong.
 pub fn run(arguments: &cli::ContourArguments, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = arguments.machine.machine_and_place()?;
+    output_files::check([&arguments.json, &arguments.candump].map(Option::as_ref))?;
     let contour = Contour::read(&arguments.points, cli::feed(arguments.feed_mm_min)?)?;
     let stand = Stand {
         machine: &machine,

@@ -9,16 +9,21 @@ use crate::cli;
 use crate::console;
 use crate::error::{Failure, Outcome};
 use crate::model_file::{self, Known};
-use crate::output_files::{json, make_folder, write};
+use crate::output_files::{self, claim_folder, json, make_folder, write};
 use crate::presentation::page::Page;
 use crate::presentation::result_chapters::add_identification;
 use crate::progress;
+use crate::say;
 
 /// Identifies a dataset, writes what was asked for and prints the result.
 ///
 /// # Errors
 /// Where the dataset is wrong, or a file cannot be written.
 pub fn run(arguments: &cli::Identify) -> Outcome<()> {
+    output_files::check([arguments.json.as_ref()])?;
+    if let Some(folder) = &arguments.out {
+        claim_folder(folder)?;
+    }
     let dataset = Dataset::read(
         &arguments.dataset,
         arguments.validate.as_deref(),
@@ -37,7 +42,7 @@ pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     }
     console::print_identification(&result);
     if let Some(folder) = &arguments.out {
-        println!("report: {}", folder.join("report.html").display());
+        say!("report: {}", folder.join("report.html").display());
     }
     Ok(())
 }
@@ -52,7 +57,7 @@ pub fn write_folder(folder: &Path, dataset: &Dataset, result: &Identification) -
     write_prediction(&folder.join("prediction.csv"), result)?;
     write(&folder.join("model.toml"), &model_toml(dataset, result))?;
     let mut page = Page::new(&format!("Identification of {}", dataset.name));
-    add_identification(&mut page, "Result", result)?;
+    add_identification(&mut page, "Result", result);
     write(&folder.join("report.html"), &page.finish())
 }
 

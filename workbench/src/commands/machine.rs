@@ -2,7 +2,9 @@
 
 use plant_sim::Machine;
 
+use crate::stdout;
+
 /// Prints the reference machine file.
 pub fn run() {
-    print!("{}", Machine::reference_text());
+    stdout::text(format_args!("{}", Machine::reference_text()));
 }

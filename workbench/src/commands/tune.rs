@@ -6,7 +6,8 @@ use crate::compensation;
 use crate::console;
 use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output_files::{make_folder, write};
+use crate::output_files::{self, make_folder, write};
+use crate::say;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::check_circle;
@@ -20,6 +21,7 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     let (machine, place) = arguments.machine.machine_and_place()?;
     let circle = cli::circle(arguments.radius_mm, arguments.feed_mm_min)?;
     check_circle(&machine, &circle)?;
+    output_files::check([Some(&arguments.out)])?;
     let start_delay_s = start_delay_s(arguments.start_delay_ms)?;
     let stand = Stand {
         machine: &machine,
@@ -33,7 +35,7 @@ pub fn run(arguments: &cli::Tune, interrupt: &Interrupt) -> Outcome<()> {
     };
     write(&arguments.out, &file(arguments, &stand, &tuned)?)?;
     console::print_tuned(&stand.axis_names(), &tuned);
-    println!("wrote {}", arguments.out.display());
+    say!("wrote {}", arguments.out.display());
     Ok(())
 }
 

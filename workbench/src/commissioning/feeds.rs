@@ -1,11 +1,16 @@
 //! Circles at other feeds, without and with what was taken: a compensation is worth what it is at
 //! every feed.
 
+use identification::figures;
 use serde::Serialize;
 
 use crate::circle_test::{self, CircleRun};
 use crate::compensation::AxisCompensation;
+use crate::console::print_table;
 use crate::error::Outcome;
+use crate::presentation::plots::{Curve, Ink, Plot, curves};
+use crate::presentation::result_tables::{TextTable, head};
+use crate::say;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::at_share_of_feed;
@@ -100,21 +105,67 @@ pub fn run(
     })
 }
 
+/// Circles at several feeds.
+#[must_use]
+pub fn table(feeds: &Feeds) -> TextTable {
+    let of_feed = |at: &AtFeed| {
+        let mut cells = vec![format!("{:.0}", at.feed_mm_min)];
+        cells.extend(
+            [
+                at.burst_before_um,
+                at.burst_after_um,
+                at.reduction_percent(),
+                at.circular_deviation_g_before_um,
+                at.circular_deviation_g_after_um,
+            ]
+            .map(figures::error),
+        );
+        cells
+    };
+    let mut rows = vec![head([
+        "feed, mm/min",
+        "burst before, µm",
+        "burst after, µm",
+        "less, %",
+        "G before, µm",
+        "G after, µm",
+    ])];
+    rows.extend(feeds.run.iter().map(of_feed));
+    rows
+}
+
+/// Burst and circular deviation against feed, before and after.
+#[must_use]
+pub fn picture(feeds: &Feeds) -> String {
+    let over_feed = |name: &str, ink: Ink, value: fn(&AtFeed) -> f64| {
+        let points = feeds.run.iter().map(|at| (at.feed_mm_min, value(at)));
+        Curve::line(name, ink, points)
+    };
+    let list = [
+        over_feed("burst before", Ink::Before, |at| at.burst_before_um),
+        over_feed("burst after", Ink::After, |at| at.burst_after_um),
+        over_feed("G before", Ink::Other(2), |at| {
+            at.circular_deviation_g_before_um
+        }),
+        over_feed("G after", Ink::Other(3), |at| {
+            at.circular_deviation_g_after_um
+        }),
+    ];
+    let plot = Plot {
+        title: "Burst and circular deviation against feed",
+        x: "feed, mm/min",
+        y: "µm",
+        size_px: (540.0, 270.0),
+        x_range: None,
+        is_logarithmic: true,
+    };
+    curves(&plot, &list)
+}
+
 /// Prints the circles at several feeds.
 pub fn print(feeds: &Feeds) {
-    println!("feed, mm/min   burst before, µm   after, µm   less, %   G before, µm   after, µm");
-    for at in &feeds.run {
-        println!(
-            "{:>12.0} {:>18.2} {:>11.2} {:>9.1} {:>14.2} {:>11.2}",
-            at.feed_mm_min,
-            at.burst_before_um,
-            at.burst_after_um,
-            at.reduction_percent(),
-            at.circular_deviation_g_before_um,
-            at.circular_deviation_g_after_um
-        );
-    }
+    print_table(&table(feeds));
     for sentence in &feeds.broke_off {
-        println!("{sentence}");
+        say!("{sentence}");
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use identification::{Dataset, Identification, IdentificationError};
+use identification::{Dataset, Identification, IdentificationError, Step};
 use plant_sim::Machine;
 use plant_sim::machine::MachineAxis;
 
@@ -84,9 +84,29 @@ fn broke_off(failure: &Failure, part: Part, records: &[AxisRecord], out: &Path) 
 /// # Errors
 /// Where a record is wrong, or the operator interrupts.
 pub fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
+    each_axis(stand, out, "identifying", identification::identify)
+}
+
+/// The declared model alone of each axis, by the same records.
+///
+/// # Errors
+/// As [`identify`].
+pub fn declared(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
+    each_axis(
+        stand,
+        out,
+        "declared model of",
+        identification::fit_declared,
+    )
+}
+
+/// A fit of a dataset that tells of its steps.
+type Fit = fn(&Dataset, &mut dyn FnMut(&Step)) -> Result<Identification, IdentificationError>;
+
+fn each_axis(stand: &Stand<'_>, out: &Path, doing: &str, fit: Fit) -> Outcome<Vec<Identification>> {
     let works = stand.machine.axes.iter().map(|axis| {
         let dataset = Dataset::read(&records_folder(out, axis), None, None)?;
-        Ok(begin(&axis.name, dataset))
+        Ok(begin(&axis.name, dataset, doing, fit))
     });
     let works = works.collect::<Outcome<Vec<_>>>()?;
     works
@@ -98,12 +118,12 @@ pub fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
 /// An identification that is being computed.
 type Work = JoinHandle<Result<Identification, IdentificationError>>;
 
-fn begin(axis: &str, dataset: Dataset) -> Work {
-    progress::step(&format!("identifying axis {axis}"));
+fn begin(axis: &str, dataset: Dataset, doing: &str, fit: Fit) -> Work {
+    progress::step(&format!("{doing} axis {axis}"));
     let axis = axis.to_owned();
     std::thread::spawn(move || {
         let work = progress::Work::begins();
-        identification::identify(&dataset, &mut |step| {
+        fit(&dataset, &mut |step| {
             work.step(&format!("axis {axis}: {step}"), step.done());
         })
     })

@@ -2,24 +2,18 @@
 
 use std::path::Path;
 
-use identification::{Identification, Report, figures};
+use identification::{Identification, Report};
 use serde::Serialize;
 
 use super::feeds::{AtFeed, Feeds, less_percent};
 use super::fitness::Oscillation;
-use super::reversal_curves::six_curves;
-use super::reversal_run::reversal_rows;
-use super::trials::{SELF_TUNED, TrialSummary, Trials};
-use crate::ballbar::Point;
+use super::trials::{TrialSummary, Trials};
 use crate::circle_test::{CircleReport, CircleRun};
-use crate::compensation::AxisCompensation;
 use crate::error::Outcome;
 use crate::output_files::{json, write};
-use crate::presentation::page::Page;
-use crate::presentation::plots::{self, Trace};
-use crate::presentation::result_chapters::add_identification;
-use crate::presentation::result_tables::{TextTable, head, sentence};
-use crate::session::Stand;
+use crate::presentation::certificate::Judged;
+use crate::presentation::plots::standalone;
+use crate::session::{AT_TABLE, Stand};
 use crate::trajectory::Circle;
 
 /// `summary.json`.
@@ -38,6 +32,13 @@ struct SummaryFile<'a> {
     broke_off: &'a [String],
     tuning_circles: u32,
     bus_load_percent: f64,
+    date: &'a str,
+    program: String,
+    simulation: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance_um: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passes: Option<bool>,
 }
 
 #[derive(Serialize)]
@@ -65,6 +66,27 @@ pub struct Commissioned<'a> {
     pub trials: &'a Trials,
     /// The circle with it.
     pub after: &'a CircleRun,
+    /// What circular deviation G may be, µm.
+    pub tolerance_um: Option<f64>,
+    /// When it was, UTC.
+    pub date: String,
+}
+
+/// Version and commit of the program.
+#[must_use]
+pub fn program() -> String {
+    format!(
+        "quadrant {}, commit {}",
+        env!("CARGO_PKG_VERSION"),
+        env!("QUADRANT_COMMIT")
+    )
+}
+
+/// The time, UTC, to the minute.
+#[must_use]
+pub fn now() -> String {
+    let now = jiff::Timestamp::now();
+    now.strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
 /// How much smaller the largest burst has become, percent.
@@ -80,8 +102,17 @@ impl Commissioned<'_> {
     /// Where a file cannot be written, or the machine does not run the reversals.
     pub fn write(&self, out: &Path) -> Outcome<()> {
         write(&out.join("summary.json"), &json(&self.summary())?)?;
-        write(&out.join("circle.svg"), &plots::standalone(&self.polar()?))?;
+        write(&out.join("circle.svg"), &standalone(&self.circle_picture()))?;
         write(&out.join("report.html"), &self.page()?)
+    }
+
+    /// Circular deviation against the tolerance, where there is one.
+    #[must_use]
+    pub fn judged(&self) -> Option<Judged> {
+        self.tolerance_um.map(|tolerance_um| Judged {
+            tolerance_um,
+            is_um: self.after.report.roundness.circular_deviation_g_both_um,
+        })
     }
 
     fn summary(&self) -> SummaryFile<'_> {
@@ -105,207 +136,20 @@ impl Commissioned<'_> {
             broke_off: &self.feeds.broke_off,
             tuning_circles: self.trials.circles(),
             bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
+            date: &self.date,
+            program: program(),
+            simulation: self.is_simulation(),
+            tolerance_um: self.tolerance_um,
+            passes: self.judged().map(|judged| judged.passes()),
         }
     }
 
-    fn reduction_percent(&self) -> f64 {
+    /// Whether a simulator stands in for the machine: it alone tells where its table truly is.
+    pub(super) fn is_simulation(&self) -> bool {
+        self.before.report.deviation_of == AT_TABLE
+    }
+
+    pub(super) fn reduction_percent(&self) -> f64 {
         burst_reduction_percent(&self.before.report, &self.after.report)
     }
-
-    fn polar(&self) -> Outcome<String> {
-        let report = &self.before.report;
-        let title = format!(
-            "Circle R {} mm, F {:.0} mm/min",
-            report.radius_mm, report.feed_mm_min
-        );
-        let radius_m = 1.0e-3 * report.radius_mm;
-        let traces = [("before", self.before), ("after", self.after)].map(|(name, run)| Trace {
-            name: name.into(),
-            points: one_turn(run),
-            radius_m,
-        });
-        plots::polar(&title, &traces)
-    }
-
-    fn page(&self) -> Outcome<String> {
-        let machine = self.stand.machine;
-        let mut page = Page::new(&format!("Commissioning of machine {}", machine.name));
-        self.add_overview(&mut page)?;
-        for (axis, result) in machine.axes.iter().zip(self.results) {
-            let title = format!("Axis {}: what the model lacks", axis.name);
-            add_identification(&mut page, &title, result)?;
-        }
-        self.add_reversal(&mut page)?;
-        Ok(page.finish())
-    }
-
-    fn add_overview(&self, page: &mut Page) -> Outcome<()> {
-        let first = self.results.first();
-        page.key(&format!(
-            "{}. Largest burst on the circle: {:.2} µm before, {:.2} µm with {}, {:.1} % less.",
-            first.map_or_else(String::new, |result| sentence(&result.report)),
-            self.before.report.figures.peak_max_um,
-            self.after.report.figures.peak_max_um,
-            in_words(self.trials.method),
-            self.reduction_percent()
-        ));
-        for oscillation in self.oscillations {
-            page.paragraph(&oscillation.sentence());
-        }
-        page.table(&self.feeds_table());
-        for sentence in &self.feeds.broke_off {
-            page.paragraph(sentence);
-        }
-        page.paragraph("What was tried on the circle; the one that leaves least is in the drive and in compensation.toml.");
-        page.table(&self.trials_table());
-        page.table(&self.overview_table());
-        page.pictures(&[self.polar()?]);
-        Ok(())
-    }
-
-    fn feeds_table(&self) -> TextTable {
-        let of_feed = |at: &AtFeed| {
-            let mut cells = vec![format!("{:.0}", at.feed_mm_min)];
-            cells.extend(
-                [
-                    at.burst_before_um,
-                    at.burst_after_um,
-                    at.reduction_percent(),
-                    at.circular_deviation_g_before_um,
-                    at.circular_deviation_g_after_um,
-                ]
-                .map(figures::error),
-            );
-            cells
-        };
-        let mut rows = vec![head([
-            "feed, mm/min",
-            "burst before, µm",
-            "burst after, µm",
-            "less, %",
-            "G before, µm",
-            "G after, µm",
-        ])];
-        rows.extend(self.feeds.run.iter().map(of_feed));
-        rows
-    }
-
-    fn trials_table(&self) -> TextTable {
-        let mut rows = vec![head([
-            "tried",
-            "burst before, µm",
-            "burst after, µm",
-            "circles",
-        ])];
-        rows.extend(self.trials.summaries().iter().map(|trial| {
-            vec![
-                in_words(trial.method).to_owned(),
-                figures::error(trial.burst_before_um),
-                figures::error(trial.burst_after_um),
-                trial.circles.to_string(),
-            ]
-        }));
-        rows
-    }
-
-    fn overview_table(&self) -> TextTable {
-        let mut rows = vec![head(["", "before", "after", "unit"])];
-        let axes = self.stand.machine.axes.iter();
-        for (axis, result) in axes.zip(self.results) {
-            rows.extend(force_rows(&axis.name, result));
-        }
-        rows.extend(circle_rows(&self.before.report, &self.after.report));
-        rows
-    }
-
-    /// The six curves of the paper's Fig. 8(a), about one reversal of the first axis on a sine.
-    fn add_reversal(&self, page: &mut Page) -> Outcome<()> {
-        page.heading("One reversal in time");
-        page.paragraph(
-            "The six curves of the paper's Fig. 8(a) about a reversal of the first axis, before and after: setpoint, table, disturbance \
-             (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
-        );
-        self.add_curves(page, "before", &self.stand.uncompensated())?;
-        self.add_curves(page, "after", &self.trials.taken)
-    }
-
-    fn add_curves(
-        &self,
-        page: &mut Page,
-        name: &str,
-        compensation: &[AxisCompensation],
-    ) -> Outcome<()> {
-        let rows = reversal_rows(self.stand, compensation, self.circle)?;
-        page.pictures(&six_curves(self.stand.machine, name, &rows)?);
-        Ok(())
-    }
-}
-
-fn in_words(method: &str) -> &str {
-    match method {
-        "pulse" => "the tuned pulse",
-        "model" => "the model of friction",
-        SELF_TUNED => "the model of friction, refined by the drives",
-        _ => "no compensation, since none helps",
-    }
-}
-
-fn force_rows(axis: &str, result: &Identification) -> [Vec<String>; 2] {
-    let errors = &result.report.validate;
-    [
-        row(
-            &format!("force error of the model, axis {axis}, validation record"),
-            [
-                errors.force_error_before_percent,
-                errors.force_error_after_percent,
-            ],
-            "%",
-        ),
-        row(
-            &format!("force not explained about reversals, axis {axis}, validation record"),
-            [errors.reversal_error_before, errors.reversal_error_after],
-            result.effort_unit,
-        ),
-    ]
-}
-
-/// The figures of the circle; hysteresis where both directions were run.
-fn circle_rows(before: &CircleReport, after: &CircleReport) -> TextTable {
-    let both = [&before.figures, &after.figures];
-    let mut rows = vec![
-        row("largest burst", both.map(|circle| circle.peak_max_um), "µm"),
-        row(
-            "circular deviation G",
-            both.map(|circle| circle.circular_deviation_g_um),
-            "µm",
-        ),
-    ];
-    if let [Some(before), Some(after)] = both.map(|circle| circle.circular_hysteresis_h_um) {
-        rows.push(row("circular hysteresis H", [before, after], "µm"));
-    }
-    rows.push(row(
-        "radial deviation Fmax",
-        both.map(|circle| circle.radial_deviation_fmax_um),
-        "µm",
-    ));
-    rows.push(row(
-        "radial deviation Fmin",
-        both.map(|circle| circle.radial_deviation_fmin_um),
-        "µm",
-    ));
-    rows
-}
-
-fn row(name: &str, [before, after]: [f64; 2], unit: &str) -> Vec<String> {
-    vec![
-        name.to_owned(),
-        figures::error(before),
-        figures::error(after),
-        unit.to_owned(),
-    ]
-}
-
-/// The first of the three turns that count.
-fn one_turn(run: &CircleRun) -> &[Point] {
-    &run.points[..run.points.len() / 3]
 }

@@ -6,47 +6,74 @@
 use plant_sim::Machine;
 
 use super::reversal_run::ReversalRow;
-use crate::error::Outcome;
 use crate::network::master::AxisCycle;
-use crate::presentation::plots::{self, Curve};
+use crate::presentation::plots::{Curve, Ink, curves};
+use crate::presentation::result_pictures::plot;
 
 /// Velocity and acceleration are differences over so many cycles to either side: single encoder
 /// counts would be noise.
 const SIDE: usize = 10;
 /// Size of each picture, px.
-const SIZE: (u32, u32) = (540, 300);
+const SIZE_PX: (f64, f64) = (540.0, 300.0);
 
-/// Setpoint and table; disturbance and drive force; speed; error.
-///
-/// # Errors
-/// Where a plot cannot be drawn.
-pub fn six_curves(machine: &Machine, name: &str, rows: &[ReversalRow]) -> Outcome<Vec<String>> {
-    let reversal = Reversal {
-        rows,
-        period_s: machine.period_s,
-        inertia_kg: inertia_kg(machine),
+/// A run about a reversal, its name where there are several, and its colours.
+pub struct ReversalRun<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Colour of its curves, and of the second one where a picture has two.
+    pub inks: [Ink; 2],
+    /// Its cycles.
+    pub rows: &'a [ReversalRow],
+}
+
+/// A value in a cycle.
+type Value<'a> = &'a dyn Fn(&Reversal<'_>, usize) -> f64;
+
+/// Setpoint and table; disturbance and drive force; speed; error: all runs over each other.
+#[must_use]
+pub fn six_curves(machine: &Machine, runs: &[ReversalRun<'_>]) -> Vec<String> {
+    let each = |what: &str, which: usize, value: Value<'_>| -> Vec<Curve> {
+        let curve = |run: &ReversalRun<'_>| {
+            let name = format!("{what} {}", run.name);
+            Curve::line(
+                name.trim(),
+                run.inks[which],
+                Reversal::of(machine, run).over_time(value),
+            )
+        };
+        runs.iter().map(curve).collect()
     };
-    let turning_m = reversal.turning_m();
-    let [setpoint, table, disturbance, drive, speed, error] = [
-        reversal.curve("(1) setpoint", |at, i| {
-            1.0e6 * (at.reference_m(i) - turning_m)
-        }),
-        reversal.curve("(2) table", |at, i| 1.0e6 * (at.table_m(i) - turning_m)),
-        reversal.curve("(3) disturbance", Reversal::disturbance_n),
-        reversal.curve("(4) drive", Reversal::force_n),
-        reversal.curve("speed", |at, i| 1.0e3 * at.speed_m_per_s(i)),
-        reversal.curve("error", |at, i| 1.0e6 * (at.reference_m(i) - at.table_m(i))),
-    ];
-    let plot = |title: &str, unit: &str, curves: &[Curve]| {
-        let title = format!("{title}, {name}");
-        plots::curves(&title, "time from the reversal, ms", unit, SIZE, curves)
+    let turning_m = runs
+        .first()
+        .map_or(0.0, |run| Reversal::of(machine, run).turning_m());
+    let setpoint: Value<'_> = &|at, i| 1.0e6 * (at.reference_m(i) - turning_m);
+    let position = runs.first().map(|run| {
+        Curve::line(
+            "(1) setpoint",
+            Ink::Recorded,
+            Reversal::of(machine, run).over_time(setpoint),
+        )
+    });
+    let table = each("(2) table", 0, &|at, i| 1.0e6 * (at.table_m(i) - turning_m));
+    let disturbance = each("(3) disturbance", 0, &|at, i| at.disturbance_n(i));
+    let drive = each("(4) drive", 1, &|at, i| at.force_n(i));
+    let speed = each("(5) speed", 0, &|at, i| 1.0e3 * at.speed_m_per_s(i));
+    let error = each("(6) error", 0, &|at, i| {
+        1.0e6 * (at.reference_m(i) - at.table_m(i))
+    });
+    let picture = |title: &str, unit: &str, list: &[Curve]| {
+        curves(
+            &plot(title, "time from the reversal, ms", unit, SIZE_PX),
+            list,
+        )
     };
-    Ok(vec![
-        plot("Position", "µm from the turning point", &[setpoint, table])?,
-        plot("Force", "N", &[disturbance, drive])?,
-        plot("(5) Speed of the motor", "mm/s", &[speed])?,
-        plot("(6) Error", "µm", &[error])?,
-    ])
+    let position: Vec<Curve> = position.into_iter().chain(table).collect();
+    vec![
+        picture("Position", "µm from the turning point", &position),
+        picture("Force", "N", &[disturbance, drive].concat()),
+        picture("Speed of the motor", "mm/s", &speed),
+        picture("Error: setpoint − table", "µm", &error),
+    ]
 }
 
 /// What the motor of the first axis moves.
@@ -64,17 +91,21 @@ struct Reversal<'a> {
     inertia_kg: f64,
 }
 
-impl Reversal<'_> {
-    /// A value over the time, ms, where there are neighbours to both sides.
-    fn curve(&self, name: &str, value: impl Fn(&Self, usize) -> f64) -> Curve {
-        let places = SIDE..self.rows.len().saturating_sub(SIDE);
-        Curve {
-            name: name.into(),
-            points: places
-                .map(|i| (1.0e3 * self.rows[i].0, value(self, i)))
-                .collect(),
-            dots: false,
+impl<'a> Reversal<'a> {
+    fn of(machine: &Machine, run: &ReversalRun<'a>) -> Self {
+        Self {
+            rows: run.rows,
+            period_s: machine.period_s,
+            inertia_kg: inertia_kg(machine),
         }
+    }
+
+    /// A value over the time, ms, where there are neighbours to both sides.
+    fn over_time(&self, value: impl Fn(&Self, usize) -> f64) -> Vec<(f64, f64)> {
+        let places = SIDE..self.rows.len().saturating_sub(SIDE);
+        places
+            .map(|i| (1.0e3 * self.rows[i].0, value(self, i)))
+            .collect()
     }
 
     fn cycle(&self, i: usize) -> &AxisCycle {
@@ -161,12 +192,11 @@ mod tests {
             period_s: PERIOD_S,
             inertia_kg: 5.0,
         };
-        let curve = reversal.curve("error", |at, i| at.reference_m(i) - at.table_m(i));
-        assert_eq!(curve.points.len(), 101 - 2 * SIDE);
-        assert!((curve.points[0].0 + 40.0).abs() < 1.0e-9);
+        let points = reversal.over_time(|at, i| at.reference_m(i) - at.table_m(i));
+        assert_eq!(points.len(), 101 - 2 * SIDE);
+        assert!((points[0].0 + 40.0).abs() < 1.0e-9);
         assert!(
-            curve
-                .points
+            points
                 .iter()
                 .all(|(_, error)| (error - 3.0e-6).abs() < 1.0e-12)
         );

@@ -8,6 +8,7 @@ use crate::compensation::AxisCompensation;
 use crate::console;
 use crate::error::Outcome;
 use crate::progress;
+use crate::say;
 use crate::session::Stand;
 use crate::trajectory::Circle;
 use crate::tuning::{self, LEAST_PEAK_UM, Tuned};
@@ -68,11 +69,17 @@ impl Trials {
     }
 }
 
-/// Tries the tuned pulse and the model of friction.
+/// Tries the tuned pulse, the model of friction that was declared, and that with what was found;
+/// `declared` is empty where nothing was found.
 ///
 /// # Errors
 /// Where a circle cannot be run, or the operator interrupts.
-pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Outcome<Trials> {
+pub fn run(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    declared: &[Identification],
+    results: &[Identification],
+) -> Outcome<Trials> {
     let mut all = Vec::new();
     progress::step("tuning the pulse on circles");
     if let Some(tuned) = tuning::pulse(stand, circle, 0.0)? {
@@ -80,6 +87,14 @@ pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Ou
             method: "pulse",
             tuned,
         });
+    }
+    if !declared.is_empty() {
+        progress::step("the declared model of friction on a circle");
+        let tuned = tuning::model(stand, circle, declared)?;
+        all.extend(tuned.map(|tuned| Trial {
+            method: DECLARED,
+            tuned,
+        }));
     }
     progress::step("the model of friction on a circle");
     if let Some(tuned) = tuning::model(stand, circle, results)? {
@@ -95,12 +110,14 @@ pub fn run(stand: &Stand<'_>, circle: &Circle, results: &[Identification]) -> Ou
         }));
     }
     for trial in &all {
-        println!("{}:", trial.method);
+        say!("{}:", trial.method);
         console::print_tuned(&stand.axis_names(), &trial.tuned);
     }
     Ok(chosen(all, stand.uncompensated()))
 }
 
+/// The name of the model without what was found.
+pub const DECLARED: &str = "model, declared";
 /// The name of a model that the drives refine.
 pub const SELF_TUNED: &str = "model + self-tuning";
 

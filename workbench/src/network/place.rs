@@ -25,6 +25,21 @@ pub enum Place {
 }
 
 impl Place {
+    /// In a few words for a report.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::InProcess => "in-process bus".into(),
+            Self::Can { names, pace } => {
+                let pace = match pace {
+                    Pace::Lockstep { .. } => "lock-step",
+                    Pace::Clock => "clock",
+                };
+                format!("{names}, pace {pace}")
+            }
+        }
+    }
+
     /// The buses of a machine at this place. `run` tells the noise of one run from that of another.
     ///
     /// # Errors

@@ -1,85 +1,121 @@
-//! A self-contained HTML page: no script, no file beside it.
+//! A self-contained HTML page: style, pictures and a few lines of script inside, nothing from a
+//! network.
 
-use std::fmt::Write as _;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = "body{font:15px/1.5 sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
-h1{font-size:1.7em}h2{margin-top:2em;border-bottom:1px solid #bbb}table{border-collapse:collapse;margin:1em 0}\
-td,th{border:1px solid #ccc;padding:.25em .7em;text-align:right}td:first-child,th:first-child{text-align:left}th{background:#f0f0f0}\
-.good{background:#e8f5e9}.row{display:flex;flex-wrap:wrap;gap:1em}.row>div{flex:1 1 460px;min-width:0}.key{font-size:1.1em}small{color:#666}\
-@media print{body{max-width:none;margin:0}h2{break-after:avoid}svg,table{break-inside:avoid}}";
+use super::plots;
+
+const STYLE: &str = include_str!("page.css");
+/// Wheel and drag on a picture; without it the page is whole all the same.
+const SCRIPT: &str = include_str!("zoom.js");
 
 /// An HTML page in the making.
-pub struct Page(String);
+pub struct Page {
+    title: String,
+    body: String,
+}
 
 impl Page {
-    /// A page with a title.
+    /// A page with a title, which stands first on it.
     #[must_use]
     pub fn new(title: &str) -> Self {
-        let title = escaped(title);
-        Self(format!(
-            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title><style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n"
-        ))
+        let mut page = Self::untitled(title);
+        page.add(&html! { h1 { (title) } });
+        page
+    }
+
+    /// A page whose title is that of its window alone.
+    #[must_use]
+    pub fn untitled(title: &str) -> Self {
+        Self {
+            title: title.to_owned(),
+            body: String::new(),
+        }
+    }
+
+    /// Anything.
+    pub fn add(&mut self, markup: &Markup) {
+        self.body.push_str(&markup.0);
+        self.body.push('\n');
     }
 
     /// A heading.
     pub fn heading(&mut self, text: &str) {
-        self.raw(&format!("<h2>{}</h2>\n", escaped(text)));
+        self.add(&html! { h2 { (text) } });
     }
 
     /// A paragraph.
     pub fn paragraph(&mut self, text: &str) {
-        self.raw(&format!("<p>{}</p>\n", escaped(text)));
+        self.add(&html! { p { (text) } });
     }
 
     /// The sentence that matters.
     pub fn key(&mut self, text: &str) {
-        self.raw(&format!("<p class=\"key\"><b>{}</b></p>\n", escaped(text)));
+        self.add(&html! { p.key { b { (text) } } });
     }
 
     /// A table; the first row is the head. Rows whose first cell starts with `✓` are marked.
     pub fn table(&mut self, rows: &[Vec<String>]) {
-        self.raw("<table>\n");
-        for (index, row) in rows.iter().enumerate() {
-            let tag = if index == 0 { "th" } else { "td" };
-            let class = if row.first().is_some_and(|cell| cell.starts_with('✓')) {
-                " class=\"good\""
-            } else {
-                ""
-            };
-            let cells: String = row.iter().fold(String::new(), |mut cells, cell| {
-                let _ = write!(cells, "<{tag}>{}</{tag}>", escaped(cell));
-                cells
-            });
-            self.raw(&format!("<tr{class}>{cells}</tr>\n"));
-        }
-        self.raw("</table>\n");
+        self.add(&table(rows));
+    }
+
+    /// A table for whoever wants to know more: folded on a screen, left out on paper.
+    pub fn details(&mut self, summary: &str, rows: &[Vec<String>]) {
+        self.add(&html! {
+            details { summary { (summary) } (table(rows)) }
+        });
     }
 
     /// Pictures side by side, where the page is wide enough.
     pub fn pictures(&mut self, pictures: &[String]) {
-        self.raw("<div class=\"row\">");
-        for picture in pictures {
-            self.raw(&format!("<div>{picture}</div>"));
-        }
-        self.raw("</div>\n");
+        self.add(&html! {
+            div.row { @for picture in pictures { figure { (PreEscaped(picture)) } } }
+        });
     }
 
     /// The finished page.
     #[must_use]
-    pub fn finish(mut self) -> String {
-        self.raw("</body></html>\n");
-        self.0
-    }
-
-    fn raw(&mut self, text: &str) {
-        self.0.push_str(text);
+    pub fn finish(self) -> String {
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width,initial-scale=1";
+                    title { (self.title) }
+                    style { (PreEscaped(STYLE)) (PreEscaped(plots::style())) }
+                }
+                body {
+                    main { (PreEscaped(self.body)) }
+                    script { (PreEscaped(SCRIPT)) }
+                }
+            }
+        }
+        .into_string()
+            + "\n"
     }
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+/// A table; the first row is the head. Rows whose first cell starts with `✓` are marked.
+#[must_use]
+pub fn table(rows: &[Vec<String>]) -> Markup {
+    let (head, body) = rows
+        .split_first()
+        .map_or((&[][..], rows), |(head, body)| (head, body));
+    html! {
+        div.wide {
+            table {
+                thead { tr { @for cell in head { th { (cell) } } } }
+                tbody {
+                    @for row in body {
+                        tr class=[row.first().filter(|cell| cell.starts_with('✓')).map(|_| "good")] {
+                            @for cell in row { td { (cell) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -108,5 +144,13 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("<tr><td>delay</td></tr>"), "{text}");
+    }
+
+    #[test]
+    fn nothing_comes_from_a_network() {
+        let text = Page::new("").finish();
+        for reference in ["src=", "href=", "@import", "url("] {
+            assert!(!text.contains(reference), "{reference}");
+        }
     }
 }

@@ -1,18 +1,16 @@
 //! The pictures people know, as SVG text.
 
-mod canvas;
+mod curve;
 mod curve_plot;
+mod density;
+mod palette;
 mod polar_plot;
+mod scale;
+mod svg;
+mod thinning;
 
-pub use curve_plot::{Curve, curves};
-pub use polar_plot::{Trace, polar};
-
-/// The text of an SVG file of its own.
-#[must_use]
-pub fn standalone(svg: &str) -> String {
-    svg.replacen(
-        "<svg",
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg",
-        1,
-    )
-}
+pub use curve::{Curve, Ink};
+pub use curve_plot::{Plot, curves};
+pub use palette::style;
+pub use polar_plot::{Polar, Trace, polar};
+pub use svg::standalone;

@@ -1,4 +1,5 @@
-//! The chapters of a page about one identification.
+//! The chapters of a page about one identification: the verdict, the table that it follows from,
+//! pictures of what was found.
 
 use identification::{Identification, figures};
 
@@ -10,13 +11,9 @@ use super::result_tables::{
     candidate_table, error_table, free_run_sentence, free_run_table, parameter_table,
     protocol_table, reversal_shape_table, sentence, shown_table, slow_ripple_table,
 };
-use crate::error::Outcome;
 
 /// The chapters of an identification.
-///
-/// # Errors
-/// Where a plot cannot be drawn.
-pub fn add_identification(page: &mut Page, title: &str, result: &Identification) -> Outcome<()> {
+pub fn add_identification(page: &mut Page, title: &str, result: &Identification) {
     let report = &result.report;
     page.heading(title);
     page.key(&sentence(report));
@@ -25,19 +22,13 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
         page.paragraph("Where each effect shows that was found, on the training record:");
         page.table(&shown_table(report));
     }
-    page.pictures(&residual_pictures(result)?);
-    page.pictures(&[time_picture(result)?]);
-    let mut effects = effect_pictures(result)?;
-    effects.extend(presliding_picture(result)?);
-    page.pictures(&effects);
-    free_run(page, result)?;
+    let mut pictures = effect_pictures(result);
+    pictures.extend(presliding_picture(result));
+    pictures.extend(residual_pictures(result));
+    page.pictures(&pictures);
+    page.pictures(&[time_picture(result)]);
+    free_run(page, result);
     slow_ripple(page, result);
-    page.paragraph("The force error by the protocols that papers use:");
-    page.table(&protocol_table(report));
-    page.paragraph(
-        "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit):",
-    );
-    page.table(&candidate_table(report));
     page.paragraph(
         "Parameters of the extended model, with 95 % intervals (jackknife over blocks of 1 s, nonlinear ones linearised); model.toml carries the same:",
     );
@@ -45,22 +36,28 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
     for warning in &report.warnings {
         page.paragraph(&format!("Note: {warning}."));
     }
-    Ok(())
+    page.details(
+        "Candidates, by the share of the held-out error that they remove (blocks of 1 s left out of the fit)",
+        &candidate_table(report),
+    );
+    page.details(
+        "The force error by the protocols that papers use",
+        &protocol_table(report),
+    );
 }
 
 /// Free-run simulation: errors, shapes at reversals, picture.
-fn free_run(page: &mut Page, result: &Identification) -> Outcome<()> {
+fn free_run(page: &mut Page, result: &Identification) {
     let Some(free_run) = &result.report.free_run else {
-        return Ok(());
+        return;
     };
     page.paragraph(&free_run_sentence(free_run));
     page.table(&free_run_table(result));
-    page.paragraph(
-        "What each shape of friction leaves at reversals, of the simulated position (blocks that were not fitted) and of the effort:",
+    page.pictures(&[free_run_picture(result)]);
+    page.details(
+        "What each shape of friction leaves at reversals, of the simulated position (blocks that were not fitted) and of the effort",
+        &reversal_shape_table(result),
     );
-    page.table(&reversal_shape_table(result));
-    page.pictures(&[free_run_picture(result)?]);
-    Ok(())
 }
 
 /// Ripple that was found about the reversals of an axis that is never slow for long.

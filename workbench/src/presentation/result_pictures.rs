@@ -1,155 +1,151 @@
-//! Pictures of one identification: what the declared model leaves, and what was found in it.
+//! Pictures of one identification: what the declared model leaves, and what was found in it, each
+//! at the scale where it happens.
 
 use identification::{AfterReversal, EffectCurve, Identification};
 
-use super::plots::{self, Curve};
+use super::plots::{Curve, Ink, Plot, curves};
 use super::result_tables::position_error_unit;
-use crate::error::Outcome;
 
-/// Columns of `points` against each other.
-fn dots(name: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
-    Curve {
-        name: name.into(),
-        points: points.collect(),
-        dots: true,
-    }
-}
+/// Size of a picture that has another beside it, and of one that has not, px.
+const HALF_PX: (f64, f64) = (540.0, 340.0);
+const WHOLE_PX: (f64, f64) = (1080.0, 330.0);
 
-fn line(name: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
-    Curve {
-        name: name.into(),
-        points: points.collect(),
-        dots: false,
+/// A linear plot of all that its curves reach.
+pub(crate) const fn plot<'a>(
+    title: &'a str,
+    x: &'a str,
+    y: &'a str,
+    size_px: (f64, f64),
+) -> Plot<'a> {
+    Plot {
+        title,
+        x,
+        y,
+        size_px,
+        x_range: None,
+        is_logarithmic: false,
     }
 }
 
 /// What the models leave, against velocity and against position.
-///
-/// # Errors
-/// Where a plot cannot be drawn.
-pub fn residual_pictures(result: &Identification) -> Outcome<Vec<String>> {
+#[must_use]
+pub fn residual_pictures(result: &Identification) -> Vec<String> {
     let unit = result.position_unit;
-    Ok(vec![
-        residual(result, 0, "velocity", &format!("velocity, {unit}/s"))?,
-        residual(result, 1, "position", &format!("position, {unit}"))?,
-    ])
+    vec![
+        residual(result, 0, "velocity", &format!("velocity, {unit}/s")),
+        residual(result, 1, "position", &format!("position, {unit}")),
+    ]
 }
 
-fn residual(result: &Identification, column: usize, name: &str, label: &str) -> Outcome<String> {
-    let moving = || result.curves.moving.iter();
+fn residual(result: &Identification, column: usize, name: &str, label: &str) -> String {
+    let of = |row: usize| {
+        let moving = result.curves.moving.iter();
+        moving.map(move |at| (at[column], at[row]))
+    };
     let list = [
-        dots("declared", moving().map(|row| (row[column], row[2]))),
-        dots("extended", moving().map(|row| (row[column], row[3]))),
+        Curve::cloud("declared model", Ink::Before, of(2)),
+        Curve::cloud("extended model", Ink::After, of(3)),
     ];
-    plots::curves(
-        &format!("Residual against {name} (validation)"),
-        label,
-        result.effort_unit,
-        (540, 360),
-        &list,
-    )
+    let title = format!("Residual against {name}, validation record");
+    curves(&plot(&title, label, result.effort_unit, HALF_PX), &list)
 }
 
 /// Recorded and predicted effort over time.
-///
-/// # Errors
-/// Where the plot cannot be drawn.
-pub fn time_picture(result: &Identification) -> Outcome<String> {
-    let curves = &result.curves;
-    let over_time = |name: &str, values: &[f64]| {
-        let times = curves.time_s.iter().copied();
-        line(name, times.zip(values.iter().copied()))
+#[must_use]
+pub fn time_picture(result: &Identification) -> String {
+    let of = &result.curves;
+    let over_time = |name: &str, ink: Ink, values: &[f64]| {
+        let times = of.time_s.iter().copied();
+        Curve::line(name, ink, times.zip(values.iter().copied()))
     };
+    // The record lowest and wide, so that it hides no model.
     let list = [
-        over_time("declared", &curves.declared),
-        over_time("extended", &curves.extended),
-        over_time("recorded", &curves.effort),
+        over_time("recorded", Ink::Recorded, &of.effort),
+        over_time("declared model", Ink::Before, &of.declared),
+        over_time("extended model", Ink::After, &of.extended),
     ];
-    plots::curves(
-        "Effort on the validation record",
-        "time, s",
-        result.effort_unit,
-        (1080, 340),
-        &list,
-    )
+    let title = "Effort on the validation record";
+    curves(&plot(title, "time, s", result.effort_unit, WHOLE_PX), &list)
 }
 
 /// Each effect that was found in the effort: what the model without it leaves, and the effect.
-///
-/// # Errors
-/// Where a plot cannot be drawn.
-pub fn effect_pictures(result: &Identification) -> Outcome<Vec<String>> {
-    let picture = |curve: &EffectCurve| {
-        let points = || curve.points.iter();
-        let list = [
-            dots(
-                "residual without it",
-                points().map(|point| (point[0], point[1])),
-            ),
-            dots("the effect", points().map(|point| (point[0], point[2]))),
-        ];
-        plots::curves(
-            &format!("{}: {} (training)", curve.effect, curve.equation),
-            &curve.against,
-            result.effort_unit,
-            (540, 360),
-            &list,
-        )
-    };
-    result.curves.effects.iter().map(picture).collect()
+#[must_use]
+pub fn effect_pictures(result: &Identification) -> Vec<String> {
+    let pictures = result.curves.effects.iter();
+    pictures
+        .map(|curve| effect_picture(result, curve))
+        .collect()
 }
 
-/// Friction after a reversal with its interval, where there is presliding.
-///
-/// # Errors
-/// Where the plot cannot be drawn.
-pub fn presliding_picture(result: &Identification) -> Outcome<Option<String>> {
-    let Some(curve) = &result.report.presliding else {
-        return Ok(None);
-    };
-    let (factor, unit) = small(result.position_unit);
-    let over_way = |name: &str, value: fn(&AfterReversal) -> f64| {
+fn effect_picture(result: &Identification, curve: &EffectCurve) -> String {
+    let knee = result.report.parameters.get("stribeck_velocity");
+    let knee = knee.filter(|_| curve.effect == "stribeck" && result.position_unit == "m");
+    // A knee of millimetres a second is nothing beside the fastest move.
+    let factor = knee.map_or(1.0, |_| 1.0e3);
+    let of = |column: usize| {
         let points = curve.points.iter();
-        line(name, points.map(|at| (factor * at.way, value(at))))
+        points.map(move |at| (factor * at[0], at[column]))
     };
     let list = [
-        over_way("friction", |at| at.force),
-        over_way("low", |at| at.low),
-        over_way("high", |at| at.high),
+        Curve::cloud("residual without it", Ink::Before, of(1)),
+        Curve::cloud("the effect", Ink::After, of(2)),
     ];
-    let picture = plots::curves(
-        &format!("Friction after a reversal ({})", curve.law),
-        &format!("way since the reversal, {unit}"),
-        result.effort_unit,
-        (540, 360),
-        &list,
-    );
-    picture.map(Some)
+    let title = format!("{}: {} (training)", curve.effect, curve.equation);
+    let (x, reach) = knee.map_or((curve.against.clone(), None), |knee| {
+        let reach = KNEES * factor * knee.value.abs();
+        ("velocity, mm/s".to_owned(), Some((-reach, reach)))
+    });
+    let plot = Plot {
+        x_range: reach,
+        ..plot(&title, &x, result.effort_unit, HALF_PX)
+    };
+    curves(&plot, &list)
 }
 
-/// A millionth of a position unit.
-fn small(unit: &str) -> (f64, &'static str) {
-    match unit {
-        "m" => (1.0e6, "µm"),
-        _ => (1.0e6, "µrad"),
-    }
+/// Velocities of the knee of Stribeck's curve that are shown.
+const KNEES: f64 = 10.0;
+
+/// Friction after a reversal with its interval, where there is presliding.
+#[must_use]
+pub fn presliding_picture(result: &Identification) -> Option<String> {
+    let curve = result.report.presliding.as_ref()?;
+    let unit = position_error_unit(result);
+    let way = |at: &AfterReversal| 1.0e6 * at.way;
+    let points = || curve.points.iter();
+    let list = [
+        Curve::band(
+            "95 % interval",
+            Ink::After,
+            points().map(|at| [way(at), at.low, at.high]),
+        ),
+        Curve::line(
+            "friction",
+            Ink::After,
+            points().map(|at| (way(at), at.force)),
+        ),
+    ];
+    let title = format!("Friction after a reversal ({})", curve.law);
+    let label = format!("way since the reversal, {unit}");
+    Some(curves(
+        &plot(&title, &label, result.effort_unit, HALF_PX),
+        &list,
+    ))
 }
 
 /// What the free run leaves over time.
-///
-/// # Errors
-/// Where the plot cannot be drawn.
-pub fn free_run_picture(result: &Identification) -> Outcome<String> {
-    let points = || result.curves.free_run.iter();
+#[must_use]
+pub fn free_run_picture(result: &Identification) -> String {
+    let of = |column: usize| {
+        let points = result.curves.free_run.iter();
+        points.map(move |at| (at[0], at[column]))
+    };
     let list = [
-        line("declared", points().map(|point| (point[0], point[1]))),
-        line("extended", points().map(|point| (point[0], point[2]))),
+        Curve::line("declared model", Ink::Before, of(1)),
+        Curve::line("extended model", Ink::After, of(2)),
     ];
-    plots::curves(
-        "Free run on the validation record: simulated − recorded",
-        "time, s",
-        position_error_unit(result),
-        (1080, 300),
+    let title = "Free run on the validation record: simulated − recorded";
+    curves(
+        &plot(title, "time, s", position_error_unit(result), WHOLE_PX),
         &list,
     )
 }

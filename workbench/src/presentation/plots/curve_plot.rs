@@ -1,130 +1,162 @@
-//! Curves, or clouds of dots, over one axis.
+//! Curves, clouds and bands over one axis.
+//!
+//! ```text
+//! title
+//! ▬ one   ▬ another        never on the data
+//! ┌────────────────┐
+//! │                │
+//! └────────────────┘
+//! ```
 
-use plotters::prelude::*;
+use super::curve::{Curve, Form};
+use super::density::{LEVELS, cells};
+use super::scale::Scale;
+use super::svg::{Anchor, Figure, path_through, text_width_px};
+use super::thinning::by_columns;
 
-use super::canvas::{Chart, PALE, SERIES, draw, failed, legend, name_in_legend, thinned};
-use crate::error::Outcome;
+const TITLE_PX: f64 = 15.0;
+const LABEL_PX: f64 = 12.0;
+const LEFT_PX: f64 = 66.0;
+const RIGHT_PX: f64 = 16.0;
+const BOTTOM_PX: f64 = 46.0;
+const TITLE_LINE_PX: f64 = 19.0;
+const LEGEND_LINE_PX: f64 = 18.0;
+const SWATCH_PX: f64 = 22.0;
+/// Between two ticks, px.
+const TICK_X_PX: f64 = 80.0;
+const TICK_Y_PX: f64 = 45.0;
 
-/// Height of the letters of a title, px.
-const LARGEST_TITLE: f64 = 16.0;
-/// Width of a letter over its height, on average, and a little more.
-const LETTER: f64 = 0.38;
-
-/// A named curve.
-pub struct Curve {
-    /// Legend.
-    pub name: String,
-    /// Points.
-    pub points: Vec<(f64, f64)>,
-    /// Dots instead of a line.
-    pub dots: bool,
+/// A plot of curves over one axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Plot<'a> {
+    /// What it shows.
+    pub title: &'a str,
+    /// Name and unit of the axis to the right.
+    pub x: &'a str,
+    /// Name and unit of the axis upwards.
+    pub y: &'a str,
+    /// Width, and height with one line of title and one of names, px.
+    pub size_px: (f64, f64),
+    /// What of the axis is shown; all that the curves reach without it.
+    pub x_range: Option<(f64, f64)>,
+    /// Over the logarithm of x; all values are above zero then.
+    pub is_logarithmic: bool,
 }
 
-/// One plot of several curves over the same axis.
-///
-/// # Errors
-/// Where the plot cannot be drawn.
-pub fn curves(title: &str, x: &str, y: &str, size: (u32, u32), list: &[Curve]) -> Outcome<String> {
-    let all = || list.iter().flat_map(|curve| curve.points.iter());
-    let (x_low, x_high) = range(all().map(|(x, _)| *x), 0.0);
-    let (y_low, y_high) = range(all().map(|(_, y)| *y), 0.05);
-    draw(size, |root| {
-        let mut chart = ChartBuilder::on(root)
-            .caption(title, ("sans-serif", title_size(title, size.0)))
-            .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(64)
-            .build_cartesian_2d(x_low..x_high, y_low..y_high)
-            .map_err(failed)?;
-        mesh(&mut chart, (x, x_high - x_low), (y, y_high - y_low))?;
-        for (curve, color) in list.iter().zip(SERIES) {
-            series(&mut chart, curve, color)?;
-        }
-        if list.len() > 1 {
-            legend(&mut chart, emptiest(list, (x_low, x_high), (y_low, y_high)))
-        } else {
-            Ok(())
-        }
-    })
-}
-
-/// Part of the width and of the height that a legend takes.
-const LEGEND: f64 = 0.3;
-
-/// The corner with the fewest points of all curves in it.
-fn emptiest(list: &[Curve], x: (f64, f64), y: (f64, f64)) -> SeriesLabelPosition {
-    use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
-    let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
-    let points = list.iter().flat_map(|curve| thinned(&curve.points, 3000));
-    let points: Vec<(f64, f64)> = points.map(|at| (share(at.0, x), share(at.1, y))).collect();
-    let inside = |(right, upper): (bool, bool)| {
-        let is_near = |share: f64, is_end: bool| if is_end { 1.0 - share } else { share } < LEGEND;
-        let near = points
-            .iter()
-            .filter(|at| is_near(at.0, right) && is_near(at.1, upper));
-        near.count()
+/// Draws curves, the first one lowest.
+#[must_use]
+pub fn curves(plot: &Plot<'_>, list: &[Curve]) -> String {
+    let title = lines(plot.title, TITLE_PX, plot.size_px.0 - 20.0);
+    let names = legend_places(list, plot.size_px.0 - LEFT_PX - RIGHT_PX);
+    let legend_lines = names.last().map_or(0, |(line, _)| line + 1);
+    let head_px = 10.0 + TITLE_LINE_PX * title.len() as f64 + LEGEND_LINE_PX * legend_lines as f64;
+    let extra_px = head_px - 10.0 - TITLE_LINE_PX - LEGEND_LINE_PX;
+    let size_px = (plot.size_px.0, plot.size_px.1 + extra_px.max(0.0));
+    let (x, y) = scales(plot, list, size_px, head_px);
+    let mut figure = Figure::new(size_px, plot.title, description(plot, list));
+    for (line, text) in title.iter().enumerate() {
+        let at = (10.0, 4.0 + TITLE_LINE_PX * (line + 1) as f64 - 4.0);
+        figure.text("name", at, Anchor::Start, text);
+    }
+    legend(
+        &mut figure,
+        list,
+        &names,
+        10.0 + TITLE_LINE_PX * title.len() as f64,
+    );
+    let area = Area {
+        x,
+        y,
+        size_px,
+        head_px,
     };
-    let corners = [
-        (UpperRight, (true, true)),
-        (UpperLeft, (false, true)),
-        (LowerRight, (true, false)),
-        (LowerLeft, (false, false)),
-    ];
-    let fewest = corners
-        .into_iter()
-        .min_by_key(|(_, corner)| inside(*corner));
-    fewest.map_or(UpperRight, |(position, _)| position)
+    area.mesh(&mut figure, plot);
+    for curve in list {
+        area.draw(&mut figure, curve);
+    }
+    figure.finish()
 }
 
-/// Height of the letters of a title, px: as large as its plot is wide enough for.
-fn title_size(title: &str, width_px: u32) -> f64 {
-    let letters = title.chars().count().max(1) as f64;
-    (f64::from(width_px) / (LETTER * letters)).min(LARGEST_TITLE)
+fn description(plot: &Plot<'_>, list: &[Curve]) -> String {
+    let names: Vec<&str> = list.iter().map(|curve| curve.name.as_str()).collect();
+    format!("{} over {}: {}", plot.y, plot.x, names.join(", "))
 }
 
-/// The mesh with its labels; each axis has a name and a width.
-fn mesh(
-    chart: &mut Chart<'_>,
-    (x, x_width): (&str, f64),
-    (y, y_width): (&str, f64),
-) -> Outcome<()> {
-    let mut mesh = chart.configure_mesh();
-    mesh.x_desc(x)
-        .y_desc(y)
-        .x_label_formatter(&|value| tick(*value, x_width))
-        .y_label_formatter(&|value| tick(*value, y_width))
-        .light_line_style(WHITE)
-        .bold_line_style(PALE.mix(0.5))
-        .label_style(("sans-serif", 12))
-        .draw()
-        .map_err(failed)
+/// A text in lines that are not wider than this.
+pub(super) fn lines(text: &str, size_px: f64, width_px: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width_px(&format!("{line} {word}"), size_px) <= width_px => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
-/// A value at an axis of some width: to a thousandth of it, without zeros that say nothing.
-fn tick(value: f64, width: f64) -> String {
-    let decimals = (3.0 - width.log10().floor()).clamp(0.0, 15.0) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
+/// Line and place of each name; nothing where there is one curve alone without a name.
+fn legend_places(list: &[Curve], width_px: f64) -> Vec<(usize, f64)> {
+    let mut places = Vec::new();
+    let (mut line, mut x) = (0, 0.0);
+    for curve in list.iter().filter(|curve| !curve.name.is_empty()) {
+        let wide = SWATCH_PX + 6.0 + text_width_px(&curve.name, LABEL_PX) + 14.0;
+        if x > 0.0 && x + wide > width_px {
+            (line, x) = (line + 1, 0.0);
+        }
+        places.push((line, x));
+        x += wide;
+    }
+    places
+}
+
+fn legend(figure: &mut Figure, list: &[Curve], places: &[(usize, f64)], top_px: f64) {
+    let named = list.iter().filter(|curve| !curve.name.is_empty());
+    for (curve, (line, x)) in named.zip(places) {
+        let (x, y) = (LEFT_PX + x, top_px + LEGEND_LINE_PX * (*line as f64 + 0.5));
+        let class = curve.ink.class();
+        match curve.form {
+            Form::Line(_) => {
+                figure.line(&format!("curve {class}"), (x, y), (x + SWATCH_PX, y));
+            }
+            Form::Cloud(_) => {
+                figure.rectangle(&format!("cloud {class}"), (x, y - 4.0), (SWATCH_PX, 8.0));
+            }
+            Form::Band(_) => {
+                figure.rectangle(&format!("band {class}"), (x, y - 5.0), (SWATCH_PX, 10.0));
+            }
+        }
+        figure.text(
+            "label",
+            (x + SWATCH_PX + 6.0, y + 4.0),
+            Anchor::Start,
+            &curve.name,
+        );
     }
 }
 
-fn series(chart: &mut Chart<'_>, curve: &Curve, color: RGBColor) -> Outcome<()> {
-    let points = thinned(&curve.points, 3000).copied();
-    let drawn = if curve.dots {
-        chart.draw_series(points.map(|at| Circle::new(at, 1, color.mix(0.5).filled())))
+/// The axes: what is shown of x, and all that the curves reach there.
+fn scales(plot: &Plot<'_>, list: &[Curve], size_px: (f64, f64), head_px: f64) -> (Scale, Scale) {
+    let reach: Vec<(f64, f64)> = list.iter().flat_map(Curve::reach).collect();
+    let x_values = plot
+        .x_range
+        .unwrap_or_else(|| range(reach.iter().map(|(x, _)| *x), 0.0));
+    let shown = reach
+        .iter()
+        .filter(|(x, _)| (x_values.0..=x_values.1).contains(x));
+    let y_values = range(shown.map(|(_, y)| *y), 0.05);
+    let x_places = (LEFT_PX, size_px.0 - RIGHT_PX);
+    let x = if plot.is_logarithmic {
+        Scale::logarithmic(x_values, x_places)
     } else {
-        chart.draw_series(LineSeries::new(points, color.stroke_width(2)))
+        Scale::linear(x_values, x_places)
     };
-    name_in_legend(drawn.map_err(failed)?, &curve.name, color);
-    Ok(())
+    (
+        x,
+        Scale::linear(y_values, (size_px.1 - BOTTOM_PX, head_px + 4.0)),
+    )
 }
 
 /// From the smallest to the largest value, and a share of the width more at both ends.
@@ -139,55 +171,124 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
     (low - margin * width, high + margin * width)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Where the data are.
+struct Area {
+    x: Scale,
+    y: Scale,
+    size_px: (f64, f64),
+    head_px: f64,
+}
 
-    #[test]
-    fn a_legend_stands_where_no_curve_is() {
-        use SeriesLabelPosition::{LowerRight, UpperLeft, UpperRight};
-        let rising = |sign: f64| Curve {
-            name: String::new(),
-            points: (0..100)
-                .map(|i| (f64::from(i), sign * f64::from(i)))
-                .collect(),
-            dots: false,
-        };
-        let corner = |curve: Curve, y: (f64, f64)| emptiest(&[curve], (0.0, 99.0), y);
-        assert!(matches!(corner(rising(1.0), (0.0, 99.0)), UpperLeft));
-        assert!(matches!(corner(rising(-1.0), (-99.0, 0.0)), UpperRight));
-        let both = [rising(1.0), rising(0.0)];
-        assert!(matches!(
-            emptiest(&both, (0.0, 99.0), (0.0, 99.0)),
-            UpperLeft
-        ));
-        let above = Curve {
-            points: vec![(0.0, 99.0), (99.0, 99.0)],
-            ..rising(0.0)
-        };
-        assert!(matches!(corner(above, (0.0, 99.0)), LowerRight));
+impl Area {
+    fn mesh(&self, figure: &mut Figure, plot: &Plot<'_>) {
+        let (left, right) = (LEFT_PX, self.size_px.0 - RIGHT_PX);
+        let (top, bottom) = (self.head_px + 4.0, self.size_px.1 - BOTTOM_PX);
+        for (value, word) in self.y.ticks(((bottom - top) / TICK_Y_PX).max(2.0)) {
+            let y = self.y.px(value);
+            figure.line("grid", (left, y), (right, y));
+            figure.text("tick", (left - 6.0, y + 4.0), Anchor::End, &word);
+        }
+        let mut free_from = f64::NEG_INFINITY;
+        for (value, word) in self.x.ticks(((right - left) / TICK_X_PX).max(2.0)) {
+            let x = self.x.px(value);
+            figure.line("grid", (x, top), (x, bottom));
+            let half = 0.5 * text_width_px(&word, 11.0);
+            let end = x + half;
+            // Words never touch each other, and never leave the picture.
+            if x - half > free_from && end < self.size_px.0 {
+                figure.text("tick", (x, bottom + 16.0), Anchor::Middle, &word);
+                free_from = end + 4.0;
+            }
+        }
+        figure.path("frame", &format!("M{left} {top}V{bottom}H{right}"), "");
+        let middle = 0.5 * (left + right);
+        figure.text("label", (middle, bottom + 36.0), Anchor::Middle, plot.x);
+        figure.text_upwards("label", (14.0, 0.5 * (top + bottom)), plot.y);
     }
 
-    #[test]
-    fn a_tick_has_the_digits_of_its_axis_and_no_zeros_that_say_nothing() {
-        for (value, width, wanted) in [
-            (100_000.0, 250_000.0, "100000"),
-            (-0.0, 0.6, "0"),
-            (-1.0e-9, 0.6, "0"),
-            (0.15, 0.6, "0.15"),
-            (0.1 + 0.2, 1.0, "0.3"),
-            (-40.0, 200.0, "-40"),
-            (2.5e-6, 2.0e-5, "0.0000025"),
-        ] {
-            assert_eq!(tick(value, width), wanted);
+    /// Places of the points that are shown.
+    fn places<'a>(&'a self, points: &'a [(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let shown = points
+            .iter()
+            .filter(|(x, y)| self.x.holds(*x) && y.is_finite());
+        shown.map(|(x, y)| (self.x.px(*x), self.y.px(*y)))
+    }
+
+    fn draw(&self, figure: &mut Figure, curve: &Curve) {
+        let class = curve.ink.class();
+        match &curve.form {
+            Form::Line(points) => {
+                let path = path_through(by_columns(self.places(points)));
+                figure.path(&format!("curve {class}"), &path, &curve.name);
+            }
+            Form::Cloud(points) => {
+                let paths = cells(self.places(points));
+                for (level, path) in paths.iter().enumerate().take(LEVELS) {
+                    if !path.is_empty() {
+                        let class = format!("cloud {class} thin{level}");
+                        figure.path(&class, path, &curve.name);
+                    }
+                }
+            }
+            Form::Band(points) => {
+                let edge = |which: usize| -> Vec<(f64, f64)> {
+                    points.iter().map(|at| (at[0], at[which])).collect()
+                };
+                let (low, high) = (edge(1), edge(2));
+                let back: Vec<_> = self.places(&high).collect();
+                let around = self.places(&low).chain(back.into_iter().rev());
+                figure.path(&format!("band {class}"), &path_through(around), &curve.name);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::Ink;
+    use super::*;
+
+    fn plot(title: &str) -> Plot<'_> {
+        Plot {
+            title,
+            x: "time, s",
+            y: "N",
+            size_px: (540.0, 300.0),
+            x_range: None,
+            is_logarithmic: false,
         }
     }
 
     #[test]
-    fn a_title_is_as_wide_as_its_plot_at_most() {
-        assert_eq!(title_size("short", 560), LARGEST_TITLE);
-        let long = "l".repeat(100);
-        let size = title_size(&long, 560);
-        assert!((size * LETTER * 100.0 - 560.0).abs() < 1.0e-9, "{size}");
+    fn a_long_title_and_many_names_make_the_picture_higher_and_nothing_narrower() {
+        let words = "word ".repeat(60);
+        assert!(lines(&words, TITLE_PX, 520.0).len() > 3);
+        for line in lines(&words, TITLE_PX, 520.0) {
+            assert!(text_width_px(&line, TITLE_PX) <= 520.0, "{line}");
+        }
+        let named =
+            |i: usize| Curve::line(&format!("a name of curve {i}"), Ink::Other(i), [(0.0, 1.0)]);
+        let list: Vec<Curve> = (0..8).map(named).collect();
+        let places = legend_places(&list, 460.0);
+        assert_eq!(places.len(), 8);
+        assert!(places.last().unwrap().0 >= 2);
+        assert!(curves(&plot(&words), &list).contains("viewBox=\"0 0 540 "));
+    }
+
+    #[test]
+    fn what_is_out_of_the_range_is_neither_drawn_nor_widens_the_axis_upwards() {
+        let curve = Curve::line("", Ink::Before, [(0.0, 1.0), (1.0, 2.0), (9.0, 1000.0)]);
+        let part = Plot {
+            x_range: Some((0.0, 1.0)),
+            ..plot("")
+        };
+        let svg = curves(&part, &[curve]);
+        assert!(!svg.contains("1000") && svg.contains(">2</text>"), "{svg}");
+    }
+
+    #[test]
+    fn nothing_to_draw_is_an_empty_mesh() {
+        let empty = Curve::line("", Ink::Before, [(f64::NAN, 1.0)]);
+        assert!(curves(&plot("empty"), &[empty]).contains("empty"));
     }
 }

@@ -1,53 +1,111 @@
 //! The polar plot of a ballbar test: the deviation is drawn with an exaggerated scale on the
 //! nominal circle.
 
-use std::f64::consts::TAU;
-
-use plotters::prelude::*;
-
-use super::canvas::{Chart, INK, PALE, SERIES, draw, failed, legend, name_in_legend, thinned};
+use super::curve::Ink;
+use super::curve_plot::lines;
+use super::scale::nice_step;
+use super::svg::{Anchor, Figure, path_through};
+use super::thinning::without_straight;
 use crate::ballbar::{Point, radial_um};
-use crate::error::Outcome;
 
-/// A ring is so far from the next, in radii of the nominal circle.
-const RING: f64 = 0.12;
-/// Rings to either side of the nominal circle.
-const RINGS: i32 = 3;
+/// From the nominal circle to the outermost ring, px.
+const BAND_PX: f64 = 69.0;
+/// At most so many rings to either side of the nominal circle.
+const RINGS: f64 = 4.5;
+/// The nominal circle, px.
+const NOMINAL_PX: f64 = 172.0;
+/// Where the rings have their numbers: between two reversals, and steep enough that none touches
+/// another.
+const NUMBERS_DEG: f64 = 67.0;
+const WIDTH_PX: f64 = 760.0;
+/// From the middle to the words at top and bottom.
+const ABOVE_PX: f64 = 300.0;
+const LEGEND_LINE_PX: f64 = 18.0;
 
 /// A path for the polar plot.
 pub struct Trace<'a> {
-    /// Legend.
+    /// Name.
     pub name: String,
-    /// Turns that count.
+    /// Colour.
+    pub ink: Ink,
+    /// Dashed: the other direction of the same.
+    pub is_dashed: bool,
+    /// Turns that are shown.
     pub points: &'a [Point],
     /// Nominal radius, m.
     pub radius_m: f64,
 }
 
-/// Polar plot of circle deviations.
-///
-/// # Errors
-/// Where the plot cannot be drawn.
-pub fn polar(title: &str, traces: &[Trace<'_>]) -> Outcome<String> {
-    let largest_um = traces.iter().map(largest_um).fold(1.0, f64::max);
-    let ring_um = nice_step(largest_um / f64::from(RINGS));
-    draw((620, 647), |root| {
-        let mut chart = ChartBuilder::on(root)
-            .caption(title, ("sans-serif", 18))
-            .margin(10)
-            .build_cartesian_2d(-1.55..1.55, -1.55..1.55)
-            .map_err(failed)?;
-        grid(&mut chart)?;
-        for (trace, color) in traces.iter().zip(SERIES) {
-            path(&mut chart, trace, color, ring_um)?;
+/// The polar plot of a circle test.
+pub struct Polar<'a> {
+    /// What it shows.
+    pub title: &'a str,
+    /// Names of the axes to the right and upwards.
+    pub axes: [&'a str; 2],
+    /// The paths; the first one lowest.
+    pub traces: &'a [Trace<'a>],
+    /// What stands at the reversals, at 0°, 90°, 180° and 270°.
+    pub bursts: [String; 4],
+    /// Width of the tolerance zone about the nominal circle, µm.
+    pub tolerance_um: Option<f64>,
+}
+
+/// Draws it.
+#[must_use]
+pub fn polar(plot: &Polar<'_>) -> String {
+    let largest_um = plot.traces.iter().map(largest_um).fold(0.1, f64::max);
+    let largest_um = plot
+        .tolerance_um
+        .map_or(largest_um, |um| largest_um.max(0.5 * um));
+    let ring_um = nice_step(largest_um / RINGS);
+    let title = lines(plot.title, 15.0, WIDTH_PX - 20.0);
+    let head_px = 19.0 * title.len() as f64 + LEGEND_LINE_PX * plot.traces.len().div_ceil(2) as f64;
+    let middle = (0.5 * WIDTH_PX, head_px + ABOVE_PX + 10.0);
+    let size_px = (WIDTH_PX, middle.1 + ABOVE_PX);
+    let mut figure = Figure::new(size_px, plot.title, description(plot, ring_um));
+    for (line, text) in title.iter().enumerate() {
+        figure.text(
+            "name",
+            (10.0, 19.0 * (line + 1) as f64),
+            Anchor::Start,
+            text,
+        );
+    }
+    legend(&mut figure, plot.traces, 19.0 * title.len() as f64 + 6.0);
+    let rings = Rings {
+        middle,
+        ring_um,
+        count: (largest_um / ring_um - 1.0e-9).ceil().max(1.0) as i32,
+    };
+    rings.grid(&mut figure, plot.axes);
+    for (place, text) in plot.bursts.iter().enumerate() {
+        rings.burst(&mut figure, place, text);
+    }
+    if let Some(tolerance_um) = plot.tolerance_um {
+        for side in [-0.5, 0.5] {
+            let radius = rings.radius_px(side * tolerance_um);
+            figure.circle(
+                "tolerance",
+                middle,
+                radius,
+                &format!("tolerance {tolerance_um} µm"),
+            );
         }
-        let note = format!("ring to ring {ring_um} µm");
-        let style = ("sans-serif", 13).into_font().color(&INK);
-        chart
-            .draw_series([Text::new(note, (-1.5, -1.5), style)])
-            .map_err(failed)?;
-        legend(&mut chart, SeriesLabelPosition::UpperRight)
-    })
+    }
+    for trace in plot.traces {
+        rings.draw(&mut figure, trace);
+    }
+    rings.numbers(&mut figure);
+    figure.finish()
+}
+
+fn description(plot: &Polar<'_>, ring_um: f64) -> String {
+    let of = |trace: &Trace<'_>| format!("{} up to {:.2} µm", trace.name, largest_um(trace));
+    let traces: Vec<String> = plot.traces.iter().map(of).collect();
+    format!(
+        "Deviation from the nominal circle, {ring_um} µm from ring to ring: {}",
+        traces.join("; ")
+    )
 }
 
 fn largest_um(trace: &Trace<'_>) -> f64 {
@@ -58,77 +116,210 @@ fn largest_um(trace: &Trace<'_>) -> f64 {
     deviations.fold(0.0, f64::max)
 }
 
-/// Rings, the nominal circle among them, and the axes.
-fn grid(chart: &mut Chart<'_>) -> Outcome<()> {
-    for ring in -RINGS..=RINGS {
-        let radius = 1.0 + f64::from(ring) * RING;
-        let style = if ring == 0 {
-            INK.stroke_width(1)
+fn legend(figure: &mut Figure, traces: &[Trace<'_>], top_px: f64) {
+    for (index, trace) in traces.iter().enumerate() {
+        let x = 10.0 + 0.5 * WIDTH_PX * (index % 2) as f64;
+        let y = top_px + LEGEND_LINE_PX * ((index / 2) as f64 + 0.5);
+        figure.line(&class(trace), (x, y), (x + 30.0, y));
+        figure.text("label", (x + 36.0, y + 4.0), Anchor::Start, &trace.name);
+    }
+}
+
+fn class(trace: &Trace<'_>) -> String {
+    let dashes = if trace.is_dashed { " back" } else { "" };
+    format!("curve {}{dashes}", trace.ink.class())
+}
+
+/// Where deviations are drawn.
+struct Rings {
+    middle: (f64, f64),
+    ring_um: f64,
+    /// To either side of the nominal circle.
+    count: i32,
+}
+
+impl Rings {
+    fn radius_px(&self, deviation_um: f64) -> f64 {
+        let per_um = BAND_PX / (f64::from(self.count) * self.ring_um);
+        (NOMINAL_PX + per_um * deviation_um).max(0.0)
+    }
+
+    fn ring_px(&self, ring: i32) -> f64 {
+        self.radius_px(f64::from(ring) * self.ring_um)
+    }
+
+    fn at(&self, angle_rad: f64, radius_px: f64) -> (f64, f64) {
+        let (sin, cos) = angle_rad.sin_cos();
+        (
+            self.middle.0 + radius_px * cos,
+            self.middle.1 - radius_px * sin,
+        )
+    }
+
+    /// Rings, the nominal circle among them, degrees and the signs of the axes.
+    fn grid(&self, figure: &mut Figure, axes: [&str; 2]) {
+        let outermost = NOMINAL_PX + BAND_PX;
+        for ring in -self.count..=self.count {
+            let class = if ring == 0 { "nominal" } else { "grid" };
+            figure.circle(class, self.middle, self.ring_px(ring), "");
+        }
+        for step in 0..12_u8 {
+            let degrees = 30.0 * f64::from(step);
+            let angle = degrees.to_radians();
+            figure.line(
+                "grid",
+                self.at(angle, 80.0),
+                self.at(angle, outermost + 4.0),
+            );
+            if step % 3 != 0 {
+                let (x, y) = self.at(angle, outermost + 20.0);
+                figure.text("tick", (x, y + 4.0), Anchor::Middle, &format!("{degrees}°"));
+            }
+        }
+        for place in 0..4 {
+            let sign = if place < 2 { '+' } else { '−' };
+            let text = format!("{sign}{} ({}°)", axes[place % 2], 90 * place);
+            let (at, anchor) = self.beside(place, 0.0);
+            figure.text("label", at, anchor, &text);
+        }
+    }
+
+    /// A place for words outside the rings at 0°, 90°, 180° or 270°, so many lines further out.
+    fn beside(&self, place: usize, line: f64) -> ((f64, f64), Anchor) {
+        let out = NOMINAL_PX + BAND_PX + 8.0;
+        let (x, y) = self.middle;
+        match place {
+            0 => ((x + out, y - 5.0 + 16.0 * line), Anchor::Start),
+            1 => ((x, y - out - 4.0 - 16.0 * line), Anchor::Middle),
+            2 => ((x - out, y - 5.0 + 16.0 * line), Anchor::End),
+            _ => ((x, y + out + 8.0 + 16.0 * line), Anchor::Middle),
+        }
+    }
+
+    /// The burst at a reversal; beside the circle in lines that fit there.
+    fn burst(&self, figure: &mut Figure, place: usize, text: &str) {
+        let out = NOMINAL_PX + BAND_PX + 16.0;
+        let width = if place.is_multiple_of(2) {
+            0.5 * WIDTH_PX - out
         } else {
-            PALE.stroke_width(1)
+            WIDTH_PX
         };
-        chart
-            .draw_series(LineSeries::new(ring_points(radius), style))
-            .map_err(failed)?;
+        let lines = lines(text, 12.0, width);
+        let count = lines.len();
+        for (index, line) in lines.iter().enumerate() {
+            // Above the circle the first line is the uppermost as well.
+            let number = if place == 1 { count - index } else { index + 1 };
+            let (at, anchor) = self.beside(place, number as f64);
+            figure.text("burst", at, anchor, line);
+        }
     }
-    for axis in 0..4_u8 {
-        let (sin, cos) = (TAU / 4.0 * f64::from(axis)).sin_cos();
-        let ends = [(0.5 * cos, 0.5 * sin), (1.45 * cos, 1.45 * sin)];
-        chart
-            .draw_series(LineSeries::new(ends, PALE))
-            .map_err(failed)?;
+
+    fn draw(&self, figure: &mut Figure, trace: &Trace<'_>) {
+        let place = |point: &Point| {
+            let angle = point.reference_m[1].atan2(point.reference_m[0]);
+            self.at(angle, self.radius_px(radial_um(point, trace.radius_m)))
+        };
+        let places = trace.points.iter().map(place).collect();
+        let path = path_through(without_straight(places));
+        let tip = format!("{}: up to {:.2} µm", trace.name, largest_um(trace));
+        figure.path(&class(trace), &path, &tip);
     }
-    Ok(())
-}
 
-/// The deviation of a trace, `ring_um` of it from ring to ring.
-fn path(chart: &mut Chart<'_>, trace: &Trace<'_>, color: RGBColor, ring_um: f64) -> Outcome<()> {
-    let per_um = RING / ring_um;
-    let place = |point: &Point| {
-        let angle = point.reference_m[1].atan2(point.reference_m[0]);
-        let radius = (1.0 + per_um * radial_um(point, trace.radius_m)).max(0.0);
-        (radius * angle.cos(), radius * angle.sin())
-    };
-    let line = thinned(trace.points, 4000).map(place);
-    let series = chart
-        .draw_series(LineSeries::new(line, color.stroke_width(2)))
-        .map_err(failed)?;
-    name_in_legend(series, &trace.name, color);
-    Ok(())
-}
-
-fn ring_points(radius: f64) -> impl Iterator<Item = (f64, f64)> {
-    (0..=180_u8).map(move |i| {
-        let (sin, cos) = (TAU * f64::from(i) / 180.0).sin_cos();
-        (radius * cos, radius * sin)
-    })
-}
-
-/// 1, 2 or 5 times a power of ten, at least `value`.
-fn nice_step(value: f64) -> f64 {
-    let power = 10.0_f64.powf(value.max(1.0e-9).log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|m| m * power)
-        .find(|step| *step >= value * (1.0 - 1.0e-9))
-        .unwrap_or(10.0 * power)
+    /// The deviation that each ring stands for, where nothing happens on a circle.
+    fn numbers(&self, figure: &mut Figure) {
+        for ring in (-self.count..=self.count).filter(|ring| *ring != 0) {
+            let (x, y) = self.at(NUMBERS_DEG.to_radians(), self.ring_px(ring));
+            let um = (1.0e6 * f64::from(ring.abs()) * self.ring_um).round() / 1.0e6;
+            let sign = if ring < 0 { '−' } else { '+' };
+            figure.text(
+                "ring",
+                (x, y + 3.5),
+                Anchor::Middle,
+                &format!("{sign}{um} µm"),
+            );
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
+    use super::super::svg::text_width_px;
     use super::*;
 
-    #[test]
-    fn a_step_is_1_2_or_5_times_a_power_of_ten_and_never_less_than_asked_for() {
-        for (value, step) in [
-            (0.3, 0.5),
-            (1.0, 1.0),
-            (1.1, 2.0),
-            (4.0, 5.0),
-            (51.0, 100.0),
-        ] {
-            let got = nice_step(value);
-            assert!((got / step - 1.0).abs() < 1.0e-9, "{value}: {got}");
+    fn turn(deviation_um: impl Fn(f64) -> f64) -> Vec<Point> {
+        let at = |i: u32| {
+            let angle_rad = TAU * f64::from(i) / 20_000.0;
+            let (sin, cos) = angle_rad.sin_cos();
+            let on = |radius_m: f64| [radius_m * cos, radius_m * sin];
+            Point {
+                angle_rad,
+                table_m: on(0.1 + 1.0e-6 * deviation_um(angle_rad)),
+                motor_m: on(0.1),
+                reference_m: on(0.1),
+            }
+        };
+        (0..20_000).map(at).collect()
+    }
+
+    /// Places of a path.
+    fn places(path: &str) -> Vec<(f64, f64)> {
+        let mut at = (0.0, 0.0);
+        let mut places = Vec::new();
+        for step in path.trim_start_matches('M').split('l') {
+            let (x, y) = step.split_once(' ').unwrap();
+            at = (
+                at.0 + x.parse::<f64>().unwrap(),
+                at.1 + y.parse::<f64>().unwrap(),
+            );
+            places.push(at);
         }
+        places
+    }
+
+    /// The claim of a certificate: what is drawn is what was measured.
+    #[test]
+    fn the_path_of_a_picture_is_the_deviation_within_five_hundredths_of_a_micrometre() {
+        let shape =
+            |angle: f64| 4.0 * (3.0 * angle).sin() + 9.0 * (-(angle - 2.0).powi(2) / 1.0e-3).exp();
+        let points = turn(shape);
+        let trace = Trace {
+            name: "drawn".into(),
+            ink: Ink::After,
+            is_dashed: false,
+            points: &points,
+            radius_m: 0.1,
+        };
+        let svg = polar(&Polar {
+            title: "",
+            axes: ["X", "Y"],
+            traces: &[trace],
+            bursts: Default::default(),
+            tolerance_um: None,
+        });
+        let path = svg.split("class=\"curve after\" d=\"").nth(2).unwrap();
+        let places = places(path.split('"').next().unwrap());
+        let middle = (0.5 * WIDTH_PX, LEGEND_LINE_PX + ABOVE_PX + 10.0);
+        // Four rings of 2 µm.
+        let um_per_px = 8.0 / BAND_PX;
+        for pair in places.windows(2) {
+            // Between two places a straight line is drawn.
+            let at = (0.5 * (pair[0].0 + pair[1].0), 0.5 * (pair[0].1 + pair[1].1));
+            for (x, y) in [pair[0], at] {
+                let (x, y) = (x - middle.0, middle.1 - y);
+                let drawn_um = um_per_px * (x.hypot(y) - NOMINAL_PX);
+                let error_um = drawn_um - shape(y.atan2(x).rem_euclid(TAU));
+                assert!(error_um.abs() < 0.05, "{error_um} at {x} {y}");
+            }
+        }
+        assert!(places.len() < 3000, "{}", places.len());
+    }
+
+    #[test]
+    fn a_burst_before_and_after_fits_beside_the_circle() {
+        let out = NOMINAL_PX + BAND_PX + 16.0;
+        let width = text_width_px("33.80 → 0.33 µm", 12.0);
+        assert!(0.5 * WIDTH_PX - out > width, "{width}");
     }
 }

@@ -1,0 +1,410 @@
+//! What a circle deviates by, cause by cause, as ballbar users know them.
+//!
+//! Outside the windows about the reversals the radial deviation of a path is a sum; φ is the place
+//! on the circle, s the direction (+1 counter-clockwise), ω·R the feed:
+//!
+//! | cause | in the radial deviation | told from others by |
+//! |---|---|---|
+//! | centre, radius | cos φ, sin φ, 1 | no error of the axes but for a common scale |
+//! | scaling mismatch | ½·(kx − ky)·R·cos 2φ | the same in both directions |
+//! | squareness α | ½·α·R·sin 2φ | the same in both directions |
+//! | servo mismatch τx − τy | ½·s·ω·R·(τx − τy)·sin 2φ | turns over with the direction |
+//! | backlash of X, lost motion | ½·b·s·sgn(sin φ)·cos φ | a step at its reversals |
+//! | cyclic error of X | A·cos(2π·x/lead + ψ)·cos φ | its period |
+//!
+//! They are fitted at once by least squares to both directions. Reversal spikes are the bursts
+//! inside the windows.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use super::reversals::{REVERSALS, apart};
+use super::{Point, radial_um};
+
+/// An axis of the circle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CircleAxis {
+    /// Its name.
+    pub name: String,
+    /// Period of its cyclic error: the lead of its screw, m.
+    pub lead_m: f64,
+}
+
+/// A circle in both directions.
+#[derive(Clone, Debug)]
+pub struct BothDirections<'a> {
+    /// Turns that count.
+    pub counter_clockwise: &'a [Point],
+    /// The same the other way round.
+    pub clockwise: &'a [Point],
+    /// Nominal radius, m.
+    pub radius_m: f64,
+    /// Feed, m/s.
+    pub feed_m_per_s: f64,
+    /// The axes.
+    pub axes: [CircleAxis; 2],
+    /// Half width of the window about a reversal, rad.
+    pub window_rad: f64,
+    /// Bursts, µm, in the order of [`REVERSALS`].
+    pub bursts_um: [f64; 4],
+    /// Whether an instrument at the table sees the circle; scales do not see their own errors.
+    pub is_at_table: bool,
+}
+
+/// A cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cause {
+    /// Its name, with that of its axis.
+    pub cause: String,
+    /// The circular deviation that it alone would make, µm; none where it was not measured.
+    pub um: Option<f64>,
+    /// Its share of all of them, percent.
+    pub share_percent: Option<f64>,
+    /// The same in the unit in which it is mended.
+    pub value: Option<f64>,
+    /// That unit.
+    pub unit: &'static str,
+}
+
+/// The causes, the largest first; those that were not measured last.
+#[must_use]
+pub fn causes(seen: &BothDirections<'_>) -> Vec<Cause> {
+    let mut list = spikes(seen);
+    list.extend(smooth(seen));
+    let sum_um: f64 = list.iter().filter_map(|own| own.um).sum();
+    for own in &mut list {
+        own.share_percent = own
+            .um
+            .filter(|_| sum_um > 0.0)
+            .map(|um| 100.0 * um / sum_um);
+    }
+    let size = |own: &Cause| own.um.unwrap_or(-1.0);
+    list.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    list
+}
+
+fn spikes(seen: &BothDirections<'_>) -> Vec<Cause> {
+    let of = |axis: usize| {
+        let own = REVERSALS.iter().zip(seen.bursts_um);
+        let own = own.filter(|((_, of, _), _)| *of == axis);
+        let largest = own.map(|(_, burst)| burst).fold(0.0, f64::max);
+        let name = format!("reversal spike {}", seen.axes[axis].name);
+        cause(name, Some(largest), Some(largest), "µm")
+    };
+    vec![of(0), of(1)]
+}
+
+/// A column of the sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Term {
+    Radius,
+    CentreX,
+    CentreY,
+    Scaling,
+    Squareness,
+    Servo,
+    Backlash(usize),
+    /// Of the wave, in both directions.
+    CyclicCos(usize),
+    CyclicSin(usize),
+    /// What goes with the speed: a loop follows its scale a little late.
+    LateCos(usize),
+    LateSin(usize),
+}
+
+/// Fewer periods of a cyclic error than this on the diameter look like something else.
+const LEAST_PERIODS: f64 = 1.3;
+
+fn terms(seen: &BothDirections<'_>) -> Vec<Term> {
+    use Term::{
+        Backlash, CentreX, CentreY, CyclicCos, CyclicSin, LateCos, LateSin, Radius, Scaling, Servo,
+        Squareness,
+    };
+    let mut terms = vec![Radius, CentreX, CentreY, Scaling, Squareness, Servo];
+    terms.extend([Backlash(0), Backlash(1)]);
+    for axis in [0, 1] {
+        if 2.0 * seen.radius_m >= LEAST_PERIODS * seen.axes[axis].lead_m {
+            terms.extend([
+                CyclicCos(axis),
+                CyclicSin(axis),
+                LateCos(axis),
+                LateSin(axis),
+            ]);
+        }
+    }
+    terms
+}
+
+impl Term {
+    /// At a place, in a direction, for a coefficient of 1 µm.
+    fn at(self, seen: &BothDirections<'_>, point: &Point, sense: f64) -> f64 {
+        let angle = point.reference_m[1].atan2(point.reference_m[0]);
+        let (sin, cos) = angle.sin_cos();
+        let along = [cos, sin];
+        let speed = [-sense * sin, sense * cos];
+        let wave = |axis: usize| TAU * seen.radius_m * along[axis] / seen.axes[axis].lead_m;
+        match self {
+            Self::Radius => 1.0,
+            Self::CentreX => cos,
+            Self::CentreY => sin,
+            Self::Scaling => (2.0 * angle).cos(),
+            Self::Squareness => (2.0 * angle).sin(),
+            Self::Servo => sense * (2.0 * angle).sin(),
+            // The table hangs behind: −½·sgn(v) along the axis.
+            Self::Backlash(0) => 0.5 * sense * sin.signum() * cos,
+            Self::Backlash(_) => -0.5 * sense * cos.signum() * sin,
+            Self::CyclicCos(axis) => wave(axis).cos() * along[axis],
+            Self::CyclicSin(axis) => wave(axis).sin() * along[axis],
+            Self::LateCos(axis) => speed[axis] * wave(axis).cos() * along[axis],
+            Self::LateSin(axis) => speed[axis] * wave(axis).sin() * along[axis],
+        }
+    }
+}
+
+/// About so many points of each direction are fitted.
+const FITTED: usize = 6000;
+
+fn smooth(seen: &BothDirections<'_>) -> Vec<Cause> {
+    let terms = terms(seen);
+    let Some(coefficients) = fitted(seen, &terms) else {
+        return Vec::new();
+    };
+    let sized = Sized {
+        seen,
+        terms,
+        coefficients,
+    };
+    let mut list = sized.of_both_axes();
+    list.extend([0, 1].into_iter().flat_map(|axis| sized.of_axis(axis)));
+    list
+}
+
+/// Terms with their coefficients.
+struct Sized<'a> {
+    seen: &'a BothDirections<'a>,
+    terms: Vec<Term>,
+    coefficients: Vec<f64>,
+}
+
+impl Sized<'_> {
+    /// Coefficient of a term, µm.
+    fn of(&self, term: Term) -> Option<f64> {
+        let place = self.terms.iter().position(|own| *own == term)?;
+        Some(self.coefficients[place])
+    }
+
+    /// The same where it takes an instrument at the table to see it.
+    fn at_table(&self, term: Term) -> Option<f64> {
+        self.of(term).filter(|_| self.seen.is_at_table)
+    }
+
+    fn of_both_axes(&self) -> Vec<Cause> {
+        let [x, y] = &self.seen.axes;
+        let per_radius = 2.0 / self.seen.radius_m;
+        let per_feed = 2.0e-3 / self.seen.feed_m_per_s;
+        [
+            (
+                format!("scaling, {} against {}", x.name, y.name),
+                self.at_table(Term::Scaling),
+                per_radius,
+                "ppm",
+            ),
+            (
+                "squareness".to_owned(),
+                self.at_table(Term::Squareness),
+                per_radius,
+                "µm/m",
+            ),
+            (
+                "servo mismatch".to_owned(),
+                self.of(Term::Servo),
+                per_feed,
+                "ms",
+            ),
+        ]
+        .map(|(name, um, per_um, unit)| {
+            cause(
+                name,
+                um.map(|um| 2.0 * um.abs()),
+                um.map(|um| per_um * um),
+                unit,
+            )
+        })
+        .into()
+    }
+
+    fn of_axis(&self, axis: usize) -> [Cause; 2] {
+        let name = &self.seen.axes[axis].name;
+        let gap = self.of(Term::Backlash(axis));
+        let wave = [
+            Term::CyclicCos(axis),
+            Term::CyclicSin(axis),
+            Term::LateCos(axis),
+            Term::LateSin(axis),
+        ];
+        let squares = wave.map(|term| self.at_table(term).map(|um| um * um));
+        let wave = squares.into_iter().sum::<Option<f64>>().map(f64::sqrt);
+        [
+            cause(format!("backlash {name}"), gap.map(f64::abs), gap, "µm"),
+            cause(
+                format!("cyclic error {name}"),
+                wave.map(|um| 2.0 * um),
+                wave,
+                "µm",
+            ),
+        ]
+    }
+}
+
+fn cause(cause: String, um: Option<f64>, value: Option<f64>, unit: &'static str) -> Cause {
+    Cause {
+        cause,
+        um,
+        share_percent: None,
+        value,
+        unit,
+    }
+}
+
+/// Coefficients of the terms, µm; none where the points do not tell them apart.
+fn fitted(seen: &BothDirections<'_>, terms: &[Term]) -> Option<Vec<f64>> {
+    let count = terms.len();
+    let mut normal = DMatrix::<f64>::zeros(count, count);
+    let mut right = DVector::<f64>::zeros(count);
+    for (points, sense) in [(seen.counter_clockwise, 1.0), (seen.clockwise, -1.0)] {
+        let stride = (points.len() / FITTED).max(1);
+        let quiet = points
+            .iter()
+            .step_by(stride)
+            .filter(|point| is_quiet(seen, point));
+        let quiet: Vec<&Point> = quiet.collect();
+        // Both directions count the same, however many turns were run.
+        let weight = 1.0 / quiet.len().max(1) as f64;
+        for point in quiet {
+            let row = terms.iter().map(|term| term.at(seen, point, sense));
+            let row = DVector::from_iterator(count, row);
+            right += &row * (weight * radial_um(point, seen.radius_m));
+            normal += &row * row.transpose() * weight;
+        }
+    }
+    let solved = normal.cholesky()?.solve(&right);
+    solved
+        .iter()
+        .all(|own| own.is_finite())
+        .then(|| solved.as_slice().to_vec())
+}
+
+/// Outside the windows about the reversals.
+fn is_quiet(seen: &BothDirections<'_>, point: &Point) -> bool {
+    let angle = point.reference_m[1].atan2(point.reference_m[0]);
+    (0..4_u8).all(|quarter| apart(angle, FRAC_PI_2 * f64::from(quarter)) > seen.window_rad)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS_M: f64 = 0.1;
+    const FEED_M_PER_S: f64 = 2.0 / 60.0;
+
+    /// What the axes of a machine do wrong, by the setpoint and the direction of travel, m.
+    type Wrong = fn([f64; 2], [f64; 2]) -> [f64; 2];
+
+    fn path(sense: f64, wrong: Wrong) -> Vec<Point> {
+        let at = |i: u32| {
+            let angle = sense * TAU * f64::from(i) / 20_000.0;
+            let (sin, cos) = angle.sin_cos();
+            let reference_m = [RADIUS_M * cos, RADIUS_M * sin];
+            let velocity = [-sense * FEED_M_PER_S * sin, sense * FEED_M_PER_S * cos];
+            let error = wrong(reference_m, velocity);
+            Point {
+                angle_rad: angle.abs(),
+                table_m: [0, 1].map(|axis| reference_m[axis] + error[axis]),
+                motor_m: reference_m,
+                reference_m,
+            }
+        };
+        (0..20_000).map(at).collect()
+    }
+
+    fn found(wrong: Wrong, is_at_table: bool) -> Vec<Cause> {
+        let [counter_clockwise, clockwise] = [1.0, -1.0].map(|sense| path(sense, wrong));
+        causes(&BothDirections {
+            counter_clockwise: &counter_clockwise,
+            clockwise: &clockwise,
+            radius_m: RADIUS_M,
+            feed_m_per_s: FEED_M_PER_S,
+            axes: ["X", "Y"].map(|name| CircleAxis {
+                name: name.into(),
+                lead_m: 0.01,
+            }),
+            window_rad: 15.0_f64.to_radians(),
+            bursts_um: [0.0; 4],
+            is_at_table,
+        })
+    }
+
+    /// Each cause alone comes back in its own unit, and nothing else beside it.
+    #[test]
+    fn each_cause_comes_back_alone() {
+        let cases: [(&str, f64, Wrong); 6] = [
+            ("scaling, X against Y", 30.0, |at, _| [30.0e-6 * at[0], 0.0]),
+            ("squareness", 40.0, |at, _| [40.0e-6 * at[1], 0.0]),
+            ("servo mismatch", 0.2, |_, v| [-0.2e-3 * v[0], 0.0]),
+            ("backlash X", 8.0, |_, v| [-4.0e-6 * v[0].signum(), 0.0]),
+            ("backlash Y", 6.0, |_, v| [0.0, -3.0e-6 * v[1].signum()]),
+            ("cyclic error Y", 2.0, |at, _| {
+                [0.0, 2.0e-6 * (TAU * at[1] / 0.01 + 0.7).sin()]
+            }),
+        ];
+        for (name, wanted, wrong) in cases {
+            let list = found(wrong, true);
+            assert_eq!(list[0].cause, name, "{list:?}");
+            let value = list[0].value.unwrap();
+            assert!((value / wanted - 1.0).abs() < 0.02, "{name}: {value}");
+            assert!(list[0].share_percent.unwrap() > 97.0, "{list:?}");
+        }
+    }
+
+    #[test]
+    fn all_at_once_are_told_apart() {
+        let list = found(
+            |at, v| {
+                [
+                    30.0e-6 * at[0] + 40.0e-6 * at[1] - 0.2e-3 * v[0] - 4.0e-6 * v[0].signum(),
+                    2.0e-6 * (TAU * at[1] / 0.01).sin(),
+                ]
+            },
+            true,
+        );
+        for (name, wanted) in [
+            ("scaling, X against Y", 30.0),
+            ("squareness", 40.0),
+            ("servo mismatch", 0.2),
+            ("backlash X", 8.0),
+            ("cyclic error Y", 2.0),
+        ] {
+            let own = list.iter().find(|own| own.cause == name).unwrap();
+            let value = own.value.unwrap();
+            assert!((value / wanted - 1.0).abs() < 0.03, "{name}: {value}");
+        }
+    }
+
+    #[test]
+    fn what_a_scale_cannot_see_was_not_measured() {
+        let list = found(|at, _| [40.0e-6 * at[1], 0.0], false);
+        let blind = list.iter().filter(|own| own.um.is_none());
+        let blind: Vec<&str> = blind.map(|own| own.cause.as_str()).collect();
+        for name in [
+            "scaling, X against Y",
+            "squareness",
+            "cyclic error X",
+            "cyclic error Y",
+        ] {
+            assert!(blind.contains(&name), "{blind:?}");
+        }
+        assert!(!blind.contains(&"servo mismatch"));
+    }
+}

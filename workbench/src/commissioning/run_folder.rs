@@ -1,0 +1,182 @@
+//! An earlier run, read back from its folder: for comparisons, months later.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::ballbar::Point;
+use crate::circle_test::CircleRun;
+use crate::error::{Failure, Outcome};
+
+/// What of `summary.json` is compared.
+#[derive(Clone, Debug, Deserialize)]
+pub struct RunSummary {
+    /// Machine.
+    pub machine: String,
+    /// When it was, UTC.
+    pub date: String,
+    /// Version and commit.
+    pub program: String,
+    /// What was downloaded.
+    pub method: String,
+    /// The circle without it.
+    pub circle_before: RunCircle,
+    /// The circle with it.
+    pub circle_after: RunCircle,
+    /// Axes.
+    pub axes: Vec<RunAxis>,
+}
+
+/// A circle of a run.
+#[derive(Clone, Debug, Deserialize)]
+pub struct RunCircle {
+    /// Radius.
+    pub radius_mm: f64,
+    /// Feed.
+    pub feed_mm_min: f64,
+    /// Burst at each reversal.
+    pub peak_um: [f64; 4],
+    /// Largest burst.
+    pub peak_max_um: f64,
+    /// G of the counter-clockwise turns.
+    pub circular_deviation_g_um: f64,
+    /// G of both directions.
+    pub circular_deviation_g_both_um: f64,
+    /// Hysteresis.
+    pub circular_hysteresis_h_um: Option<f64>,
+}
+
+/// An axis of a run.
+#[derive(Clone, Debug, Deserialize)]
+pub struct RunAxis {
+    /// Its name.
+    pub name: String,
+    /// Effects that were found.
+    pub found: Vec<String>,
+    /// Parameters that are known, or are not.
+    pub parameters: std::collections::BTreeMap<String, RunParameter>,
+}
+
+/// A parameter of a run; without a value where it was unknown.
+#[derive(Clone, Debug, Deserialize)]
+pub struct RunParameter {
+    /// Value.
+    #[serde(default)]
+    pub value: Option<f64>,
+    /// Unit.
+    #[serde(default)]
+    pub unit: String,
+    /// Lower end of its interval.
+    #[serde(default)]
+    pub low: f64,
+    /// Upper end.
+    #[serde(default)]
+    pub high: f64,
+}
+
+/// A folder of `commission`.
+#[derive(Clone, Debug)]
+pub struct RunFolder {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its summary.
+    pub summary: RunSummary,
+}
+
+impl RunFolder {
+    /// Reads the summary of a run.
+    ///
+    /// # Errors
+    /// Where it is not there, or not of a run that ended with circles.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let file = path.join("summary.json");
+        let text = std::fs::read_to_string(&file).map_err(|error| {
+            Failure::new(format!(
+                "{}: {error}; name a folder that `quadrant commission --out` has written",
+                file.display()
+            ))
+        })?;
+        let summary = serde_json::from_str(&text).map_err(|error| {
+            Failure::new(format!(
+                "{}: {error}; this is no summary of a run with circles before and after by this program",
+                file.display()
+            ))
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            summary,
+        })
+    }
+
+    /// The name of its folder.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let name = self.path.file_name();
+        name.map_or_else(
+            || self.path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        )
+    }
+
+    /// The circle without compensation, or with it: its figures, and its turns counter-clockwise
+    /// and clockwise.
+    ///
+    /// # Errors
+    /// Where its file is missing or wrong.
+    pub fn circle(&self, is_after: bool) -> Outcome<(&RunCircle, [Vec<Point>; 2])> {
+        let (file, figures) = if is_after {
+            ("circle-after.csv", &self.summary.circle_after)
+        } else {
+            ("circle-before.csv", &self.summary.circle_before)
+        };
+        Ok((figures, read_circle(&self.path.join(file))?))
+    }
+}
+
+/// The head of a circle's file.
+const COLUMNS: &str = "direction,angle_rad,reference_x_m,reference_y_m,table_x_m,table_y_m";
+
+/// One turn in each direction as CSV, to 0.1 nm.
+#[must_use]
+pub fn circle_csv(run: &CircleRun) -> String {
+    let mut text = format!("{COLUMNS}\n");
+    for (direction, points) in [("ccw", run.one_turn()), ("cw", &run.clockwise)] {
+        for point in points {
+            let ([x, y], [table_x, table_y]) = (point.reference_m, point.table_m);
+            let _ = writeln!(
+                text,
+                "{direction},{:.7},{x:.10},{y:.10},{table_x:.10},{table_y:.10}",
+                point.angle_rad
+            );
+        }
+    }
+    text
+}
+
+fn read_circle(path: &Path) -> Outcome<[Vec<Point>; 2]> {
+    let wrong = |what: String| Failure::new(format!("{}: {what}", path.display()));
+    let mut reader = csv::Reader::from_path(path).map_err(|error| wrong(error.to_string()))?;
+    let mut turns = [Vec::new(), Vec::new()];
+    for (number, row) in reader.deserialize().enumerate() {
+        let row: (String, [f64; 5]) = row.map_err(|error| wrong(error.to_string()))?;
+        let (direction, [angle_rad, x, y, table_x, table_y]) = row;
+        let turn = match direction.as_str() {
+            "ccw" => 0,
+            "cw" => 1,
+            other => {
+                return Err(wrong(format!(
+                    "line {}: direction ccw or cw, got {other}",
+                    number + 2
+                )));
+            }
+        };
+        turns[turn].push(Point {
+            angle_rad,
+            table_m: [table_x, table_y],
+            motor_m: [table_x, table_y],
+            reference_m: [x, y],
+        });
+    }
+    Ok(turns)
+}
