@@ -34,6 +34,32 @@ pub fn check(name: &str, svg: &str) {
     );
 }
 
+/// Places of a path of relative steps, px.
+///
+/// # Panics
+/// Where it is none.
+#[must_use]
+pub fn places(path: &str) -> Vec<(f64, f64)> {
+    let mut at = (0.0, 0.0);
+    let step = |step: &str| {
+        let (x, y) = step.split_once(' ').expect("two numbers");
+        let [x, y] = [x, y].map(|text| text.parse::<f64>().expect("a number"));
+        at = (at.0 + x, at.1 + y);
+        at
+    };
+    path.trim_start_matches('M').split('l').map(step).collect()
+}
+
+/// How far a place is from the straight way between two others, px.
+#[must_use]
+pub fn off_px(from: (f64, f64), to: (f64, f64), at: (f64, f64)) -> f64 {
+    let way = (to.0 - from.0, to.1 - from.1);
+    let own = (at.0 - from.0, at.1 - from.1);
+    let square = way.0 * way.0 + way.1 * way.1;
+    let along = ((own.0 * way.0 + own.1 * way.1) / square.max(1.0e-12)).clamp(0.0, 1.0);
+    (own.0 - along * way.0).hypot(own.1 - along * way.1)
+}
+
 /// A text without its numbers, and these.
 fn parts(text: &str) -> (String, Vec<f64>) {
     let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == '-';
@@ -57,6 +83,14 @@ fn parts(text: &str) -> (String, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn places_of_a_path_are_sums_of_its_steps_and_a_place_beside_it_is_as_far_off() {
+        let path = places("M1 2l3 0l0 -4.5");
+        assert_eq!(path, [(1.0, 2.0), (4.0, 2.0), (4.0, -2.5)]);
+        assert_eq!(off_px(path[0], path[1], (2.0, 5.0)), 3.0);
+        assert_eq!(off_px(path[0], path[1], (7.0, 6.0)), 5.0);
+    }
 
     #[test]
     fn numbers_are_taken_out_of_a_text_and_nothing_else() {

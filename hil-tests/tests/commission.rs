@@ -101,6 +101,80 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     check_certificate(out.path(), &summary);
     let circle = std::fs::read_to_string(out.path().join("circle.svg")).unwrap();
     pictures::check("circle.svg", &circle);
+    check_drawn_path(out.path(), &circle);
+}
+
+/// The drawn circle is the recorded one within 0.05 µm: every point of the record has a place of
+/// the path as near as that, by the scale that the outermost ring says.
+fn check_drawn_path(out: &Path, svg: &str) {
+    let csv = std::fs::read_to_string(out.join("circle-before.csv")).unwrap();
+    let row = |line: &str| -> [f64; 5] {
+        let cells: Vec<f64> = line
+            .split(',')
+            .skip(1)
+            .map(|cell| cell.parse().unwrap())
+            .collect();
+        cells.try_into().unwrap()
+    };
+    let rows: Vec<[f64; 5]> = csv
+        .lines()
+        .filter(|line| line.starts_with("ccw"))
+        .map(row)
+        .collect();
+    let (_, path) = svg.split_once("class=\"curve before\" d=\"").unwrap();
+    // The first one is the line in the legend.
+    let (_, path) = path.split_once("class=\"curve before\" d=\"").unwrap();
+    let places = pictures::places(path.split('"').next().unwrap());
+    let rings: Vec<f64> = svg
+        .split("<circle class=\"")
+        .skip(1)
+        .map(|ring| {
+            ring.split(" r=\"")
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap()
+                .parse()
+                .unwrap()
+        })
+        .collect();
+    let (outermost, nominal) = (rings[rings.len() - 1], rings[rings.len() / 2]);
+    let um_per_px = 10.0 * (rings.len() / 2) as f64 / (outermost - nominal);
+    let middle: Vec<f64> = ["cx", "cy"]
+        .map(|key| {
+            svg.split(&format!("{key}=\""))
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap()
+                .parse()
+                .unwrap()
+        })
+        .into();
+    let mut worst_um: f64 = 0.0;
+    let mut next = 0;
+    for [_, x, y, table_x, table_y] in rows {
+        let deviation_um = 1.0e6 * (table_x.hypot(table_y) - 0.1);
+        let radius = nominal + deviation_um / um_per_px;
+        let angle = y.atan2(x);
+        let at = (
+            middle[0] + radius * angle.cos(),
+            middle[1] - radius * angle.sin(),
+        );
+        // The path passes the record in its order.
+        let near = (next..(next + 40).min(places.len() - 1)).map(|place| {
+            (
+                place,
+                pictures::off_px(places[place], places[place + 1], at),
+            )
+        });
+        let (place, off) = near.min_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
+        next = place;
+        worst_um = worst_um.max(off * um_per_px);
+    }
+    assert!(worst_um < 0.05, "{worst_um} µm");
 }
 
 /// The certificate says what `summary.json` says, to a hundredth of a micrometre.
@@ -160,9 +234,37 @@ fn check_files(out: &Path) {
         "from ring to ring",
         "SIMULATION",
         "Causes, ranked by what they cost",
+        "Downloaded to the drives",
+        "tested by",
+        // Of the circle: degrees, signs of the axes, numbers of the rings, directions, bursts.
+        ">+X (0°)</text>",
+        ">−Y (270°)</text>",
+        ">30°</text>",
+        ">−20 µm</text>",
+        ">after clockwise</text>",
+        ">33.76 → 0.33 µm</text>",
     ] {
         assert!(report.contains(part), "{part} is not in the report");
     }
+    let (_, effort) = report
+        .split_once("<title>Effort on the validation record</title>")
+        .unwrap();
+    let at = |class: &str| {
+        effort
+            .find(&format!("class=\"curve {class}\" d=\"M66"))
+            .unwrap()
+    };
+    assert!(
+        at("recorded") < at("before") && at("before") < at("after"),
+        "the record is lowest"
+    );
+    let (_, stribeck) = report.split_once("<title>stribeck: ").unwrap();
+    let (stribeck, _) = stribeck.split_once("</svg>").unwrap();
+    assert!(
+        stribeck.contains(">velocity, mm/s</text>")
+            && stribeck.contains(">10</text>")
+            && !stribeck.contains(">20</text>")
+    );
     assert!(
         !report.contains("http://")
             || report.matches("http://").count() == report.matches("http://www.w3.org").count(),

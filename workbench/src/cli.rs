@@ -15,7 +15,13 @@ use values::{fault_plan, micrometres, node_id};
 
 /// A servo axis that removes its own reversal errors, and the bench that proves it.
 #[derive(Debug, Parser)]
-#[command(name = "quadrant", version, about, max_term_width = 100)]
+#[command(
+    name = "quadrant",
+    version,
+    about,
+    max_term_width = 100,
+    arg_required_else_help = true
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -46,6 +52,13 @@ pub enum Command {
     Servo(Servo),
     /// Print the built-in reference machine file, to start your own from
     Machine,
+    /// Print completions for a shell: `quadrant completions bash >
+    /// ~/.local/share/bash-completion/completions/quadrant`
+    Completions {
+        /// Shell
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
 }
 
 /// Arguments of `commission`.
@@ -58,7 +71,7 @@ pub struct Commission {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Largest circular deviation G of both directions, µm: the certificate says pass or fail
-    #[arg(long, value_name = "UM", value_parser = micrometres)]
+    #[arg(long, value_name = "UM", allow_negative_numbers = true, value_parser = micrometres)]
     pub tolerance_um: Option<f64>,
     /// Write the frames of the circles before and after as candump logs too
     #[arg(long)]
@@ -149,7 +162,7 @@ pub struct ContourArguments {
     #[expect(missing_docs, reason = "flattened")]
     pub machine: MachineArguments,
     /// Feed, mm/min
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
     pub feed_mm_min: f64,
     #[command(flatten)]
     #[expect(missing_docs, reason = "flattened")]
@@ -169,10 +182,10 @@ pub struct CircleArguments {
     #[expect(missing_docs, reason = "flattened")]
     pub machine: MachineArguments,
     /// Radius, mm
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
     pub radius_mm: f64,
     /// Feed, mm/min
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
     pub feed_mm_min: f64,
     #[command(flatten)]
     #[expect(missing_docs, reason = "flattened")]
@@ -215,13 +228,28 @@ pub struct Tune {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Radius of the tuning circle, mm
-    #[arg(long, value_name = "R", default_value_t = 100.0)]
+    #[arg(
+        long,
+        value_name = "R",
+        allow_negative_numbers = true,
+        default_value_t = 100.0
+    )]
     pub radius_mm: f64,
     /// Feed of the tuning circle, mm/min
-    #[arg(long, value_name = "F", default_value_t = 2000.0)]
+    #[arg(
+        long,
+        value_name = "F",
+        allow_negative_numbers = true,
+        default_value_t = 2000.0
+    )]
     pub feed_mm_min: f64,
     /// Time from the reversal to the start of the pulse, ms; the paper has none, `adaptive` its own
-    #[arg(long, value_name = "T", default_value_t = 0.0)]
+    #[arg(
+        long,
+        value_name = "T",
+        allow_negative_numbers = true,
+        default_value_t = 0.0
+    )]
     pub start_delay_ms: f64,
 }
 

@@ -5,6 +5,7 @@ mod asked_compensation;
 pub mod circle;
 pub mod commission;
 pub mod compare;
+pub mod completions;
 pub mod contour;
 pub mod identify;
 pub mod machine;

@@ -8,6 +8,7 @@
 //! reversal_run      the cycles about one reversal of the first axis
 //! reversal_curves   the six curves of the paper's Fig. 8(a) of them
 //! unfit             the report of a machine whose loops oscillate
+//! program           which program, and when
 //! result            summary.json, circle.svg, report.html
 //! result_page       the report: certificate, chain, axes
 //! run_folder        an earlier run, read back
@@ -16,6 +17,7 @@
 pub mod feeds;
 pub mod fitness;
 pub mod identified_axes;
+pub mod program;
 pub mod result;
 pub mod result_page;
 pub mod reversal_curves;

@@ -10,8 +10,8 @@ use crate::compensation::{self, AxisCompensation};
 use crate::error::{Failure, Outcome};
 use crate::network::master::AxisCycle;
 use crate::progress;
-use crate::session::{Session, Stand};
-use crate::trajectory::circle_limits::two_axes;
+use crate::session::{Session, Stand, table_m};
+use crate::trajectory::circle_limits::{LONGEST_H, two_axes};
 use crate::trajectory::{Contour, Place};
 
 /// What `contour --json` says.
@@ -39,8 +39,7 @@ pub struct ContourReport {
     pub missed_cycles: u32,
 }
 
-/// Longer, or shorter, is a mistake in the feed.
-const LONGEST_H: f64 = 2.0;
+/// Shorter is a mistake in the feed.
 const FEWEST_CYCLES: f64 = 10.0;
 
 /// Distances from the contour at its feed; those of start and stop do not count.
@@ -54,8 +53,8 @@ struct Distances {
 }
 
 impl Distances {
-    fn take(&mut self, place: &Place, axes: &[AxisCycle]) {
-        let off_um = [0, 1].map(|axis| 1.0e6 * (axes[axis].table_m() - place.at_m[axis]));
+    fn take(&mut self, place: &Place, table_m: [f64; 2]) {
+        let off_um = [0, 1].map(|axis| 1.0e6 * (table_m[axis] - place.at_m[axis]));
         let distance_um = (off_um[1] * place.along[0] - off_um[0] * place.along[1]).abs();
         self.cycles += 1;
         self.squares_um2 += distance_um * distance_um;
@@ -91,7 +90,7 @@ pub fn run(
             1.0e3 * contour.length_m(),
             6.0e4 * contour.feed_m_per_s()
         ));
-        let distances = follow(session, stand.machine.axes.len(), contour)?;
+        let distances = follow(session, stand.machine, contour)?;
         Ok(ContourReport {
             machine: stand.machine.name.clone(),
             feed_mm_min: 6.0e4 * contour.feed_m_per_s(),
@@ -107,9 +106,9 @@ pub fn run(
     })
 }
 
-fn follow(session: &mut Session<'_>, axes: usize, contour: &Contour) -> Outcome<Distances> {
+fn follow(session: &mut Session<'_>, machine: &Machine, contour: &Contour) -> Outcome<Distances> {
     let setpoints = |time_s: f64| {
-        let mut all = vec![0.0; axes];
+        let mut all = vec![0.0; machine.axes.len()];
         all[..2].copy_from_slice(&contour.place(time_s).at_m);
         all
     };
@@ -118,7 +117,7 @@ fn follow(session: &mut Session<'_>, axes: usize, contour: &Contour) -> Outcome<
     let counts = contour.at_feed_s();
     session.follow(contour.duration_s(), setpoints, |time_s, axes| {
         if counts.contains(&time_s) && axes.iter().all(AxisCycle::shows_table) {
-            distances.take(&contour.place(time_s), axes);
+            distances.take(&contour.place(time_s), table_m(machine, axes));
         }
     })?;
     Ok(distances)

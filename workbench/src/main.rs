@@ -5,11 +5,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser as _;
+use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use workbench::cli::{Cli, Command};
 use workbench::commands::{
-    circle, commission, compare, contour, identify, machine, plant, servo, timing, tune,
+    circle, commission, compare, completions, contour, identify, machine, plant, servo, timing,
+    tune,
 };
 use workbench::error::{Failure, Outcome};
 use workbench::interrupt::Interrupt;
@@ -78,8 +80,12 @@ fn main() -> ExitCode {
     stdout::take_over();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        // Help and version go to stdout as they are.
+        // Help and version go to stdout as they are; nothing said is a wish for help.
         Err(error) if !error.use_stderr() => error.exit(),
+        Err(error) if error.kind() == DisplayHelpOnMissingArgumentOrSubcommand => {
+            stdout::text(format_args!("{}", error.render()));
+            return exit_code((Ok(()), None));
+        }
         Err(error) => {
             eprintln!("quadrant: {}", one_line(&error.render().to_string()));
             return ExitCode::from(2);
@@ -105,6 +111,10 @@ fn dispatch(command: Command) -> (Outcome<()>, Option<i32>) {
         Command::Servo(arguments) => still(servo::run(&arguments)),
         Command::Machine => {
             machine::run();
+            still(Ok(()))
+        }
+        Command::Completions { shell } => {
+            completions::run(shell);
             still(Ok(()))
         }
     }

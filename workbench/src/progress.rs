@@ -11,6 +11,36 @@ pub fn step(text: &str) {
     }
 }
 
+/// Long work of many equal parts, which tells of itself every now and then.
+pub struct Long {
+    work: Work,
+    told: Instant,
+    parts: f64,
+}
+
+/// Nobody has to wait longer for a line.
+const EVERY: Duration = Duration::from_millis(1500);
+
+impl Long {
+    /// Work of so many parts that begins now.
+    #[must_use]
+    pub fn of(parts: f64) -> Self {
+        Self {
+            work: Work::begins(),
+            told: Instant::now(),
+            parts,
+        }
+    }
+
+    /// Tells how much of it is done, where it is time to.
+    pub fn at(&mut self, part: f64) {
+        if self.told.elapsed() >= EVERY {
+            self.told = Instant::now();
+            self.work.step("moving", part / self.parts);
+        }
+    }
+}
+
 /// Work whose steps know what share of it is done.
 pub struct Work(Instant);
 

@@ -14,6 +14,7 @@ use crate::network::candump::write_logs;
 use crate::network::link::Link;
 use crate::network::master::{AxisCycle, Master};
 use crate::network::place::Place;
+use crate::progress;
 use crate::trajectory::circle_limits::{Slowest, check_circle};
 use crate::trajectory::{Circle, MEASURE_FROM_RAD, Move};
 
@@ -217,7 +218,12 @@ impl<'a, L: Link> Session<'a, L> {
         let cycles = (duration_s / period_s).ceil().max(0.0);
         let mut now = vec![AxisCycle::default(); self.machine.axes.len()];
         let mut index = 0.0;
+        // On a clock nothing may wait for a terminal.
+        let mut told = (!self.master.follows_clock()).then(|| progress::Long::of(cycles));
         while index < cycles {
+            if let Some(told) = told.as_mut().filter(|_| index % ASK_EVERY == 0.0) {
+                told.at(index);
+            }
             // The setpoint that is sent in this cycle is due in the next one.
             let due = |skipped: u32| at((index + f64::from(skipped) + 1.0) * period_s);
             index += f64::from(self.master.cycle_at(due)?);
@@ -328,26 +334,39 @@ impl<'a, L: Link> Session<'a, L> {
 /// What an instrument at the machine sees.
 pub const AT_TABLE: &str = "table";
 
+/// Cycles between two looks at the watch.
+const ASK_EVERY: f64 = 256.0;
+
 /// Rest after a move, so that nothing of it is left on the record.
 const SETTLE_S: f64 = 0.3;
 
-/// Where an instrument at the table sees it, where there is one; it sees both axes at once.
+/// Where the table is in the plane of the first two axes: by an instrument, which sees both at
+/// once, or by their scales.
+#[must_use]
+pub fn table_m(machine: &Machine, axes: &[AxisCycle]) -> [f64; 2] {
+    in_plane(machine, axes, &AxisCycle::table_m)
+}
+
+/// The motors at the table, by the same instrument.
+fn motor_m(machine: &Machine, axes: &[AxisCycle]) -> [f64; 2] {
+    let of = |axis: &AxisCycle| axis.truth.map_or(axis.motor_m, |truth| truth.motor_m);
+    in_plane(machine, axes, &of)
+}
+
+fn in_plane(machine: &Machine, axes: &[AxisCycle], of: &dyn Fn(&AxisCycle) -> f64) -> [f64; 2] {
+    let place = [of(&axes[0]), of(&axes[1])];
+    if axes.iter().all(|axis| axis.truth.is_some()) {
+        machine.in_plane(place)
+    } else {
+        place
+    }
+}
+
 fn point(machine: &Machine, angle_rad: f64, axes: &[AxisCycle]) -> Point {
-    let of = |value: &dyn Fn(&AxisCycle) -> f64| [value(&axes[0]), value(&axes[1])];
-    let is_seen = axes.iter().all(|axis| axis.truth.is_some());
-    let in_plane = |place| {
-        if is_seen {
-            machine.in_plane(place)
-        } else {
-            place
-        }
-    };
     Point {
         angle_rad,
-        table_m: in_plane(of(&AxisCycle::table_m)),
-        motor_m: in_plane(of(&|axis| {
-            axis.truth.map_or(axis.motor_m, |truth| truth.motor_m)
-        })),
-        reference_m: of(&|axis| axis.reference_m),
+        table_m: table_m(machine, axes),
+        motor_m: motor_m(machine, axes),
+        reference_m: [axes[0].reference_m, axes[1].reference_m],
     }
 }

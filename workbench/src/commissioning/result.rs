@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::feeds::{AtFeed, Feeds, less_percent};
 use super::fitness::Oscillation;
+use super::program::program;
 use super::trials::{TrialSummary, Trials};
 use crate::circle_test::{CircleReport, CircleRun};
 use crate::error::Outcome;
@@ -70,23 +71,6 @@ pub struct Commissioned<'a> {
     pub tolerance_um: Option<f64>,
     /// When it was, UTC.
     pub date: String,
-}
-
-/// Version and commit of the program.
-#[must_use]
-pub fn program() -> String {
-    format!(
-        "quadrant {}, commit {}",
-        env!("CARGO_PKG_VERSION"),
-        env!("QUADRANT_COMMIT")
-    )
-}
-
-/// The time, UTC, to the minute.
-#[must_use]
-pub fn now() -> String {
-    let now = jiff::Timestamp::now();
-    now.strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
 /// How much smaller the largest burst has become, percent.

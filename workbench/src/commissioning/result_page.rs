@@ -2,9 +2,11 @@
 //! micrometre, then axis by axis what that rests on.
 
 use identification::{Identification, figures};
+use maud::html;
 
 use super::feeds;
-use super::result::{Commissioned, program};
+use super::program::program;
+use super::result::Commissioned;
 use super::reversal_curves::{ReversalRun, six_curves};
 use super::reversal_run::reversal_rows;
 use super::trials::{DECLARED, SELF_TUNED};
@@ -51,7 +53,7 @@ impl Commissioned<'_> {
         }
         self.add_reversal(&mut page)?;
         page.heading("Files");
-        page.paragraph(FILES);
+        self.add_files(&mut page);
         Ok(page.finish())
     }
 
@@ -206,6 +208,21 @@ impl Commissioned<'_> {
         rows
     }
 
+    /// What lies beside the report, to click on.
+    fn add_files(&self, page: &mut Page) {
+        let records = self.stand.machine.axes.iter().map(|axis| {
+            let name = format!("records-{}/train.csv", axis.name);
+            (
+                name,
+                "a dataset for quadrant identify, with validate.csv beside it",
+            )
+        });
+        let files = FILES.map(|(name, what)| (name.to_owned(), what));
+        page.add(&html! {
+            ul { @for (name, what) in files.into_iter().chain(records) { li { a href=(name) { (name) } ": " (what) } } }
+        });
+    }
+
     /// The six curves of the paper's Fig. 8(a), about one reversal of the first axis on a sine.
     fn add_reversal(&self, page: &mut Page) -> Outcome<()> {
         page.heading("One reversal in time");
@@ -226,8 +243,22 @@ impl Commissioned<'_> {
 }
 
 /// What lies beside the report.
-const FILES: &str = "Beside this page: summary.json (every figure), circle-before.csv and circle-after.csv (the circles), compensation.toml (what the drives have got; quadrant circle \
-    --compensation-file takes it), model.toml (the identified machine), records-*/ (what was recorded, as datasets for quadrant identify), records.candump.log with quadrant.dbc (every frame of it).";
+const FILES: [(&str, &str); 8] = [
+    ("summary.json", "every figure"),
+    (
+        "circle-before.csv",
+        "the circle before, one turn in each direction",
+    ),
+    ("circle-after.csv", "the circle after"),
+    ("circle.svg", "their picture"),
+    (
+        "compensation.toml",
+        "what the drives have got: quadrant circle --compensation-file takes it",
+    ),
+    ("model.toml", "the identified machine"),
+    ("records.candump.log", "every frame of the records"),
+    ("quadrant.dbc", "what is in the frames"),
+];
 
 fn in_words(method: &str) -> &str {
     match method {

@@ -7,6 +7,7 @@ use plant_sim::Machine;
 use serde::Serialize;
 
 use super::fitness::Oscillation;
+use super::program::{now, program};
 use crate::error::Outcome;
 use crate::output_files::{json, write};
 use crate::presentation::page::Page;
@@ -16,6 +17,8 @@ use crate::presentation::result_tables::{TextTable, head};
 #[derive(Serialize)]
 struct Summary<'a> {
     machine: &'a str,
+    date: String,
+    program: String,
     verdict: &'static str,
     oscillations: &'a [Oscillation],
 }
@@ -27,6 +30,8 @@ struct Summary<'a> {
 pub fn report(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
     let summary = Summary {
         machine: &machine.name,
+        date: now(),
+        program: program(),
         verdict: "unfit",
         oscillations,
     };
@@ -36,6 +41,7 @@ pub fn report(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Ou
 
 fn page(machine: &Machine, oscillations: &[Oscillation]) -> String {
     let mut page = Page::new(&format!("Machine {} is not commissioned", machine.name));
+    page.paragraph(&format!("{}; {}.", now(), program()));
     for oscillation in oscillations {
         page.key(&oscillation.sentence());
     }

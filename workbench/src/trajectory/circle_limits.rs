@@ -86,12 +86,23 @@ pub fn two_axes<'a>(machine: &'a Machine, what: &str) -> Outcome<[&'a MachineAxi
     }
 }
 
+/// Longer is a mistake in the feed.
+pub const LONGEST_H: f64 = 2.0;
+
 /// Refuses a circle that the machine cannot run.
 ///
 /// # Errors
 /// What does not fit, and the limit.
 pub fn check_circle(machine: &Machine, circle: &Circle) -> Outcome<()> {
     let [x, y] = two_axes(machine, "a circle")?;
+    let hours = circle.duration_s() / 3600.0;
+    if hours > LONGEST_H {
+        return Err(Failure::new(format!(
+            "--feed-mm-min {}: a circle of R {} mm would take {hours:.1} h, more than {LONGEST_H}; a faster feed takes less",
+            6.0e4 * circle.feed_m_per_s,
+            1.0e3 * circle.radius_m
+        )));
+    }
     check_axis(x, circle)?;
     check_axis(y, circle)
 }
@@ -143,6 +154,20 @@ mod tests {
         let mut machine = Machine::reference();
         change(&mut machine.axes[1].limits);
         machine
+    }
+
+    #[test]
+    fn a_circle_that_takes_half_a_day_is_a_mistake_in_the_feed() {
+        let slow = Circle {
+            feed_m_per_s: 2.0 / 6.0e4,
+            ..USUAL
+        };
+        let refusal = check_circle(&Machine::reference(), &slow).unwrap_err();
+        let refusal = refusal.to_string();
+        assert!(
+            refusal.starts_with("--feed-mm-min 2: a circle of R 100 mm would take "),
+            "{refusal}"
+        );
     }
 
     #[test]

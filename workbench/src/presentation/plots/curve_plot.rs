@@ -286,6 +286,34 @@ mod tests {
         assert!(!svg.contains("1000") && svg.contains(">2</text>"), "{svg}");
     }
 
+    /// A name on the data hides them.
+    #[test]
+    fn names_stand_above_the_data() {
+        let named = |i: usize| {
+            Curve::line(
+                &format!("curve {i}"),
+                Ink::Other(i),
+                [(0.0, 1.0), (1.0, 2.0)],
+            )
+        };
+        let list: Vec<Curve> = (0..9).map(named).collect();
+        let svg = curves(&plot("title"), &list);
+        let height = |text: &str| -> f64 {
+            let (before, _) = svg.split_once(text).unwrap();
+            let (_, y) = before.rsplit_once(" y=\"").unwrap();
+            y.split('"').next().unwrap().parse().unwrap()
+        };
+        let (_, frame) = svg.split_once("class=\"frame\" d=\"M66 ").unwrap();
+        let top: f64 = frame.split('V').next().unwrap().parse().unwrap();
+        for curve in &list {
+            assert!(
+                height(&format!(">{}</text>", curve.name)) < top,
+                "{}",
+                curve.name
+            );
+        }
+    }
+
     #[test]
     fn nothing_to_draw_is_an_empty_mesh() {
         let empty = Curve::line("", Ink::Before, [(f64::NAN, 1.0)]);
