@@ -1,23 +1,41 @@
-//! The commit that the program was built from, for the reports that it writes.
+//! The commit that the program was built from, for the reports that it writes; `+changes` where the
+//! sources are not those of the commit.
 
 use std::path::Path;
 use std::process::Command;
 
+/// What a commit moves, and what the program is made of.
+const SEEN: [&str; 13] = [
+    "../.git/HEAD",
+    "../.git/logs/HEAD",
+    "../Cargo.lock",
+    "../axis-model/src",
+    "../bus/src",
+    "../firmware/board-timing/src",
+    "../firmware/controller/src",
+    "../firmware/servo/src",
+    "../identification/src",
+    "../plant-sim/src",
+    "../protocol/src",
+    "build.rs",
+    "src",
+];
+
 fn main() {
-    // A commit moves one of these; a source archive has none of them and is never built again.
-    for place in ["HEAD", "logs/HEAD", "packed-refs"] {
-        let path = Path::new("../.git").join(place);
-        if path.exists() {
-            println!("cargo:rerun-if-changed={}", path.display());
-        }
+    for place in SEEN.iter().filter(|place| Path::new(place).exists()) {
+        println!("cargo:rerun-if-changed={place}");
     }
-    println!("cargo:rerun-if-changed=build.rs");
-    let said = Command::new("git")
-        .args(["rev-parse", "--short=10", "HEAD"])
-        .output()
-        .ok()
-        .filter(|output| output.status.success())
-        .and_then(|output| String::from_utf8(output.stdout).ok());
-    let commit = said.as_deref().map_or("unknown", str::trim);
-    println!("cargo:rustc-env=QUADRANT_COMMIT={commit}");
+    let commit = git(&["rev-parse", "--short=10", "HEAD"]);
+    let changes = git(&["status", "--porcelain", "--untracked-files=no"]);
+    let is_changed = changes.is_some_and(|changes| !changes.is_empty());
+    let mark = if is_changed { "+changes" } else { "" };
+    let commit = commit.as_deref().unwrap_or("unknown");
+    println!("cargo:rustc-env=QUADRANT_COMMIT={commit}{mark}");
+}
+
+/// What git says; nothing where there is none, or no repository.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let said = output.status.success().then_some(output.stdout)?;
+    Some(String::from_utf8(said).ok()?.trim().to_owned())
 }

@@ -77,7 +77,7 @@ fn runs_of_a_machine_that_warms_up_differ_by_its_friction_and_by_nothing_else() 
     }
     let by_percent = |name: &str| {
         let changes = said["changed"].as_array().unwrap().iter();
-        let own = changes.filter(|change| change["parameter"] == name);
+        let own = changes.filter(|change| change["what"] == name);
         own.map(|change| change["by_percent"].as_f64().unwrap())
             .collect::<Vec<_>>()
     };

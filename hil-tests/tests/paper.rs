@@ -47,7 +47,7 @@ fn polar(title: &str, traces: &[Trace<'_>]) -> String {
         axes: ["X", "Y"],
         traces,
         bursts: Default::default(),
-        tolerance_um: None,
+        zone: None,
     })
 }
 

@@ -29,7 +29,7 @@ use burst::Deviating;
 use ellipse::ellipse_um;
 use step::step_um;
 
-pub use causes::{BothDirections, Cause, CircleAxis, causes};
+pub use causes::{BothDirections, Cause, Causes, CircleAxis, causes};
 pub use median::median;
 pub use point::{Point, radial_um};
 pub use reversals::{REVERSALS, apart, window_rad};
@@ -69,7 +69,8 @@ pub fn about_median_um(points: &[Point], radius_m: f64) -> Vec<f64> {
 
 /// Figures of the turns that count.
 ///
-/// `backlash_m` widens the window about the reversals. An empty path gives zeros.
+/// `backlash_m` widens the window about the reversals. An empty path gives zeros, and `NaN` for its
+/// roundness.
 #[must_use]
 pub fn figures(points: &[Point], radius_m: f64, backlash_m: f64, from_rad: f64) -> CircleFigures {
     let deviation: Vec<f64> = points

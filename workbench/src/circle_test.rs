@@ -1,11 +1,12 @@
 //! One reference circle over the bus, and what it shows.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use plant_sim::Machine;
 use serde::Serialize;
 
-use crate::ballbar::{self, BothDirections, Cause, CircleAxis, CircleFigures, Point};
+use crate::ballbar::{self, BothDirections, Cause, Causes, CircleAxis, CircleFigures, Point};
 use crate::compensation::{self, AxisCompensation, Compensation};
 use crate::error::Outcome;
 use crate::progress;
@@ -29,6 +30,8 @@ pub struct CircleReport {
     pub bus_load_percent: f64,
     /// Cycles whose torque did not come in time.
     pub missed_cycles: u32,
+    /// Points of both directions, of those that a cycle each would have given.
+    pub points: [u64; 2],
     /// What drives that refine themselves have made of the levels of friction: a factor on each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refined_levels: Option<Vec<f64>>,
@@ -39,8 +42,19 @@ pub struct CircleReport {
     /// directions about one centre.
     #[serde(flatten)]
     pub roundness: Roundness,
+    /// Bursts without what the axes do wrong elsewhere, the largest of both directions, at 0°, 90°,
+    /// 180° and 270° of the circle.
+    pub spikes_um: [f64; 4],
     /// What the deviation comes from, the largest first.
     pub causes: Vec<Cause>,
+}
+
+impl CircleReport {
+    /// The largest spike, µm.
+    #[must_use]
+    pub fn spike_um(&self) -> f64 {
+        self.spikes_um.into_iter().fold(0.0, f64::max)
+    }
 }
 
 /// Circular deviations beside that of all counter-clockwise turns.
@@ -68,12 +82,21 @@ impl CircleRun {
     /// The first of the counter-clockwise turns that count.
     #[must_use]
     pub fn one_turn(&self) -> &[Point] {
-        &self.points[..self.points.len() / TURNS]
+        turn(&self.points, 0)
     }
 }
 
 /// Counter-clockwise turns that count.
-const TURNS: usize = 3;
+const TURNS: u32 = 3;
+
+/// One of the turns that count, by the angle travelled: a cycle may have been lost.
+fn turn(points: &[Point], number: u32) -> &[Point] {
+    let begin = |number: u32| {
+        let from_rad = MEASURE_FROM_RAD + TAU * f64::from(number);
+        points.partition_point(|point| point.angle_rad < from_rad)
+    };
+    &points[begin(number)..begin(number + 1)]
+}
 
 /// Noise of the circles that are shown is another than that of records and of tuning.
 const CIRCLE_RUN: u64 = 0;
@@ -120,7 +143,7 @@ pub fn run_after(
             clockwise: &clockwise,
             is_at_table: session.sees() == AT_TABLE,
         };
-        let (figures, roundness, causes) = session.meanwhile(|| seen.evaluated())?;
+        let (figures, roundness, found) = session.meanwhile(|| seen.evaluated())?;
         let report = CircleReport {
             machine: stand.machine.name.clone(),
             radius_mm: 1.0e3 * circle.radius_m,
@@ -129,10 +152,12 @@ pub fn run_after(
             deviation_of: session.sees(),
             bus_load_percent: f64::from(stand.machine.bus_load_per_mille()) / 10.0,
             missed_cycles: session.missed(),
+            points: seen.counted(),
             refined_levels: refines.then(|| session.refined_levels()).transpose()?,
             figures,
             roundness,
-            causes,
+            spikes_um: found.spikes_um,
+            causes: found.list,
         };
         Ok(CircleRun {
             report,
@@ -172,7 +197,7 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    fn evaluated(&self) -> (CircleFigures, Roundness, Vec<Cause>) {
+    fn evaluated(&self) -> (CircleFigures, Roundness, Causes) {
         let (radius_m, backlash_m) = (self.circle.radius_m, backlash_m(self.machine));
         let figures = ballbar::figures(self.points, radius_m, backlash_m, MEASURE_FROM_RAD);
         let hysteresis_um = ballbar::hysteresis_um(self.points, self.clockwise, radius_m);
@@ -186,7 +211,7 @@ impl Seen<'_> {
                 lead_m: self.machine.axes[axis].actual.lead_m_per_rev,
             }),
             window_rad: ballbar::window_rad(radius_m, backlash_m),
-            bursts_um: figures.peak_um,
+            settling_s: settling_s(self.machine),
             is_at_table: self.is_at_table,
         });
         let figures = CircleFigures {
@@ -196,12 +221,20 @@ impl Seen<'_> {
         (figures, self.roundness(), causes)
     }
 
+    /// Points that are there, and that should be.
+    fn counted(&self) -> [u64; 2] {
+        let turns = f64::from(TURNS + 1);
+        let turn_s = TAU * self.circle.radius_m / self.circle.feed_m_per_s;
+        let wanted = (turns * turn_s / self.machine.period_s).round();
+        [
+            (self.points.len() + self.clockwise.len()) as u64,
+            wanted as u64,
+        ]
+    }
+
     fn roundness(&self) -> Roundness {
-        let turn = (self.points.len() / TURNS).max(1);
-        let turns = self
-            .points
-            .chunks_exact(turn)
-            .map(ballbar::circular_deviation_um);
+        let turns =
+            (0..TURNS).map(|number| ballbar::circular_deviation_um(turn(self.points, number)));
         let both = [self.points, self.clockwise].concat();
         Roundness {
             circular_deviation_g_turns_um: turns.collect(),
@@ -209,6 +242,18 @@ impl Seen<'_> {
             circular_deviation_g_both_um: ballbar::circular_deviation_um(&both),
         }
     }
+}
+
+/// A burst decays with the position loop; after so many of its time constants nothing of it is
+/// left.
+const TIME_CONSTANTS: f64 = 12.0;
+
+fn settling_s(machine: &Machine) -> f64 {
+    let gains = machine
+        .axes
+        .iter()
+        .map(|axis| axis.gains.position_gain_per_s);
+    TIME_CONSTANTS / gains.fold(f64::INFINITY, f64::min)
 }
 
 /// Largest backlash of the machine's axes that its files tell of; it widens the window about the

@@ -76,6 +76,9 @@ pub struct Commission {
     /// Write the frames of the circles before and after as candump logs too
     #[arg(long)]
     pub log: bool,
+    /// With --can: real axes answer as plants on the bus; without it the report says SIMULATION
+    #[arg(long)]
+    pub real_axes: bool,
 }
 
 /// The circles of a run.

@@ -10,7 +10,11 @@ use crate::error::{Failure, Outcome};
 
 /// A folder with this file in it is ours: its files may be overwritten.
 const MARKER: &str = ".quadrant";
-const MARKER_TEXT: &str = "Results of quadrant: another run into this folder overwrites them.\n";
+
+/// What stands in it.
+fn marked_by(command: &str) -> String {
+    format!("Results of quadrant {command}: another run into this folder overwrites them.\n")
+}
 
 /// Writes a file: into another one beside it, which then takes its name, so that a full disk leaves
 /// the old one as it was.
@@ -19,8 +23,7 @@ const MARKER_TEXT: &str = "Results of quadrant: another run into this folder ove
 /// Where it cannot be written.
 pub fn write(path: &Path, text: &str) -> Outcome<()> {
     let failed = |error: std::io::Error| Failure::file(path, &error);
-    // A pipe or a device has no place beside it.
-    if path.exists() && !path.is_file() {
+    if !takes_a_new_name(path) {
         return fs::write(path, text).map_err(failed);
     }
     let part = beside(path);
@@ -33,10 +36,17 @@ pub fn write(path: &Path, text: &str) -> Outcome<()> {
         })
 }
 
+/// A pipe or a device has no place beside it, and a link would be replaced instead of what it leads
+/// to.
+fn takes_a_new_name(path: &Path) -> bool {
+    fs::symlink_metadata(path).map_or(true, |found| found.is_file())
+}
+
 /// The name of a file while it is being written.
 fn beside(path: &Path) -> PathBuf {
-    let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
-    name.push(".part");
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".quadrant-part");
     path.with_file_name(name)
 }
 
@@ -59,7 +69,7 @@ fn check_one(path: &Path) -> Outcome<()> {
             path.display()
         )));
     }
-    if path.exists() {
+    if !takes_a_new_name(path) {
         return fs::OpenOptions::new()
             .append(true)
             .open(path)
@@ -80,22 +90,39 @@ pub fn make_folder(path: &Path) -> Outcome<()> {
     fs::create_dir_all(path).map_err(|error| Failure::file(path, &error))
 }
 
-/// Makes a folder for results, or takes one that is empty or of an earlier run.
+/// Makes a folder for the results of a command, or takes one that is empty or of an earlier run of
+/// it; files of that run that are named are gone then, so that none lies beside new ones.
 ///
 /// # Errors
 /// Where somebody else's files are in it, or nothing can be written there.
-pub fn claim_folder(path: &Path) -> Outcome<()> {
+pub fn claim_folder(path: &Path, command: &str, stale: &[String]) -> Outcome<()> {
+    if path.exists() && !path.is_dir() {
+        return Err(Failure::new(format!(
+            "{}: is a file; name a folder",
+            path.display()
+        )));
+    }
     make_folder(path)?;
     let failed = |error: std::io::Error| Failure::file(path, &error);
     let is_empty = fs::read_dir(path).map_err(failed)?.next().is_none();
     let marker = path.join(MARKER);
-    if !is_empty && !marker.exists() {
+    let is_ours = fs::read_to_string(&marker).is_ok_and(|text| text == marked_by(command));
+    if !is_empty && !is_ours {
         return Err(Failure::new(format!(
-            "{}: holds files that are not results of quadrant (no {MARKER} among them); name another folder or an empty one",
+            "{}: holds files that are not results of quadrant {command} (no {MARKER} that says so); name another folder or an empty one",
             path.display()
         )));
     }
-    write(&marker, MARKER_TEXT)
+    write(&marker, &marked_by(command))?;
+    for name in stale {
+        match fs::remove_file(path.join(name)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(failed(error));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// The JSON text of a result.
@@ -148,14 +175,34 @@ mod tests {
     }
 
     #[test]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let [target, link] = ["target", "link"].map(|name| folder.path().join(name));
+        fs::write(&target, "old").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        check([Some(&link)]).unwrap();
+        write(&link, "new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "new");
+    }
+
+    #[test]
     fn a_folder_with_files_of_others_is_refused_and_one_of_ours_is_not() {
         let folder = tempfile::tempdir().unwrap();
         let own = folder.path().join("out");
-        claim_folder(&own).unwrap();
-        fs::write(own.join("summary.json"), "{}").unwrap();
-        assert_eq!(claim_folder(&own), Ok(()));
-        fs::write(folder.path().join("thesis.tex"), "").unwrap();
-        let refusal = claim_folder(folder.path()).unwrap_err().to_string();
-        assert!(refusal.contains("not results of quadrant"), "{refusal}");
+        claim_folder(&own, "commission", &[]).unwrap();
+        for name in ["summary.json", "notes.txt"] {
+            fs::write(own.join(name), "{}").unwrap();
+        }
+        let stale = ["summary.json", "gone.svg"].map(String::from);
+        assert_eq!(claim_folder(&own, "commission", &stale), Ok(()));
+        assert!(!own.join("summary.json").exists() && own.join("notes.txt").exists());
+        let refusal = claim_folder(&own, "identify", &[]).unwrap_err().to_string();
+        assert!(
+            refusal.contains("not results of quadrant identify"),
+            "{refusal}"
+        );
+        let file = claim_folder(&own.join("notes.txt"), "identify", &[]).unwrap_err();
+        assert!(file.to_string().contains("is a file"), "{file}");
     }
 }

@@ -344,6 +344,7 @@ fn a_fault_in_the_middle_of_commissioning_leaves_the_record_so_far_and_says_wher
         out: out.clone(),
         tolerance_um: None,
         log: false,
+        real_axes: false,
     };
     let text = commission::run(&arguments, &Interrupt::never())
         .unwrap_err()

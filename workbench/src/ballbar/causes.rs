@@ -12,16 +12,20 @@
 //! | backlash of X, lost motion | ½·b·s·sgn(sin φ)·cos φ | a step at its reversals |
 //! | cyclic error of X | A·cos(2π·x/lead + ψ)·cos φ | its period |
 //!
-//! They are fitted at once by least squares to both directions. Reversal spikes are the bursts
-//! inside the windows.
+//! They are fitted at once by least squares to both directions. Reversal spikes are the bursts that
+//! they leave inside the windows. A burst that takes longer to settle than the loop has until the
+//! next reversal hides them all.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
+use super::burst::Deviating;
+use super::median::median;
 use super::reversals::{REVERSALS, apart};
 use super::{Point, radial_um};
+use crate::trajectory::MEASURE_FROM_RAD;
 
 /// An axis of the circle.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,10 +49,10 @@ pub struct BothDirections<'a> {
     pub feed_m_per_s: f64,
     /// The axes.
     pub axes: [CircleAxis; 2],
-    /// Half width of the window about a reversal, rad.
+    /// Half width of the window about a reversal in which its burst is looked for, rad.
     pub window_rad: f64,
-    /// Bursts, µm, in the order of [`REVERSALS`].
-    pub bursts_um: [f64; 4],
+    /// What is left of a burst after this time is nothing, s.
+    pub settling_s: f64,
     /// Whether an instrument at the table sees the circle; scales do not see their own errors.
     pub is_at_table: bool,
 }
@@ -68,11 +72,22 @@ pub struct Cause {
     pub unit: &'static str,
 }
 
-/// The causes, the largest first; those that were not measured last.
+/// What a circle deviates by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Causes {
+    /// The largest first; those that were not measured last.
+    pub list: Vec<Cause>,
+    /// Largest spike of both directions at 0°, 90°, 180° and 270° of the circle, µm.
+    pub spikes_um: [f64; 4],
+}
+
+/// The causes of a circle.
 #[must_use]
-pub fn causes(seen: &BothDirections<'_>) -> Vec<Cause> {
-    let mut list = spikes(seen);
-    list.extend(smooth(seen));
+pub fn causes(seen: &BothDirections<'_>) -> Causes {
+    let smooth = smooth(seen);
+    let spikes_um = spikes_um(seen, smooth.as_ref());
+    let mut list = spikes(seen, &spikes_um).to_vec();
+    list.extend(smooth.map_or_else(|| not_measured(seen), |smooth| smooth.causes()));
     let sum_um: f64 = list.iter().filter_map(|own| own.um).sum();
     for own in &mut list {
         own.share_percent = own
@@ -82,18 +97,48 @@ pub fn causes(seen: &BothDirections<'_>) -> Vec<Cause> {
     }
     let size = |own: &Cause| own.um.unwrap_or(-1.0);
     list.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    list
+    Causes { list, spikes_um }
 }
 
-fn spikes(seen: &BothDirections<'_>) -> Vec<Cause> {
-    let of = |axis: usize| {
-        let own = REVERSALS.iter().zip(seen.bursts_um);
-        let own = own.filter(|((_, of, _), _)| *of == axis);
-        let largest = own.map(|(_, burst)| burst).fold(0.0, f64::max);
-        let name = format!("reversal spike {}", seen.axes[axis].name);
-        cause(name, Some(largest), Some(largest), "µm")
+/// Bursts in what the smooth causes leave, the largest of both directions.
+fn spikes_um(seen: &BothDirections<'_>, smooth: Option<&Sized<'_>>) -> [f64; 4] {
+    let of = |points: &[Point], sense: f64| {
+        let left = |point: &Point| {
+            let explained = smooth.map_or(0.0, |smooth| smooth.at(point, sense));
+            radial_um(point, seen.radius_m) - explained
+        };
+        let left_um: Vec<f64> = points.iter().map(left).collect();
+        let path = Deviating {
+            points,
+            median_um: median(&left_um),
+            deviation_um: &left_um,
+            window_rad: seen.window_rad,
+            from_rad: MEASURE_FROM_RAD,
+        };
+        REVERSALS.map(|(at, ..)| path.burst_um(at))
     };
-    vec![of(0), of(1)]
+    let forth = of(seen.counter_clockwise, 1.0);
+    // Clockwise X is at its near end first.
+    let [left, top, right, bottom] = of(seen.clockwise, -1.0);
+    let back = [right, top, left, bottom];
+    [0, 1, 2, 3].map(|place| larger(forth[place], back[place]))
+}
+
+fn spikes(seen: &BothDirections<'_>, spikes_um: &[f64; 4]) -> [Cause; 2] {
+    [0, 1].map(|axis| {
+        let um = larger(spikes_um[axis], spikes_um[axis + 2]);
+        let name = format!("reversal spike {}", seen.axes[axis].name);
+        cause(name, Some(um), Some(um), "µm")
+    })
+}
+
+/// The larger one; `NaN` where one of them is, so that a diverged run never looks perfect.
+fn larger(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() {
+        f64::NAN
+    } else {
+        one.max(other)
+    }
 }
 
 /// A column of the sum.
@@ -166,19 +211,38 @@ impl Term {
 /// About so many points of each direction are fitted.
 const FITTED: usize = 6000;
 
-fn smooth(seen: &BothDirections<'_>) -> Vec<Cause> {
+/// Wider windows leave too little of a circle to tell causes apart, rad: 25°.
+const WIDEST_RAD: f64 = FRAC_PI_2 / 3.6;
+
+/// What the circle does outside the bursts; none where they take up too much of it.
+fn smooth<'a>(seen: &'a BothDirections<'a>) -> Option<Sized<'a>> {
+    if quiet_from_rad(seen) > WIDEST_RAD {
+        return None;
+    }
     let terms = terms(seen);
-    let Some(coefficients) = fitted(seen, &terms) else {
-        return Vec::new();
-    };
-    let sized = Sized {
+    let coefficients = fitted(seen, &terms)?;
+    Some(Sized {
         seen,
         terms,
         coefficients,
+    })
+}
+
+/// Half width of what a burst takes up, rad: the window, or the way until it has settled.
+fn quiet_from_rad(seen: &BothDirections<'_>) -> f64 {
+    seen.window_rad
+        .max(seen.settling_s * seen.feed_m_per_s / seen.radius_m)
+}
+
+/// All smooth causes where none could be told.
+fn not_measured(seen: &BothDirections<'_>) -> Vec<Cause> {
+    let terms = Vec::new();
+    let nothing = Sized {
+        seen,
+        terms,
+        coefficients: Vec::new(),
     };
-    let mut list = sized.of_both_axes();
-    list.extend([0, 1].into_iter().flat_map(|axis| sized.of_axis(axis)));
-    list
+    nothing.causes()
 }
 
 /// Terms with their coefficients.
@@ -189,6 +253,20 @@ struct Sized<'a> {
 }
 
 impl Sized<'_> {
+    fn causes(&self) -> Vec<Cause> {
+        let mut list = self.of_both_axes();
+        list.extend([0, 1].into_iter().flat_map(|axis| self.of_axis(axis)));
+        list
+    }
+
+    /// Radial deviation at a point, µm.
+    fn at(&self, point: &Point, sense: f64) -> f64 {
+        let pairs = self.terms.iter().zip(&self.coefficients);
+        pairs
+            .map(|(term, um)| um * term.at(self.seen, point, sense))
+            .sum()
+    }
+
     /// Coefficient of a term, µm.
     fn of(&self, term: Term) -> Option<f64> {
         let place = self.terms.iter().position(|own| *own == term)?;
@@ -299,7 +377,7 @@ fn fitted(seen: &BothDirections<'_>, terms: &[Term]) -> Option<Vec<f64>> {
 /// Outside the windows about the reversals.
 fn is_quiet(seen: &BothDirections<'_>, point: &Point) -> bool {
     let angle = point.reference_m[1].atan2(point.reference_m[0]);
-    (0..4_u8).all(|quarter| apart(angle, FRAC_PI_2 * f64::from(quarter)) > seen.window_rad)
+    (0..4_u8).all(|quarter| apart(angle, FRAC_PI_2 * f64::from(quarter)) > quiet_from_rad(seen))
 }
 
 #[cfg(test)]
@@ -331,7 +409,7 @@ mod tests {
 
     fn found(wrong: Wrong, is_at_table: bool) -> Vec<Cause> {
         let [counter_clockwise, clockwise] = [1.0, -1.0].map(|sense| path(sense, wrong));
-        causes(&BothDirections {
+        let causes = causes(&BothDirections {
             counter_clockwise: &counter_clockwise,
             clockwise: &clockwise,
             radius_m: RADIUS_M,
@@ -341,9 +419,10 @@ mod tests {
                 lead_m: 0.01,
             }),
             window_rad: 15.0_f64.to_radians(),
-            bursts_um: [0.0; 4],
+            settling_s: 0.0,
             is_at_table,
-        })
+        });
+        causes.list
     }
 
     /// Each cause alone comes back in its own unit, and nothing else beside it.

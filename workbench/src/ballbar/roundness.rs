@@ -6,11 +6,12 @@ use super::point::{Point, radial_um};
 
 /// Circular deviation G, µm: separation of the circles about the least-squares centre that enclose
 /// the path. ISO 230-4:2022 defines it by the centre of the smallest separation and lets that of
-/// the least-squares circle stand for it; ours is never smaller.
+/// the least-squares circle stand for it; ours is never smaller. `NaN` where there is no circle,
+/// so that nothing passes for it.
 #[must_use]
 pub fn circular_deviation_um(points: &[Point]) -> f64 {
     let Some(center) = least_squares_center(points) else {
-        return 0.0;
+        return f64::NAN;
     };
     let radii = points
         .iter()
@@ -102,6 +103,6 @@ mod tests {
     #[test]
     fn a_path_without_points_has_no_centre_and_no_deviation() {
         assert_eq!(least_squares_center(&[]), None);
-        assert_eq!(circular_deviation_um(&[]), 0.0);
+        assert!(circular_deviation_um(&[]).is_nan());
     }
 }

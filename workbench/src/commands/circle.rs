@@ -60,6 +60,7 @@ fn plot(stand: &Stand<'_>, run: &CircleRun) -> String {
     let shown = Shown {
         name: "",
         ink: Ink::After,
+        clockwise: Ink::After,
         run,
     };
     circles(&title, [&axes[0].name, &axes[1].name], &[shown], None)

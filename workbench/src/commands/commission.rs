@@ -43,7 +43,13 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
         out: &arguments.out,
         tolerance_um: arguments.tolerance_um,
         log: arguments.log,
+        are_real_axes: arguments.real_axes,
     };
+    if arguments.real_axes && arguments.machine.can.is_none() {
+        return Err(Failure::new(
+            "--real-axes: needs --can; in process there are simulated axes alone",
+        ));
+    }
     commission(&machine, place, &wanted, interrupt)
 }
 
@@ -56,6 +62,8 @@ pub struct Wanted<'a> {
     pub tolerance_um: Option<f64>,
     /// Whether the frames of the circles are kept.
     pub log: bool,
+    /// Whether real axes answer as plants on the bus.
+    pub are_real_axes: bool,
 }
 
 impl<'a> Wanted<'a> {
@@ -66,6 +74,7 @@ impl<'a> Wanted<'a> {
             out,
             tolerance_um: None,
             log: false,
+            are_real_axes: false,
         }
     }
 }
@@ -83,7 +92,7 @@ pub fn commission(
     let out = wanted.out;
     let circle = fitting_circle(machine);
     check_circle(machine, &circle)?;
-    claim_folder(out)?;
+    claim_folder(out, "commission", &stale(machine))?;
     print_machine(machine);
     let stand = Stand {
         machine,
@@ -103,6 +112,26 @@ pub fn commission(
     after_recording(&stand, &circle, &oscillations, wanted).map_err(kept)?;
     say!("report: {}", out.join("report.html").display());
     Ok(())
+}
+
+/// What an earlier run may have left that would lie beside new records.
+fn stale(machine: &Machine) -> Vec<String> {
+    let files = [
+        "report.html",
+        "summary.json",
+        "circle.svg",
+        "circle-before.csv",
+        "circle-after.csv",
+        "circle-before.candump.log",
+        "circle-after.candump.log",
+        "records.candump.log",
+        "compensation.toml",
+        "model.toml",
+    ];
+    let records = machine.axes.iter().flat_map(|axis| {
+        ["train.csv", "validate.csv"].map(|file| format!("records-{}/{file}", axis.name))
+    });
+    files.map(String::from).into_iter().chain(records).collect()
 }
 
 /// A machine that oscillates is not commissioned: the report says what to change first.
@@ -145,6 +174,7 @@ fn after_recording(
         after: &after,
         tolerance_um: wanted.tolerance_um,
         date: now(),
+        is_simulation: !wanted.are_real_axes,
     };
     feeds::print(&commissioned.feeds);
     if let Some(judged) = commissioned.judged() {

@@ -1,11 +1,12 @@
 //! `quadrant compare`: several runs of `commission` beside each other.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde::Serialize;
 
 use crate::cli::{self, Circles};
-use crate::commissioning::run_folder::{RunCircle, RunFolder, RunParameter};
+use crate::commissioning::run_folder::{RunAxis, RunCircle, RunFolder, RunParameter};
 use crate::console::print_table;
 use crate::error::Outcome;
 use crate::output_files::{self, json, write};
@@ -22,19 +23,22 @@ use identification::figures;
 pub fn run(arguments: &cli::Compare) -> Outcome<()> {
     output_files::check([&arguments.out, &arguments.plot, &arguments.json].map(Option::as_ref))?;
     let runs = arguments.runs.iter().map(|path| RunFolder::read(path));
-    let runs = runs.collect::<Outcome<Vec<_>>>()?;
-    let changes = changes(&runs);
+    let runs = named(runs.collect::<Outcome<Vec<_>>>()?);
+    let (unlike, changes) = (unlike(&runs), changes(&runs));
     print_table(&runs_table(&runs));
     say!("");
+    for sentence in &unlike {
+        say!("{sentence}");
+    }
     if changes.is_empty() {
-        say!("no parameter changed by more than its intervals since the first run");
+        say!("{UNCHANGED}");
     } else {
         print_table(&changes_table(&changes));
     }
     if let Some(path) = &arguments.json {
-        let rows: Vec<RunRow> = runs.iter().map(RunRow::of).collect();
         let comparison = Comparison {
-            runs: rows,
+            runs: runs.iter().map(RunRow::of).collect(),
+            unlike: &unlike,
             changed: &changes,
         };
         write(path, &json(&comparison)?)?;
@@ -42,23 +46,72 @@ pub fn run(arguments: &cli::Compare) -> Outcome<()> {
     if let Some(path) = &arguments.plot {
         write(path, &standalone(&circles(&runs, arguments.circles)?))?;
     }
-    arguments
-        .out
-        .as_deref()
-        .map_or(Ok(()), |path| write_page(path, &runs, &changes))
+    let page = arguments.out.as_deref();
+    page.map_or(Ok(()), |path| write_page(path, &runs, &unlike, &changes))
 }
 
-fn write_page(path: &Path, runs: &[RunFolder], changes: &[Change]) -> Outcome<()> {
+const UNCHANGED: &str = "Since the first run no effect has come or gone, and no parameter has changed by more than its intervals.";
+
+/// The names of the folders, where these are all different; their paths otherwise.
+fn named(mut runs: Vec<RunFolder>) -> Vec<RunFolder> {
+    let short = |run: &RunFolder| {
+        run.path
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    let names: Vec<Option<String>> = runs.iter().map(short).collect();
+    let all: BTreeSet<&Option<String>> = names.iter().collect();
+    if all.len() == names.len() {
+        for (run, name) in runs.iter_mut().zip(names) {
+            run.name = name.unwrap_or_else(|| run.path.display().to_string());
+        }
+    }
+    runs
+}
+
+/// Runs whose figures cannot be compared with those of the first one.
+fn unlike(runs: &[RunFolder]) -> Vec<String> {
+    let mut sentences = Vec::new();
+    let Some((first, others)) = runs.split_first() else {
+        return sentences;
+    };
+    for run in others {
+        let of = |run: &RunFolder| {
+            (
+                run.summary.machine.clone(),
+                run.summary.circle_after.conditions(),
+            )
+        };
+        let (was, now) = (of(first), of(run));
+        if was != now {
+            sentences.push(format!(
+                "Note: {} is machine {}, circle {}; {} is machine {}, circle {}: their figures do not compare.",
+                run.name, now.0, now.1, first.name, was.0, was.1
+            ));
+        }
+    }
+    sentences
+}
+
+fn write_page(
+    path: &Path,
+    runs: &[RunFolder],
+    unlike: &[String],
+    changes: &[Change],
+) -> Outcome<()> {
     let mut page = Page::new("Comparison of runs");
     page.table(&runs_table(runs));
+    for sentence in unlike {
+        page.key(sentence);
+    }
     page.pictures(&[
         circles(runs, Circles::Before)?,
         circles(runs, Circles::After)?,
     ]);
     page.pictures(&[trend(runs)]);
-    page.heading("Parameters that changed by more than their intervals");
+    page.heading("What changed since the first run by more than its intervals");
     if changes.is_empty() {
-        page.paragraph("None since the first run.");
+        page.paragraph(UNCHANGED);
     } else {
         page.table(&changes_table(changes));
     }
@@ -69,6 +122,7 @@ fn write_page(path: &Path, runs: &[RunFolder], changes: &[Change]) -> Outcome<()
 #[derive(Serialize)]
 struct Comparison<'a> {
     runs: Vec<RunRow>,
+    unlike: &'a [String],
     changed: &'a [Change],
 }
 
@@ -79,8 +133,8 @@ struct RunRow {
     date: String,
     program: String,
     method: String,
-    burst_before_um: f64,
-    burst_after_um: f64,
+    spike_before_um: f64,
+    spike_after_um: f64,
     circular_deviation_g_before_um: f64,
     circular_deviation_g_after_um: f64,
     circular_hysteresis_h_after_um: Option<f64>,
@@ -90,13 +144,13 @@ impl RunRow {
     fn of(run: &RunFolder) -> Self {
         let own = &run.summary;
         Self {
-            run: run.name(),
+            run: run.name.clone(),
             machine: own.machine.clone(),
             date: own.date.clone(),
             program: own.program.clone(),
             method: own.method.clone(),
-            burst_before_um: own.circle_before.peak_max_um,
-            burst_after_um: own.circle_after.peak_max_um,
+            spike_before_um: own.circle_before.spike_um(),
+            spike_after_um: own.circle_after.spike_um(),
             circular_deviation_g_before_um: own.circle_before.circular_deviation_g_both_um,
             circular_deviation_g_after_um: own.circle_after.circular_deviation_g_both_um,
             circular_hysteresis_h_after_um: own.circle_after.circular_hysteresis_h_um,
@@ -104,47 +158,76 @@ impl RunRow {
     }
 }
 
-/// A parameter whose interval holds nothing of that of the first run.
+/// An effect that came or went, or a parameter whose interval holds nothing of that of the first
+/// run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Change {
     run: String,
     axis: String,
-    parameter: String,
+    what: String,
     unit: String,
-    first: f64,
-    now: f64,
-    by_percent: f64,
+    /// None where it was not there, or unknown.
+    first: Option<f64>,
+    now: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    by_percent: Option<f64>,
 }
 
 fn changes(runs: &[RunFolder]) -> Vec<Change> {
     let Some((first, others)) = runs.split_first() else {
         return Vec::new();
     };
-    others
-        .iter()
-        .flat_map(|run| changed_since(first, run))
-        .collect()
+    let since = |run: &RunFolder| changed_since(first, run);
+    others.iter().flat_map(since).collect()
 }
 
 fn changed_since(first: &RunFolder, run: &RunFolder) -> Vec<Change> {
     let mut changes = Vec::new();
     for axis in &run.summary.axes {
         let earlier = first.summary.axes.iter().find(|own| own.name == axis.name);
-        for (name, now) in &axis.parameters {
-            let was = earlier.and_then(|own| own.parameters.get(name));
-            let pair = was.and_then(|was| Some((was, was.value?, now.value?)));
-            let Some((was, first, value)) = pair.filter(|(was, ..)| is_apart(was, now)) else {
-                continue;
-            };
+        let Some(earlier) = earlier else {
+            continue;
+        };
+        let mut add = |what: String, unit: &str, [first, now]: [Option<f64>; 2]| {
+            let ratio = first.zip(now).filter(|(first, _)| *first != 0.0);
             changes.push(Change {
-                run: run.name(),
+                run: run.name.clone(),
                 axis: axis.name.clone(),
-                parameter: name.clone(),
-                unit: was.unit.clone(),
+                what,
+                unit: unit.to_owned(),
                 first,
-                now: value,
-                by_percent: 100.0 * (value / first - 1.0),
+                now,
+                by_percent: ratio.map(|(first, now)| 100.0 * (now / first - 1.0)),
             });
+        };
+        let missing = |of: &RunAxis, from: &RunAxis| -> Vec<String> {
+            let gone = of.found.iter().filter(|name| !from.found.contains(name));
+            gone.cloned().collect()
+        };
+        for name in missing(axis, earlier) {
+            add(format!("{name} is new"), "", [None, None]);
+        }
+        for name in missing(earlier, axis) {
+            add(format!("{name} is gone"), "", [None, None]);
+        }
+        let names: BTreeSet<&String> = earlier
+            .parameters
+            .keys()
+            .chain(axis.parameters.keys())
+            .collect();
+        for name in names {
+            let [was, now] = [earlier, axis].map(|own| own.parameters.get(name));
+            let values = [was, now].map(|own| own.and_then(|own| own.value));
+            let has_changed = match (was, now) {
+                (Some(was), Some(now)) if was.value.is_some() && now.value.is_some() => {
+                    is_apart(was, now)
+                }
+                _ => values[0].is_some() != values[1].is_some(),
+            };
+            if has_changed {
+                let unit = was.or(now).map_or("", |own| own.unit.as_str());
+                add(name.clone(), unit, values);
+            }
         }
     }
     changes
@@ -160,7 +243,7 @@ fn runs_table(runs: &[RunFolder]) -> TextTable {
         "date",
         "circle",
         "method",
-        "burst before, µm",
+        "spike before, µm",
         "after, µm",
         "G before, µm",
         "after, µm",
@@ -175,8 +258,8 @@ fn runs_table(runs: &[RunFolder]) -> TextTable {
             row.date,
             circle(after),
             row.method,
-            figures::error(row.burst_before_um),
-            figures::error(row.burst_after_um),
+            figures::error(row.spike_before_um),
+            figures::error(row.spike_after_um),
             figures::error(row.circular_deviation_g_before_um),
             figures::error(row.circular_deviation_g_after_um),
             h.map_or_else(|| "–".to_owned(), figures::error),
@@ -189,21 +272,23 @@ fn changes_table(changes: &[Change]) -> TextTable {
     let mut rows = vec![head([
         "run",
         "axis",
-        "parameter",
+        "what",
         "first run",
         "now",
         "unit",
         "change, %",
     ])];
+    let or = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), figures::error);
     rows.extend(changes.iter().map(|own| {
+        let by = own.by_percent;
         vec![
             own.run.clone(),
             own.axis.clone(),
-            own.parameter.clone(),
-            figures::error(own.first),
-            figures::error(own.now),
+            own.what.clone(),
+            or(own.first),
+            or(own.now),
             own.unit.clone(),
-            format!("{:+.1}", own.by_percent),
+            by.map_or_else(|| "–".to_owned(), |percent| format!("{percent:+.1}")),
         ]
     }));
     rows
@@ -221,7 +306,7 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
             directions
                 .enumerate()
                 .map(|(place, (direction, points))| Trace {
-                    name: format!("{} {direction}", run.name()),
+                    name: format!("{} {direction}", run.name.clone()),
                     ink: Ink::Other(number),
                     is_dashed: place > 0,
                     points,
@@ -232,7 +317,7 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
     let burst = |place: usize| {
         let each = read
             .iter()
-            .map(|(figures, _)| format!("{:.2}", figures.peak_um[place]));
+            .map(|(figures, _)| format!("{:.2}", figures.spikes_um[place]));
         format!("{} µm", each.collect::<Vec<_>>().join(" → "))
     };
     let axes = runs.first().map_or(&[][..], |run| &run.summary.axes);
@@ -247,11 +332,11 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
         axes: [axis(0), axis(1)],
         traces: &traces,
         bursts: [0, 1, 2, 3].map(burst),
-        tolerance_um: None,
+        zone: None,
     }))
 }
 
-/// Burst and G from run to run.
+/// Spike and G from run to run.
 fn trend(runs: &[RunFolder]) -> String {
     let over = |name: &str, ink: Ink, value: &dyn Fn(&RunRow) -> f64| {
         let points = runs.iter().enumerate();
@@ -262,8 +347,8 @@ fn trend(runs: &[RunFolder]) -> String {
         )
     };
     let list = [
-        over("burst before", Ink::Before, &|row| row.burst_before_um),
-        over("burst after", Ink::After, &|row| row.burst_after_um),
+        over("spike before", Ink::Before, &|row| row.spike_before_um),
+        over("spike after", Ink::After, &|row| row.spike_after_um),
         over("G before", Ink::Other(2), &|row| {
             row.circular_deviation_g_before_um
         }),
@@ -272,7 +357,7 @@ fn trend(runs: &[RunFolder]) -> String {
         }),
     ];
     let plot = Plot {
-        title: "Burst and circular deviation from run to run",
+        title: "Reversal spike and circular deviation from run to run",
         x: "run",
         y: "µm",
         size_px: (540.0, 340.0),

@@ -27,9 +27,13 @@ pub struct AtFeed {
     pub burst_before_um: f64,
     /// Largest burst with it, µm.
     pub burst_after_um: f64,
-    /// Circular deviation G without compensation, µm.
+    /// Largest spike of both directions without compensation, µm.
+    pub spike_before_um: f64,
+    /// Largest spike with it, µm.
+    pub spike_after_um: f64,
+    /// Circular deviation G of both directions without compensation, µm.
     pub circular_deviation_g_before_um: f64,
-    /// Circular deviation G with it, µm.
+    /// Circular deviation G of both directions with it, µm.
     pub circular_deviation_g_after_um: f64,
 }
 
@@ -40,15 +44,17 @@ impl AtFeed {
             feed_mm_min: before.report.feed_mm_min,
             burst_before_um: one.peak_max_um,
             burst_after_um: other.peak_max_um,
-            circular_deviation_g_before_um: one.circular_deviation_g_um,
-            circular_deviation_g_after_um: other.circular_deviation_g_um,
+            spike_before_um: before.report.spike_um(),
+            spike_after_um: after.report.spike_um(),
+            circular_deviation_g_before_um: before.report.roundness.circular_deviation_g_both_um,
+            circular_deviation_g_after_um: after.report.roundness.circular_deviation_g_both_um,
         }
     }
 
-    /// How much smaller the burst is, percent.
+    /// How much smaller the spike is, percent.
     #[must_use]
     pub fn reduction_percent(&self) -> f64 {
-        less_percent(self.burst_before_um, self.burst_after_um)
+        less_percent(self.spike_before_um, self.spike_after_um)
     }
 }
 
@@ -112,8 +118,8 @@ pub fn table(feeds: &Feeds) -> TextTable {
         let mut cells = vec![format!("{:.0}", at.feed_mm_min)];
         cells.extend(
             [
-                at.burst_before_um,
-                at.burst_after_um,
+                at.spike_before_um,
+                at.spike_after_um,
                 at.reduction_percent(),
                 at.circular_deviation_g_before_um,
                 at.circular_deviation_g_after_um,
@@ -124,8 +130,8 @@ pub fn table(feeds: &Feeds) -> TextTable {
     };
     let mut rows = vec![head([
         "feed, mm/min",
-        "burst before, µm",
-        "burst after, µm",
+        "spike before, µm",
+        "spike after, µm",
         "less, %",
         "G before, µm",
         "G after, µm",
@@ -142,8 +148,8 @@ pub fn picture(feeds: &Feeds) -> String {
         Curve::line(name, ink, points)
     };
     let list = [
-        over_feed("burst before", Ink::Before, |at| at.burst_before_um),
-        over_feed("burst after", Ink::After, |at| at.burst_after_um),
+        over_feed("spike before", Ink::Before, |at| at.spike_before_um),
+        over_feed("spike after", Ink::After, |at| at.spike_after_um),
         over_feed("G before", Ink::Other(2), |at| {
             at.circular_deviation_g_before_um
         }),
@@ -152,7 +158,7 @@ pub fn picture(feeds: &Feeds) -> String {
         }),
     ];
     let plot = Plot {
-        title: "Burst and circular deviation against feed",
+        title: "Reversal spike and circular deviation G against feed",
         x: "feed, mm/min",
         y: "µm",
         size_px: (540.0, 270.0),

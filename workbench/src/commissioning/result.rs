@@ -14,7 +14,7 @@ use crate::error::Outcome;
 use crate::output_files::{json, write};
 use crate::presentation::certificate::Judged;
 use crate::presentation::plots::standalone;
-use crate::session::{AT_TABLE, Stand};
+use crate::session::Stand;
 use crate::trajectory::Circle;
 
 /// `summary.json`.
@@ -71,7 +71,12 @@ pub struct Commissioned<'a> {
     pub tolerance_um: Option<f64>,
     /// When it was, UTC.
     pub date: String,
+    /// Whether a simulator stands in for the machine.
+    pub is_simulation: bool,
 }
+
+/// With fewer points than this share of all, nothing is judged.
+const LEAST_POINTS: f64 = 0.995;
 
 /// How much smaller the largest burst has become, percent.
 #[must_use]
@@ -90,13 +95,19 @@ impl Commissioned<'_> {
         write(&out.join("report.html"), &self.page()?)
     }
 
-    /// Circular deviation against the tolerance, where there is one.
+    /// Circular deviation against the tolerance, where there is one and no point of the circle was
+    /// lost.
     #[must_use]
     pub fn judged(&self) -> Option<Judged> {
-        self.tolerance_um.map(|tolerance_um| Judged {
-            tolerance_um,
-            is_um: self.after.report.roundness.circular_deviation_g_both_um,
-        })
+        let [there, wanted] = self.after.report.points;
+        let is_whole = there as f64 >= LEAST_POINTS * wanted as f64;
+        self.tolerance_um
+            .filter(|_| is_whole)
+            .map(|tolerance_um| Judged {
+                tolerance_um,
+                is_um: self.after.report.roundness.circular_deviation_g_both_um,
+                is_simulated: self.is_simulation,
+            })
     }
 
     fn summary(&self) -> SummaryFile<'_> {
@@ -122,15 +133,10 @@ impl Commissioned<'_> {
             bus_load_percent: f64::from(machine.bus_load_per_mille()) / 10.0,
             date: &self.date,
             program: program(),
-            simulation: self.is_simulation(),
+            simulation: self.is_simulation,
             tolerance_um: self.tolerance_um,
             passes: self.judged().map(|judged| judged.passes()),
         }
-    }
-
-    /// Whether a simulator stands in for the machine: it alone tells where its table truly is.
-    pub(super) fn is_simulation(&self) -> bool {
-        self.before.report.deviation_of == AT_TABLE
     }
 
     pub(super) fn reduction_percent(&self) -> f64 {

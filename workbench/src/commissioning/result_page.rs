@@ -1,10 +1,11 @@
 //! `report.html`: the certificate first, then the chain from the residual over the effect to the
 //! micrometre, then axis by axis what that rests on.
 
+use axis_model::EffectName;
 use identification::{Identification, figures};
 use maud::html;
 
-use super::feeds;
+use super::feeds::{self, less_percent};
 use super::program::program;
 use super::result::Commissioned;
 use super::reversal_curves::{ReversalRun, six_curves};
@@ -19,6 +20,7 @@ use crate::presentation::page::Page;
 use crate::presentation::plots::Ink;
 use crate::presentation::result_chapters::add_identification;
 use crate::presentation::result_tables::{TextTable, head, sentence};
+use crate::session::AT_TABLE;
 
 impl Commissioned<'_> {
     /// The circle before and after, in both directions.
@@ -33,7 +35,12 @@ impl Commissioned<'_> {
             ("before", Ink::Before, self.before),
             ("after", Ink::After, self.after),
         ]
-        .map(|(name, ink, run)| Shown { name, ink, run });
+        .map(|(name, ink, run)| Shown {
+            name,
+            ink,
+            clockwise: ink,
+            run,
+        });
         circles(
             &title,
             [&axes[0].name, &axes[1].name],
@@ -59,16 +66,11 @@ impl Commissioned<'_> {
 
     fn add_certificate(&self, page: &mut Page) {
         let (before, after) = (&self.before.report, &self.after.report);
-        let sentence = format!(
-            "Largest burst on the circle: {:.2} µm before, {:.2} µm with {}, {:.1} % less.",
-            before.figures.peak_max_um,
-            after.figures.peak_max_um,
-            in_words(self.trials.method),
-            self.reduction_percent()
-        );
+        let sentence = self.headline();
+        page.foot(&self.foot());
         let certificate = Certificate {
             machine: &self.stand.machine.name,
-            is_simulation: self.is_simulation(),
+            is_simulation: self.is_simulation,
             judged: self.judged(),
             sentence: &sentence,
             facts: &self.facts(),
@@ -82,63 +84,113 @@ impl Commissioned<'_> {
         page.add(&certificate.markup());
     }
 
+    fn headline(&self) -> String {
+        let [before, after] = [self.before, self.after].map(|run| run.report.spike_um());
+        if self.trials.method == "none" {
+            return format!(
+                "Largest reversal spike of the circle: {before:.2}\u{a0}µm; nothing that was tried makes it smaller, so nothing is compensated."
+            );
+        }
+        format!(
+            "Largest reversal spike of the circle: {before:.2}\u{a0}µm before, {after:.2}\u{a0}µm with {}, {:.1}\u{a0}% less.",
+            in_words(self.trials.method),
+            less_percent(before, after)
+        )
+    }
+
+    /// What stands on every printed page.
+    fn foot(&self) -> String {
+        let simulation = if self.is_simulation {
+            "SIMULATION, "
+        } else {
+            ""
+        };
+        format!(
+            "{simulation}machine {}, {}, {}",
+            self.stand.machine.name,
+            self.date,
+            program()
+        )
+    }
+
     /// Date, program and test block.
     fn facts(&self) -> Vec<(&'static str, String)> {
         let report = &self.after.report;
         let names = self.stand.axis_names();
         let period_s = self.stand.machine.period_s;
+        let missed = [self.before, self.after].map(|run| run.report.missed_cycles);
         vec![
-            ("date", self.date.clone()),
-            ("program", program()),
+            ("date of test", self.date.clone()),
             ("axes", names.join(", ")),
-            ("interface", self.stand.place.in_words()),
             ("plane", names[..2].concat()),
-            ("radius", format!("{} mm", report.radius_mm)),
-            ("feed", format!("{:.0} mm/min", report.feed_mm_min)),
+            ("radius", format!("{}\u{a0}mm", report.radius_mm)),
+            ("feed F", format!("{:.0}\u{a0}mm/min", report.feed_mm_min)),
             ("turns", "3 counter-clockwise, 1 clockwise".into()),
-            ("sampled every", format!("{} ms", 1.0e3 * period_s)),
-            ("compensation", in_words(self.trials.method).to_owned()),
-            ("missed cycles", report.missed_cycles.to_string()),
-            ("bus load", format!("{:.1} %", report.bus_load_percent)),
+            ("sampled every", format!("{}\u{a0}ms", 1.0e3 * period_s)),
+            (
+                "missed cycles before, after",
+                format!("{}, {}", missed[0], missed[1]),
+            ),
+            ("compensation", self.trials.method.to_owned()),
+            ("connected by", self.stand.place.in_words()),
+            ("program", program()),
         ]
     }
 
+    /// Parameters and a column for each axis.
     fn downloaded(&self) -> TextTable {
-        let mut rows = vec![head(["axis", "what its drive has got"])];
-        let axes = self.stand.axis_names().into_iter();
-        rows.extend(axes.zip(&self.trials.taken).map(|(name, own)| {
-            let gap = match own.backlash_m {
-                gap_m if gap_m > 0.0 => format!("; backlash {:.2} µm", 1.0e6 * gap_m),
-                _ => String::new(),
+        let mut rows = vec![head(["parameter"])];
+        rows[0].extend(self.stand.axis_names());
+        let of_axes: Vec<_> = self
+            .trials
+            .taken
+            .iter()
+            .map(compensation_words::values)
+            .collect();
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in of_axes.iter().flatten() {
+            if !names.contains(name) {
+                names.push(name);
+            }
+        }
+        rows.extend(names.iter().map(|name| {
+            let of = |values: &Vec<(&str, String)>| {
+                let own = values.iter().find(|(own, _)| own == name);
+                own.map_or_else(|| "–".to_owned(), |(_, value)| value.clone())
             };
-            vec![name, compensation_words::in_words(&own.reversal) + &gap]
+            let mut row = vec![(*name).to_owned()];
+            row.extend(of_axes.iter().map(of));
+            row
         }));
+        if names.is_empty() {
+            rows.push(vec!["nothing".into()]);
+        }
         rows
     }
 
     /// By what the figures were measured, and how they are defined.
-    fn notes(&self) -> String {
-        let seen = if self.is_simulation() {
-            "Measured by the simulation's true table position"
+    fn notes(&self) -> Vec<String> {
+        let seen = if self.before.report.deviation_of == AT_TABLE {
+            "Measured by the simulation's true table position; no measurement uncertainty is stated or taken into account."
         } else {
-            "Measured by the load scales of the axes, which do not see their own errors nor what is between them and the tool"
+            "Measured by the load scales of the axes, which do not see their own errors nor what is between them and the tool; no measurement uncertainty is stated or taken into account."
         };
-        let unfit: Vec<String> = self
-            .oscillations
-            .iter()
-            .map(|own| own.sentence() + ". ")
-            .collect();
-        format!(
-            "{seen}. G, H and F by ISO 230-4:2022; G about the least-squares centre, which the standard lets stand for the minimum zone. A burst is the \
-             largest deviation from the median within 15° of a reversal, mean of three turns. A cause's µm are the circular deviation that it alone would make, by \
-             least squares over both directions outside the bursts. {}Compensation values: compensation.toml.",
-            unfit.concat()
-        )
+        let mut notes = vec![
+            seen.to_owned(),
+            "G, H, Fmax and Fmin by ISO 230-4:2022: G about the least-squares centre, which the standard lets stand for the minimum zone (never smaller); H from means over 0.5°.".to_owned(),
+            "A reversal spike is the largest deviation within 15° of a reversal (more with a gap) beside all other causes, of either direction, mean of its turns. The µm of every other cause are the circular \
+             deviation that it alone would make, by least squares over both directions outside the spikes. What is not friction or backlash is not corrected by this program.".to_owned(),
+        ];
+        notes.extend(self.oscillations.iter().map(|own| own.sentence() + "."));
+        notes
     }
 
-    /// From the residual over the effect to the micrometre.
+    /// Which friction model was needed: residual, effect, micrometres.
     fn add_chain(&self, page: &mut Page) {
-        page.heading("From the residual to the micrometre");
+        page.heading("Which model of friction was needed, and what it is worth");
+        page.paragraph(
+            "The declared model is what was known of the axes beforehand; the extended one has what their records show beside it.",
+        );
         for (axis, result) in self.stand.machine.axes.iter().zip(self.results) {
             page.paragraph(&format!(
                 "Axis {}. {}.",
@@ -146,16 +198,56 @@ impl Commissioned<'_> {
                 sentence(&result.report)
             ));
         }
+        page.add(&html! { ul.notes { @for (name, words) in self.found_words() { li { b { (name) } ": " (words) } } } });
         page.table(&self.force_table());
         if let Some(worth) = self.worth() {
             page.key(&worth);
         }
-        page.paragraph("What was tried on the circle; the one that leaves least is in the drive and in compensation.toml.");
+        page.paragraph(
+            "What was tried on the circle, by its largest burst (from the median of the whole circle, so squareness and scaling are in it). The one that leaves least is in the drives and in compensation.toml; a model that the drives refine is kept where it leaves at most 0.2 µm more, since it follows slow change.",
+        );
         page.table(&self.trials_table());
-        page.pictures(&[feeds::picture(&self.feeds)]);
+        page.pictures(&[feeds::picture(&self.feeds), self.circle_after_picture()]);
         for sentence in &self.feeds.broke_off {
             page.paragraph(sentence);
         }
+    }
+
+    /// The effects that were found, with what they are.
+    fn found_words(&self) -> Vec<(&'static str, &'static str)> {
+        let found = self.found();
+        let names = found
+            .iter()
+            .filter_map(|name| name.parse::<EffectName>().ok());
+        names.map(|name| (name.as_str(), name.words())).collect()
+    }
+
+    /// Effects that were found on any axis.
+    fn found(&self) -> Vec<&str> {
+        let mut found: Vec<&str> = Vec::new();
+        for name in self.results.iter().flat_map(|result| &result.report.found) {
+            if !found.contains(&name.as_str()) {
+                found.push(name);
+            }
+        }
+        found
+    }
+
+    /// The circle after at a scale of its own.
+    fn circle_after_picture(&self) -> String {
+        let axes = &self.stand.machine.axes;
+        let shown = Shown {
+            name: "after",
+            ink: Ink::After,
+            clockwise: Ink::Recorded,
+            run: self.after,
+        };
+        circles(
+            "The circle after, at its own scale",
+            [&axes[0].name, &axes[1].name],
+            &[shown],
+            None,
+        )
     }
 
     /// What the effects that were found are worth on the circle.
@@ -168,14 +260,9 @@ impl Commissioned<'_> {
                 .map(|own| own.burst_after_um)
         };
         let (declared, extended) = (left(DECLARED)?, left("model")?);
-        let mut found: Vec<&str> = Vec::new();
-        for name in self.results.iter().flat_map(|result| &result.report.found) {
-            if !found.contains(&name.as_str()) {
-                found.push(name);
-            }
-        }
+        let found = self.found();
         Some(format!(
-            "Fed forward, the declared model leaves a burst of {declared:.2} µm, the model with {} {extended:.2} µm: what was found is worth {:.2} µm on this circle.",
+            "With the declared model in the drives a burst of {declared:.2}\u{a0}µm is left on the circle, with {} added {extended:.2}\u{a0}µm: what was found is worth {:.2}\u{a0}µm.",
             found.join(", "),
             declared - extended
         ))
@@ -225,10 +312,13 @@ impl Commissioned<'_> {
 
     /// The six curves of the paper's Fig. 8(a), about one reversal of the first axis on a sine.
     fn add_reversal(&self, page: &mut Page) -> Outcome<()> {
-        page.heading("One reversal in time");
+        let (report, axis) = (&self.before.report, &self.stand.machine.axes[0].name);
+        page.heading(&format!(
+            "A reversal of axis {axis} in time, R {} mm, F {:.0} mm/min, at 180°",
+            report.radius_mm, report.feed_mm_min
+        ));
         page.paragraph(
-            "The six curves of the paper's Fig. 8(a) about a reversal of the first axis, before and after: setpoint, table, disturbance \
-             (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
+            "Before and after: setpoint, table, disturbance (friction and other forces that the motor has to overcome), drive force, speed of the motor, error.",
         );
         let before = reversal_rows(self.stand, &self.stand.uncompensated(), self.circle)?;
         let after = reversal_rows(self.stand, &self.trials.taken, self.circle)?;

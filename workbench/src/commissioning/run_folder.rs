@@ -35,16 +35,31 @@ pub struct RunCircle {
     pub radius_mm: f64,
     /// Feed.
     pub feed_mm_min: f64,
-    /// Burst at each reversal.
-    pub peak_um: [f64; 4],
-    /// Largest burst.
-    pub peak_max_um: f64,
-    /// G of the counter-clockwise turns.
-    pub circular_deviation_g_um: f64,
+    /// What saw it.
+    pub deviation_of: String,
+    /// Spikes at 0°, 90°, 180° and 270°.
+    pub spikes_um: [f64; 4],
     /// G of both directions.
     pub circular_deviation_g_both_um: f64,
     /// Hysteresis.
     pub circular_hysteresis_h_um: Option<f64>,
+}
+
+impl RunCircle {
+    /// The largest spike, µm.
+    #[must_use]
+    pub fn spike_um(&self) -> f64 {
+        self.spikes_um.into_iter().fold(0.0, f64::max)
+    }
+
+    /// What has to be the same for figures to be compared.
+    #[must_use]
+    pub fn conditions(&self) -> String {
+        format!(
+            "R {} mm, F {:.0} mm/min, seen by {}",
+            self.radius_mm, self.feed_mm_min, self.deviation_of
+        )
+    }
 }
 
 /// An axis of a run.
@@ -80,6 +95,8 @@ pub struct RunParameter {
 pub struct RunFolder {
     /// Where it is.
     pub path: PathBuf,
+    /// What it is called.
+    pub name: String,
     /// Its summary.
     pub summary: RunSummary,
 }
@@ -105,18 +122,9 @@ impl RunFolder {
         })?;
         Ok(Self {
             path: path.to_owned(),
+            name: path.display().to_string(),
             summary,
         })
-    }
-
-    /// The name of its folder.
-    #[must_use]
-    pub fn name(&self) -> String {
-        let name = self.path.file_name();
-        name.map_or_else(
-            || self.path.display().to_string(),
-            |name| name.to_string_lossy().into_owned(),
-        )
     }
 
     /// The circle without compensation, or with it: its figures, and its turns counter-clockwise

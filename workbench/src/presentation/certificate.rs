@@ -12,6 +12,8 @@ pub struct Judged {
     pub tolerance_um: f64,
     /// What it is, µm.
     pub is_um: f64,
+    /// Whether a simulator has stood in for the machine.
+    pub is_simulated: bool,
 }
 
 impl Judged {
@@ -29,8 +31,13 @@ impl Judged {
         } else {
             ("FAIL", "beyond")
         };
+        let of = if self.is_simulated {
+            " (simulated machine, nothing was measured)"
+        } else {
+            ""
+        };
         format!(
-            "{verdict}: circular deviation G of both directions {:.2} µm, {against} the tolerance of {} µm",
+            "{verdict}{of}: circular deviation G of both directions {:.3}\u{a0}µm, {against} the tolerance of {}\u{a0}µm, at this radius and feed",
             self.is_um, self.tolerance_um
         )
     }
@@ -56,11 +63,23 @@ pub struct Certificate<'a> {
     pub causes: &'a TextTable,
     /// Burst and G against feed.
     pub feeds: &'a TextTable,
-    /// What the drives have got: axis and words.
+    /// What the drives have got: parameters, and a column for each axis.
     pub downloaded: &'a TextTable,
     /// By what the figures were measured, and how they are defined.
-    pub notes: &'a str,
+    pub notes: &'a [String],
 }
+
+/// What the program cannot know, to be filled in by hand.
+const BLANKS: [&str; 8] = [
+    "machine type and serial number",
+    "instrument and its calibration",
+    "temperature, °C; warm-up",
+    "centre of the circle, other axes at",
+    "tolerance agreed with",
+    "tested by",
+    "date",
+    "signature",
+];
 
 impl Certificate<'_> {
     /// The page.
@@ -77,14 +96,14 @@ impl Certificate<'_> {
                 div.facts { @for (name, words) in self.facts { div { span.dt { (name) } span { (words) } } } }
                 div.columns {
                     figure { (PreEscaped(self.circle)) }
-                    div { h3 { "Circular deviation" } (table(self.figures)) h3 { "Against feed" } (table(self.feeds)) }
+                    div { h3 { "Circular deviation" } (table(self.figures)) h3 { "Against feed" } div.small { (table(self.feeds)) } }
                 }
                 div.columns {
                     div { h3 { "Causes, ranked by what they cost" } (table(self.causes)) }
-                    div { h3 { "Downloaded to the drives" } (table(self.downloaded)) }
+                    div { h3 { "Downloaded to the drives" } div.small { (table(self.downloaded)) } }
                 }
-                p { small { (self.notes) } }
-                div.signature { div { "tested by" } div { "date" } div { "signature" } }
+                ul.notes { @for note in self.notes { li { (note) } } }
+                div.signature { @for blank in BLANKS { div { (blank) } } }
             }
         }
     }
@@ -100,6 +119,7 @@ mod tests {
             let judged = Judged {
                 tolerance_um: 5.0,
                 is_um,
+                is_simulated: false,
             };
             assert_eq!(judged.passes(), passes);
             assert!(judged.sentence().starts_with(word));
@@ -107,6 +127,7 @@ mod tests {
         let nothing = Judged {
             tolerance_um: 5.0,
             is_um: f64::NAN,
+            is_simulated: true,
         };
         assert!(!nothing.passes());
     }

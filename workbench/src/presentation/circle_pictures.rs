@@ -1,6 +1,7 @@
 //! Circles as people know them from a ballbar: both directions, before and after on one scale.
 
-use super::plots::{Ink, Polar, Trace, polar};
+use super::plots::{Ink, Polar, Trace, Zone, polar};
+use crate::ballbar::radial_um;
 use crate::circle_test::CircleRun;
 
 /// A circle and what it is called.
@@ -9,11 +10,14 @@ pub struct Shown<'a> {
     pub name: &'a str,
     /// Its colour.
     pub ink: Ink,
+    /// That of its clockwise turn, which is dashed where it is the same.
+    pub clockwise: Ink,
     /// The circle.
     pub run: &'a CircleRun,
 }
 
-/// Circles over each other; the largest burst of each reversal stands beside it.
+/// Circles over each other; the spike at each reversal, the larger of both directions, stands
+/// beside it.
 #[must_use]
 pub fn circles(
     title: &str,
@@ -23,9 +27,7 @@ pub fn circles(
 ) -> String {
     let traces: Vec<Trace<'_>> = list.iter().flat_map(both_directions).collect();
     let burst = |place: usize| {
-        let each = list
-            .iter()
-            .map(|shown| shown.run.report.figures.peak_um[place]);
+        let each = list.iter().map(|shown| shown.run.report.spikes_um[place]);
         let words: Vec<String> = each.map(|um| format!("{um:.2}")).collect();
         format!("{} µm", words.join(" → "))
     };
@@ -34,21 +36,44 @@ pub fn circles(
         axes,
         traces: &traces,
         bursts: [0, 1, 2, 3].map(burst),
-        tolerance_um,
+        zone: tolerance_um.map(|tolerance_um| zone(list, tolerance_um)),
     })
+}
+
+/// The zone about the middle of the last circle: G is a width, wherever it lies.
+fn zone(list: &[Shown<'_>], tolerance_um: f64) -> Zone {
+    let last = list.last().map(|shown| shown.run);
+    let radius_m = last.map_or(0.0, |run| 1.0e-3 * run.report.radius_mm);
+    let points = last
+        .into_iter()
+        .flat_map(|run| run.points.iter().chain(&run.clockwise));
+    let (low, high) = points
+        .map(|point| radial_um(point, radius_m))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), um| {
+            (low.min(um), high.max(um))
+        });
+    Zone {
+        width_um: tolerance_um,
+        middle_um: 0.5 * (low + high),
+    }
 }
 
 fn both_directions<'a>(shown: &Shown<'a>) -> [Trace<'a>; 2] {
     let radius_m = 1.0e-3 * shown.run.report.radius_mm;
-    let trace = |direction: &str, points, is_dashed| Trace {
+    let trace = |direction: &str, points, ink, is_dashed| Trace {
         name: format!("{} {direction}", shown.name).trim().to_owned(),
-        ink: shown.ink,
+        ink,
         is_dashed,
         points,
         radius_m,
     };
     [
-        trace("counter-clockwise", shown.run.one_turn(), false),
-        trace("clockwise", &shown.run.clockwise, true),
+        trace("counter-clockwise", shown.run.one_turn(), shown.ink, false),
+        trace(
+            "clockwise",
+            &shown.run.clockwise,
+            shown.clockwise,
+            shown.clockwise == shown.ink,
+        ),
     ]
 }

@@ -22,31 +22,31 @@ fn um(value: f64) -> String {
 /// The figures of a circle, before and after.
 #[must_use]
 pub fn circle_table(before: &CircleReport, after: &CircleReport) -> TextTable {
-    let mut rows = vec![head(["ISO 230-4", "before, µm", "after, µm"])];
+    let mut rows = vec![head(["figure", "before, µm", "after, µm"])];
     let mut add = |name: &str, value: &dyn Fn(&CircleReport) -> String| {
         rows.push(vec![name.to_owned(), value(before), value(after)]);
     };
-    add("largest burst", &|own| um(own.figures.peak_max_um));
-    add("G of both directions", &|own| {
+    add("G, both directions", &|own| {
         um(own.roundness.circular_deviation_g_both_um)
     });
-    add("G counter-clockwise, 3 turns", &|own| {
+    add("G, counter-clockwise", &|own| {
         um(own.figures.circular_deviation_g_um)
     });
-    add("each of its turns", &turns);
-    add("G clockwise", &|own| {
+    add("turn by turn, from–to", &turns);
+    add("G, clockwise", &|own| {
         um(own.roundness.circular_deviation_g_clockwise_um)
     });
-    add("hysteresis H", &|own| {
+    add("H", &|own| {
         let own = own.figures.circular_hysteresis_h_um;
         own.map_or_else(|| NOT_MEASURED.into(), um)
     });
-    add("radial deviation Fmax", &|own| {
+    add("Fmax, counter-clockwise", &|own| {
         um(own.figures.radial_deviation_fmax_um)
     });
-    add("radial deviation Fmin", &|own| {
+    add("Fmin, counter-clockwise", &|own| {
         um(own.figures.radial_deviation_fmin_um)
     });
+    add("largest reversal spike", &|own| um(own.spike_um()));
     rows
 }
 
@@ -58,34 +58,49 @@ fn turns(report: &CircleReport) -> String {
         .fold((f64::INFINITY, 0.0_f64), |(low, high), um| {
             (low.min(*um), high.max(*um))
         });
-    format!("{} to {}", um(low), um(high))
+    format!("{}–{}", um(low), um(high))
 }
 
-/// The causes, the largest before first, with the same after and the value in which it is mended.
+/// The causes, the largest before first, with the same after and the value in which it is mended;
+/// those that cost nothing stand in one row.
 #[must_use]
 pub fn cause_table(before: &[Cause], after: &[Cause]) -> TextTable {
     let mut rows = vec![head([
         "cause",
         "before, µm",
-        "share, %",
+        "sum, %",
         "after, µm",
-        "share, %",
-        "left after",
+        "sum, %",
+        "left to mend",
     ])];
-    rows.extend(before.iter().map(|own| {
-        let same = after.iter().find(|other| other.cause == own.cause);
-        let same = same.unwrap_or(own);
-        let size = |own: &Cause| own.um.map_or_else(|| NOT_MEASURED.to_owned(), um);
+    let of = |name: &str| after.iter().find(|own| own.cause == name);
+    let costs = |own: &Cause| own.um.is_none_or(|um| um.is_nan() || um >= NOTHING_UM);
+    let is_told = |own: &&Cause| costs(own) || of(&own.cause).is_some_and(costs);
+    rows.extend(before.iter().filter(is_told).map(|own| {
+        let same = of(&own.cause);
+        let or = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
         vec![
             own.cause.clone(),
             size(own),
             share(own),
-            size(same),
-            share(same),
-            value(same),
+            or(same.map(size)),
+            or(same.map(share)),
+            or(same.map(value)),
         ]
     }));
+    let nothing = before.iter().filter(|own| !is_told(own));
+    let nothing: Vec<&str> = nothing.map(|own| own.cause.as_str()).collect();
+    if !nothing.is_empty() {
+        let mut row = vec![nothing.join(", ")];
+        let little = format!("< {NOTHING_UM}");
+        row.extend([little.as_str(), "", little.as_str(), "", "–"].map(String::from));
+        rows.push(row);
+    }
     rows
+}
+
+fn size(own: &Cause) -> String {
+    own.um.map_or_else(|| NOT_MEASURED.to_owned(), um)
 }
 
 fn share(own: &Cause) -> String {
@@ -100,7 +115,7 @@ const NOTHING_UM: f64 = 0.05;
 fn value(own: &Cause) -> String {
     match (own.um, own.value) {
         (Some(um), Some(value)) if um >= NOTHING_UM => {
-            format!("{} {}", figures::error(value), own.unit)
+            format!("{}\u{a0}{}", figures::error(value), own.unit)
         }
         _ => "–".to_owned(),
     }

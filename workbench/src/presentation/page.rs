@@ -12,6 +12,8 @@ const SCRIPT: &str = include_str!("zoom.js");
 /// An HTML page in the making.
 pub struct Page {
     title: String,
+    /// What stands at the foot of every printed page.
+    foot: String,
     body: String,
 }
 
@@ -29,8 +31,14 @@ impl Page {
     pub fn untitled(title: &str) -> Self {
         Self {
             title: title.to_owned(),
+            foot: title.to_owned(),
             body: String::new(),
         }
+    }
+
+    /// Puts something else than the title at the foot of every printed page.
+    pub fn foot(&mut self, text: &str) {
+        text.clone_into(&mut self.foot);
     }
 
     /// Anything.
@@ -76,6 +84,7 @@ impl Page {
     /// The finished page.
     #[must_use]
     pub fn finish(self) -> String {
+        let paper = paper(&self.foot);
         html! {
             (DOCTYPE)
             html lang="en" {
@@ -83,7 +92,7 @@ impl Page {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width,initial-scale=1";
                     title { (self.title) }
-                    style { (PreEscaped(STYLE)) (PreEscaped(plots::style())) }
+                    style { (PreEscaped(STYLE)) (PreEscaped(plots::style())) (PreEscaped(paper)) }
                 }
                 body {
                     main { (PreEscaped(self.body)) }
@@ -94,6 +103,25 @@ impl Page {
         .into_string()
             + "\n"
     }
+}
+
+/// Margins of printed pages, with a foot and the number of the page.
+fn paper(foot: &str) -> String {
+    // What could end the string, the sheet or the element has no place in it.
+    let foot: String = foot
+        .chars()
+        .map(|letter| {
+            if "\\\"<>\n".contains(letter) {
+                ' '
+            } else {
+                letter
+            }
+        })
+        .collect();
+    let font = "font:8pt Arial,\"Liberation Sans\",\"DejaVu Sans\",sans-serif";
+    format!(
+        "@page{{margin:12mm 12mm 14mm;@bottom-left{{content:\"{foot}\";{font}}}@bottom-right{{content:counter(page) \" / \" counter(pages);{font}}}}}"
+    )
 }
 
 /// A table; the first row is the head. Rows whose first cell starts with `✓` are marked.
@@ -144,6 +172,15 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("<tr><td>delay</td></tr>"), "{text}");
+    }
+
+    #[test]
+    fn a_foot_cannot_break_the_style() {
+        let mut page = Page::new("");
+        page.foot("a \"} </style> b");
+        let text = page.finish();
+        assert!(text.contains("content:\"a  }  /style  b\""), "{text}");
+        assert_eq!(text.matches("</style>").count(), 1);
     }
 
     #[test]

@@ -12,5 +12,5 @@ mod thinning;
 pub use curve::{Curve, Ink};
 pub use curve_plot::{Plot, curves};
 pub use palette::style;
-pub use polar_plot::{Polar, Trace, polar};
+pub use polar_plot::{Polar, Trace, Zone, polar};
 pub use svg::standalone;

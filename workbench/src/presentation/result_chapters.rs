@@ -27,6 +27,7 @@ pub fn add_identification(page: &mut Page, title: &str, result: &Identification)
     pictures.extend(residual_pictures(result));
     page.pictures(&pictures);
     page.pictures(&[time_picture(result)]);
+    page.paragraph("At standstill friction is whatever holds: there the models only say between which limits, and the noise of the speed picks one of them.");
     free_run(page, result);
     slow_ripple(page, result);
     page.paragraph(

@@ -167,7 +167,12 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
     if !(low.is_finite() && high.is_finite()) {
         return (0.0, 1.0);
     }
-    let width = (high - low).max(1.0e-12);
+    // One value alone stands in the middle of its axis.
+    let least = (1.0e-9 * high.abs().max(low.abs())).max(1.0e-12);
+    if high - low < least {
+        return (low - least, high + least);
+    }
+    let width = high - low;
     (low - margin * width, high + margin * width)
 }
 
@@ -312,6 +317,18 @@ mod tests {
                 curve.name
             );
         }
+    }
+
+    #[test]
+    fn a_constant_in_encoder_counts_and_a_single_feed_are_drawn() {
+        let constant = Curve::line("", Ink::Before, (0..100).map(|i| (f64::from(i), 1.0e9)));
+        assert!(!curves(&plot("counts"), &[constant]).contains("NaN"));
+        let single = Plot {
+            is_logarithmic: true,
+            ..plot("feed")
+        };
+        let svg = curves(&single, &[Curve::line("", Ink::Before, [(500.0, 1.0)])]);
+        assert!(!svg.contains("NaN"), "{svg}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::curve::Ink;
 use super::curve_plot::lines;
 use super::scale::nice_step;
 use super::svg::{Anchor, Figure, path_through};
-use super::thinning::without_straight;
+use super::thinning::{COLUMN_PX, extremes, without_straight};
 use crate::ballbar::{Point, radial_um};
 
 /// From the nominal circle to the outermost ring, px.
@@ -14,12 +14,16 @@ const BAND_PX: f64 = 69.0;
 const RINGS: f64 = 4.5;
 /// The nominal circle, px.
 const NOMINAL_PX: f64 = 172.0;
+/// The path is the record within this, µm: where a column of the picture is less, only its extremes
+/// are drawn.
+const DRAWN_UM: f64 = 0.05;
 /// Where the rings have their numbers: between two reversals, and steep enough that none touches
 /// another.
 const NUMBERS_DEG: f64 = 67.0;
 const WIDTH_PX: f64 = 760.0;
-/// From the middle to the words at top and bottom.
-const ABOVE_PX: f64 = 300.0;
+/// From the middle to the ends above and below.
+const ABOVE_PX: f64 = 290.0;
+const BELOW_PX: f64 = 290.0;
 const LEGEND_LINE_PX: f64 = 18.0;
 
 /// A path for the polar plot.
@@ -46,22 +50,41 @@ pub struct Polar<'a> {
     pub traces: &'a [Trace<'a>],
     /// What stands at the reversals, at 0°, 90°, 180° and 270°.
     pub bursts: [String; 4],
-    /// Width of the tolerance zone about the nominal circle, µm.
-    pub tolerance_um: Option<f64>,
+    /// The zone that the tolerance leaves.
+    pub zone: Option<Zone>,
+}
+
+/// A zone of circular deviation: so wide, wherever it lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// Width, µm.
+    pub width_um: f64,
+    /// Deviation in the middle of it, µm.
+    pub middle_um: f64,
+}
+
+impl Zone {
+    fn edges_um(self) -> [f64; 2] {
+        [-0.5, 0.5].map(|side| self.middle_um + side * self.width_um)
+    }
 }
 
 /// Draws it.
 #[must_use]
 pub fn polar(plot: &Polar<'_>) -> String {
     let largest_um = plot.traces.iter().map(largest_um).fold(0.1, f64::max);
-    let largest_um = plot
-        .tolerance_um
-        .map_or(largest_um, |um| largest_um.max(0.5 * um));
+    let edges_um = plot.zone.map(Zone::edges_um);
+    let largest_um = edges_um
+        .into_iter()
+        .flatten()
+        .map(f64::abs)
+        .fold(largest_um, f64::max);
     let ring_um = nice_step(largest_um / RINGS);
     let title = lines(plot.title, 15.0, WIDTH_PX - 20.0);
-    let head_px = 19.0 * title.len() as f64 + LEGEND_LINE_PX * plot.traces.len().div_ceil(2) as f64;
+    let names = plot.traces.len() + usize::from(plot.zone.is_some());
+    let head_px = 19.0 * title.len() as f64 + LEGEND_LINE_PX * names.div_ceil(2) as f64;
     let middle = (0.5 * WIDTH_PX, head_px + ABOVE_PX + 10.0);
-    let size_px = (WIDTH_PX, middle.1 + ABOVE_PX);
+    let size_px = (WIDTH_PX, middle.1 + BELOW_PX);
     let mut figure = Figure::new(size_px, plot.title, description(plot, ring_um));
     for (line, text) in title.iter().enumerate() {
         figure.text(
@@ -71,7 +94,7 @@ pub fn polar(plot: &Polar<'_>) -> String {
             text,
         );
     }
-    legend(&mut figure, plot.traces, 19.0 * title.len() as f64 + 6.0);
+    legend(&mut figure, plot, 19.0 * title.len() as f64 + 6.0);
     let rings = Rings {
         middle,
         ring_um,
@@ -81,16 +104,8 @@ pub fn polar(plot: &Polar<'_>) -> String {
     for (place, text) in plot.bursts.iter().enumerate() {
         rings.burst(&mut figure, place, text);
     }
-    if let Some(tolerance_um) = plot.tolerance_um {
-        for side in [-0.5, 0.5] {
-            let radius = rings.radius_px(side * tolerance_um);
-            figure.circle(
-                "tolerance",
-                middle,
-                radius,
-                &format!("tolerance {tolerance_um} µm"),
-            );
-        }
+    for edge_um in edges_um.into_iter().flatten() {
+        figure.circle("tolerance", middle, rings.radius_px(edge_um), "tolerance");
     }
     for trace in plot.traces {
         rings.draw(&mut figure, trace);
@@ -116,12 +131,20 @@ fn largest_um(trace: &Trace<'_>) -> f64 {
     deviations.fold(0.0, f64::max)
 }
 
-fn legend(figure: &mut Figure, traces: &[Trace<'_>], top_px: f64) {
-    for (index, trace) in traces.iter().enumerate() {
+fn legend(figure: &mut Figure, plot: &Polar<'_>, top_px: f64) {
+    let traces = plot
+        .traces
+        .iter()
+        .map(|trace| (class(trace), trace.name.clone()));
+    let zone = plot.zone.map(|zone| {
+        let name = format!("tolerance zone of G, {} µm wide", zone.width_um);
+        ("tolerance".to_owned(), name)
+    });
+    for (index, (class, name)) in traces.chain(zone).enumerate() {
         let x = 10.0 + 0.5 * WIDTH_PX * (index % 2) as f64;
         let y = top_px + LEGEND_LINE_PX * ((index / 2) as f64 + 0.5);
-        figure.line(&class(trace), (x, y), (x + 30.0, y));
-        figure.text("label", (x + 36.0, y + 4.0), Anchor::Start, &trace.name);
+        figure.line(&class, (x, y), (x + 30.0, y));
+        figure.text("label", (x + 36.0, y + 4.0), Anchor::Start, &name);
     }
 }
 
@@ -139,9 +162,12 @@ struct Rings {
 }
 
 impl Rings {
+    fn um_per_px(&self) -> f64 {
+        f64::from(self.count) * self.ring_um / BAND_PX
+    }
+
     fn radius_px(&self, deviation_um: f64) -> f64 {
-        let per_um = BAND_PX / (f64::from(self.count) * self.ring_um);
-        (NOMINAL_PX + per_um * deviation_um).max(0.0)
+        (NOMINAL_PX + deviation_um / self.um_per_px()).max(0.0)
     }
 
     fn ring_px(&self, ring: i32) -> f64 {
@@ -215,12 +241,21 @@ impl Rings {
     }
 
     fn draw(&self, figure: &mut Figure, trace: &Trace<'_>) {
-        let place = |point: &Point| {
+        // Along the nominal circle, as if it were cut and laid straight.
+        let laid = |point: &Point| {
             let angle = point.reference_m[1].atan2(point.reference_m[0]);
-            self.at(angle, self.radius_px(radial_um(point, trace.radius_m)))
+            let radius = self.radius_px(radial_um(point, trace.radius_m));
+            (NOMINAL_PX * angle, radius)
         };
-        let places = trace.points.iter().map(place).collect();
-        let path = path_through(without_straight(places));
+        let laid = trace.points.iter().map(laid);
+        let is_fine = COLUMN_PX * self.um_per_px() < DRAWN_UM;
+        let laid: Vec<_> = if is_fine {
+            extremes(laid)
+        } else {
+            laid.collect()
+        };
+        let bent = |(along, radius): (f64, f64)| self.at(along / NOMINAL_PX, radius);
+        let path = path_through(without_straight(laid.into_iter().map(bent).collect()));
         let tip = format!("{}: up to {:.2} µm", trace.name, largest_um(trace));
         figure.path(&class(trace), &path, &tip);
     }
@@ -296,7 +331,7 @@ mod tests {
             axes: ["X", "Y"],
             traces: &[trace],
             bursts: Default::default(),
-            tolerance_um: None,
+            zone: None,
         });
         let path = svg.split("class=\"curve after\" d=\"").nth(2).unwrap();
         let places = places(path.split('"').next().unwrap());

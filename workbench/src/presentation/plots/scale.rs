@@ -32,7 +32,9 @@ impl Scale {
 
     /// The place of a value, px.
     pub(super) fn px(&self, value: f64) -> f64 {
-        let share = if self.is_logarithmic {
+        let share = if self.high <= self.low {
+            0.5
+        } else if self.is_logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
@@ -51,14 +53,12 @@ impl Scale {
             return self.powers();
         }
         let step = nice_step((self.high - self.low) / about);
-        let first = (self.low / step - 1.0e-9).ceil();
-        let mut ticks = Vec::new();
-        let mut number = first;
-        while number * step <= self.high + 1.0e-9 * step {
-            ticks.push((number * step, tick(number * step, step)));
-            number += 1.0;
-        }
-        ticks
+        let first = (self.low / step - 1.0e-9).ceil() * step;
+        // An axis of one value has steps that it does not feel.
+        let most = (about + 2.0) as u32 * 3;
+        let values = (0..most).map(|number| first + f64::from(number) * step);
+        let shown = values.take_while(|value| *value <= self.high + 1.0e-9 * step);
+        shown.map(|value| (value, tick(value, step))).collect()
     }
 
     /// 1, 2 and 5 of every power of ten; 1 alone where those are many.
@@ -126,6 +126,16 @@ mod tests {
             let got = nice_step(value);
             assert!((got / step - 1.0).abs() < 1.0e-9, "{value}: {got}");
         }
+    }
+
+    #[test]
+    fn an_axis_of_one_value_has_an_end() {
+        for value in [0.0, 1000.0, 1.0e6, -1.0e12] {
+            let scale = Scale::linear((value, value), (0.0, 100.0));
+            assert!(scale.ticks(5.0).len() < 30);
+            assert_eq!(scale.px(value), 50.0);
+        }
+        assert_eq!(Scale::logarithmic((2.0, 2.0), (0.0, 100.0)).px(2.0), 50.0);
     }
 
     #[test]
