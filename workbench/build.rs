@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// What a commit moves, and what the program is made of.
-const SEEN: [&str; 13] = [
+const SEEN: [&str; 14] = [
     "../.git/HEAD",
     "../.git/logs/HEAD",
     "../Cargo.lock",
@@ -13,6 +13,7 @@ const SEEN: [&str; 13] = [
     "../bus/src",
     "../firmware/board-timing/src",
     "../firmware/controller/src",
+    "../firmware/host/src",
     "../firmware/servo/src",
     "../identification/src",
     "../plant-sim/src",
@@ -26,7 +27,9 @@ fn main() {
         println!("cargo:rerun-if-changed={place}");
     }
     let commit = git(&["rev-parse", "--short=10", "HEAD"]);
-    let changes = git(&["status", "--porcelain", "--untracked-files=no"]);
+    let sources = SEEN.iter().filter(|place| !place.contains(".git"));
+    let status = ["status", "--porcelain", "--untracked-files=no", "--"].into_iter();
+    let changes = git(&status.chain(sources.copied()).collect::<Vec<_>>());
     let is_changed = changes.is_some_and(|changes| !changes.is_empty());
     let mark = if is_changed { "+changes" } else { "" };
     let commit = commit.as_deref().unwrap_or("unknown");

@@ -180,14 +180,7 @@ fn free_run(result: &Identification) -> String {
 }
 
 fn curves(title: &str, x: &str, y: &str, list: &[Curve]) -> String {
-    let plot = Plot {
-        title,
-        x,
-        y,
-        size_px: (640.0, 380.0),
-        x_range: None,
-        is_logarithmic: false,
-    };
+    let plot = Plot::new(title, x, y, (640.0, 380.0));
     plots::curves(&plot, list)
 }
 

@@ -26,6 +26,7 @@ mod step;
 use serde::Serialize;
 
 use burst::Deviating;
+pub use burst::larger;
 use ellipse::ellipse_um;
 use step::step_um;
 
@@ -33,7 +34,7 @@ pub use causes::{BothDirections, Cause, Causes, CircleAxis, causes};
 pub use median::median;
 pub use point::{Point, radial_um};
 pub use reversals::{REVERSALS, apart, window_rad};
-pub use roundness::{circular_deviation_um, hysteresis_um};
+pub use roundness::{circular_deviation_um, hysteresis_um, zone_m};
 
 /// Figures of one circle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -87,7 +88,7 @@ pub fn figures(points: &[Point], radius_m: f64, backlash_m: f64, from_rad: f64) 
     let peak_um = REVERSALS.map(|(at, ..)| path.burst_um(at));
     CircleFigures {
         peak_um,
-        peak_max_um: peak_um.into_iter().fold(0.0, f64::max),
+        peak_max_um: peak_um.into_iter().fold(0.0, larger),
         circular_deviation_g_um: circular_deviation_um(points),
         circular_hysteresis_h_um: None,
         radial_deviation_fmax_um: deviation.iter().copied().fold(f64::NEG_INFINITY, f64::max),

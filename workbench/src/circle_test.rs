@@ -30,8 +30,11 @@ pub struct CircleReport {
     pub bus_load_percent: f64,
     /// Cycles whose torque did not come in time.
     pub missed_cycles: u32,
-    /// Points of both directions, of those that a cycle each would have given.
-    pub points: [u64; 2],
+    /// What of the circle was seen.
+    #[serde(flatten)]
+    pub whole: Whole,
+    /// Whether that is all of it but for single cycles.
+    pub is_whole: bool,
     /// What drives that refine themselves have made of the levels of friction: a factor on each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refined_levels: Option<Vec<f64>>,
@@ -53,7 +56,31 @@ impl CircleReport {
     /// The largest spike, µm.
     #[must_use]
     pub fn spike_um(&self) -> f64 {
-        self.spikes_um.into_iter().fold(0.0, f64::max)
+        self.spikes_um.into_iter().fold(0.0, ballbar::larger)
+    }
+}
+
+/// How much of a circle was seen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Whole {
+    /// Points of both directions, of those that a cycle each would have given.
+    pub points: [u64; 2],
+    /// Largest way between two points, degrees.
+    pub largest_hole_deg: f64,
+}
+
+/// With fewer points than this share of all a circle is not whole.
+const LEAST_POINTS: f64 = 0.995;
+/// Nor with a hole larger than this, degrees, and than so many cycles.
+const LARGEST_HOLE_DEG: f64 = 0.5;
+const LARGEST_HOLE_CYCLES: f64 = 3.5;
+
+impl Whole {
+    fn is_all(&self, circle: &Circle, period_s: f64) -> bool {
+        let [there, wanted] = self.points.map(|count| count as f64);
+        let step_deg = (circle.feed_m_per_s / circle.radius_m * period_s).to_degrees();
+        let largest_deg = LARGEST_HOLE_DEG.max(LARGEST_HOLE_CYCLES * step_deg);
+        there >= LEAST_POINTS * wanted && self.largest_hole_deg <= largest_deg
     }
 }
 
@@ -85,9 +112,6 @@ impl CircleRun {
         turn(&self.points, 0)
     }
 }
-
-/// Counter-clockwise turns that count.
-const TURNS: u32 = 3;
 
 /// One of the turns that count, by the angle travelled: a cycle may have been lost.
 fn turn(points: &[Point], number: u32) -> &[Point] {
@@ -144,15 +168,17 @@ pub fn run_after(
             is_at_table: session.sees() == AT_TABLE,
         };
         let (figures, roundness, found) = session.meanwhile(|| seen.evaluated())?;
+        let whole = seen.whole();
         let report = CircleReport {
             machine: stand.machine.name.clone(),
-            radius_mm: 1.0e3 * circle.radius_m,
-            feed_mm_min: 6.0e4 * circle.feed_m_per_s,
+            radius_mm: rounded(1.0e3 * circle.radius_m),
+            feed_mm_min: rounded(6.0e4 * circle.feed_m_per_s),
             compensation: compensation::method(compensation).to_owned(),
             deviation_of: session.sees(),
             bus_load_percent: f64::from(stand.machine.bus_load_per_mille()) / 10.0,
             missed_cycles: session.missed(),
-            points: seen.counted(),
+            is_whole: whole.is_all(circle, stand.machine.period_s),
+            whole,
             refined_levels: refines.then(|| session.refined_levels()).transpose()?,
             figures,
             roundness,
@@ -167,23 +193,30 @@ pub fn run_after(
     })
 }
 
+/// A value of the command line as it was said: without what 0.001 adds in the last place.
+fn rounded(value: f64) -> f64 {
+    (1.0e6 * value).round() / 1.0e6
+}
+
 fn refines(axis: &AxisCompensation) -> bool {
     matches!(&axis.reversal, Compensation::Model(model) if model.self_tuning > 0.0)
 }
 
 /// The turns that count, counter-clockwise and clockwise.
 fn turns_of(session: &mut Session<'_>, circle: &Circle) -> Outcome<[Vec<Point>; 2]> {
-    progress::step(&format!(
-        "circle R {} mm, F {} mm/min",
-        1.0e3 * circle.radius_m,
-        6.0e4 * circle.feed_m_per_s
-    ));
-    let points = session.circle(circle)?;
-    let clockwise = session.circle(&Circle {
+    let back = Circle {
         turns: 1,
         counter_clockwise: false,
         ..*circle
-    })?;
+    };
+    progress::step(&format!(
+        "circle R {} mm, F {} mm/min, {:.0} s of the machine's time",
+        rounded(1.0e3 * circle.radius_m),
+        rounded(6.0e4 * circle.feed_m_per_s),
+        circle.duration_s() + back.duration_s()
+    ));
+    let points = session.circle(circle)?;
+    let clockwise = session.circle(&back)?;
     Ok([points, clockwise])
 }
 
@@ -221,20 +254,26 @@ impl Seen<'_> {
         (figures, self.roundness(), causes)
     }
 
-    /// Points that are there, and that should be.
-    fn counted(&self) -> [u64; 2] {
-        let turns = f64::from(TURNS + 1);
+    fn whole(&self) -> Whole {
+        let turns = f64::from(self.circle.turns + 1);
         let turn_s = TAU * self.circle.radius_m / self.circle.feed_m_per_s;
         let wanted = (turns * turn_s / self.machine.period_s).round();
-        [
-            (self.points.len() + self.clockwise.len()) as u64,
-            wanted as u64,
-        ]
+        let there = (self.points.len() + self.clockwise.len()) as u64;
+        let hole = |points: &[Point]| {
+            let ways = points
+                .windows(2)
+                .map(|pair| pair[1].angle_rad - pair[0].angle_rad);
+            ways.fold(0.0, f64::max)
+        };
+        Whole {
+            points: [there, wanted as u64],
+            largest_hole_deg: hole(self.points).max(hole(self.clockwise)).to_degrees(),
+        }
     }
 
     fn roundness(&self) -> Roundness {
-        let turns =
-            (0..TURNS).map(|number| ballbar::circular_deviation_um(turn(self.points, number)));
+        let turns = (0..self.circle.turns)
+            .map(|number| ballbar::circular_deviation_um(turn(self.points, number)));
         let both = [self.points, self.clockwise].concat();
         Roundness {
             circular_deviation_g_turns_um: turns.collect(),

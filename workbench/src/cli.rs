@@ -34,7 +34,7 @@ pub enum Command {
     /// Commission a machine: record, fit, find the missing effect, tune, download, circle before
     /// and after
     Commission(Commission),
-    /// Compare runs of `commission`: burst and G from run to run, and which parameters changed
+    /// Compare runs of `commission`: spikes and G from run to run, and which parameters changed
     Compare(Compare),
     /// Identify a recorded axis: which effect does its declared model lack? Offline
     Identify(Identify),
@@ -70,7 +70,8 @@ pub struct Commission {
     /// Folder for report, records and results
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Largest circular deviation G of both directions, µm: the certificate says pass or fail
+    /// Largest circular deviation G of both directions that the circle after may have, µm: the
+    /// certificate says pass or fail
     #[arg(long, value_name = "UM", allow_negative_numbers = true, value_parser = micrometres)]
     pub tolerance_um: Option<f64>,
     /// Write the frames of the circles before and after as candump logs too

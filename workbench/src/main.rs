@@ -67,10 +67,13 @@ fn moving(command: impl FnOnce(&Interrupt) -> Outcome<()>) -> (Outcome<()>, Opti
 
 /// 0, 2 with a line on stderr, or that of the signal that ended the work.
 fn exit_code((outcome, signal): (Outcome<()>, Option<i32>)) -> ExitCode {
-    let Err(failure) = outcome.and_then(|()| stdout::finish()) else {
+    let written = stdout::finish();
+    if outcome.is_ok() && written.is_ok() {
         return ExitCode::SUCCESS;
-    };
-    eprintln!("quadrant: {failure}");
+    }
+    for failure in [outcome, written].into_iter().filter_map(Result::err) {
+        eprintln!("quadrant: {failure}");
+    }
     let code = signal.and_then(|signal| u8::try_from(128 + signal).ok());
     ExitCode::from(code.unwrap_or(2))
 }

@@ -1,7 +1,10 @@
-//! Files that commands leave behind: looked at before anything moves, whole or not there at all.
+//! Files that commands leave behind: looked at before anything moves; those written at once are
+//! whole or not there at all.
 
 use std::ffi::OsString;
 use std::fs;
+use std::io::ErrorKind;
+use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -69,9 +72,14 @@ fn check_one(path: &Path) -> Outcome<()> {
             path.display()
         )));
     }
+    // Whoever reads from a pipe would take this for the end.
+    if fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo()) {
+        return Ok(());
+    }
     if !takes_a_new_name(path) {
         return fs::OpenOptions::new()
             .append(true)
+            .create(true)
             .open(path)
             .map(drop)
             .map_err(failed);
@@ -91,11 +99,11 @@ pub fn make_folder(path: &Path) -> Outcome<()> {
 }
 
 /// Makes a folder for the results of a command, or takes one that is empty or of an earlier run of
-/// it; files of that run that are named are gone then, so that none lies beside new ones.
+/// it.
 ///
 /// # Errors
 /// Where somebody else's files are in it, or nothing can be written there.
-pub fn claim_folder(path: &Path, command: &str, stale: &[String]) -> Outcome<()> {
+pub fn claim_folder(path: &Path, command: &str) -> Outcome<()> {
     if path.exists() && !path.is_dir() {
         return Err(Failure::new(format!(
             "{}: is a file; name a folder",
@@ -113,11 +121,18 @@ pub fn claim_folder(path: &Path, command: &str, stale: &[String]) -> Outcome<()>
             path.display()
         )));
     }
-    write(&marker, &marked_by(command))?;
-    for name in stale {
-        match fs::remove_file(path.join(name)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(failed(error));
+    write(&marker, &marked_by(command))
+}
+
+/// Removes files of an earlier run, so that none lies beside new ones.
+///
+/// # Errors
+/// Where one of them cannot be removed.
+pub fn remove_stale(folder: &Path, names: &[String]) -> Outcome<()> {
+    for path in names.iter().map(|name| folder.join(name)) {
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(Failure::file(&path, &error));
             }
             _ => {}
         }
@@ -190,19 +205,20 @@ mod tests {
     fn a_folder_with_files_of_others_is_refused_and_one_of_ours_is_not() {
         let folder = tempfile::tempdir().unwrap();
         let own = folder.path().join("out");
-        claim_folder(&own, "commission", &[]).unwrap();
+        claim_folder(&own, "commission").unwrap();
         for name in ["summary.json", "notes.txt"] {
             fs::write(own.join(name), "{}").unwrap();
         }
         let stale = ["summary.json", "gone.svg"].map(String::from);
-        assert_eq!(claim_folder(&own, "commission", &stale), Ok(()));
+        assert_eq!(claim_folder(&own, "commission"), Ok(()));
+        remove_stale(&own, &stale).unwrap();
         assert!(!own.join("summary.json").exists() && own.join("notes.txt").exists());
-        let refusal = claim_folder(&own, "identify", &[]).unwrap_err().to_string();
+        let refusal = claim_folder(&own, "identify").unwrap_err().to_string();
         assert!(
             refusal.contains("not results of quadrant identify"),
             "{refusal}"
         );
-        let file = claim_folder(&own.join("notes.txt"), "identify", &[]).unwrap_err();
+        let file = claim_folder(&own.join("notes.txt"), "identify").unwrap_err();
         assert!(file.to_string().contains("is a file"), "{file}");
     }
 }

@@ -19,7 +19,7 @@ pub struct Long {
 }
 
 /// Nobody has to wait longer for a line.
-const EVERY: Duration = Duration::from_millis(1500);
+const EVERY: Duration = SHORT;
 
 impl Long {
     /// Work of so many parts that begins now.

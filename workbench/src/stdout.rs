@@ -1,5 +1,5 @@
-//! Results on stdout. A full disk or a closed pipe behind it must not end a program whose axes
-//! move: what could not be written is told at the end.
+//! Results on stdout. A full disk behind it must not end a program whose axes move: what could not
+//! be written is told at the end.
 
 use std::fmt::Arguments;
 use std::io::Write as _;

@@ -5,6 +5,16 @@ use std::f64::consts::TAU;
 use super::point::Point;
 use super::reversals::apart;
 
+/// The larger one; `NaN` where one of them is, so that a diverged run never looks perfect.
+#[must_use]
+pub const fn larger(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() {
+        f64::NAN
+    } else {
+        one.max(other)
+    }
+}
+
 /// A path with its radial deviations, and what of it is looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Deviating<'a> {
@@ -21,28 +31,27 @@ pub(super) struct Deviating<'a> {
 }
 
 impl Deviating<'_> {
-    /// Mean over the turns of the largest deviation in the window about `at`, µm. A diverged run
-    /// has no burst but `NaN`, so that it never looks perfect.
+    /// Mean over the turns of the largest deviation in the window about `at`, µm; turns of which the
+    /// window was lost do not count. A diverged run has no burst but `NaN`, so that it never looks
+    /// perfect, and so has one that was lost there; an empty path has zero.
     pub(super) fn burst_um(&self, at: f64) -> f64 {
-        let mut largest: Vec<f64> = Vec::new();
+        let mut largest: Vec<Option<f64>> = Vec::new();
         for (point, deviation) in self.points.iter().zip(self.deviation_um) {
             if apart(point.angle_rad, at) > self.window_rad {
                 continue;
             }
             let turn = self.turn(point);
             if largest.len() <= turn {
-                largest.resize(turn + 1, 0.0);
+                largest.resize(turn + 1, None);
             }
             let size = (deviation - self.median_um).abs();
-            // `max` would drop a NaN.
-            if size.is_nan() || size > largest[turn] {
-                largest[turn] = size;
-            }
+            largest[turn] = Some(larger(size, largest[turn].unwrap_or(0.0)));
         }
-        if largest.is_empty() {
-            0.0
-        } else {
-            largest.iter().sum::<f64>() / largest.len() as f64
+        let seen: Vec<f64> = largest.into_iter().flatten().collect();
+        match (seen.len(), self.points.len()) {
+            (0, 0) => 0.0,
+            (0, _) => f64::NAN,
+            (count, _) => seen.iter().sum::<f64>() / count as f64,
         }
     }
 

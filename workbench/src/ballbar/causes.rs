@@ -21,7 +21,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::burst::Deviating;
+use super::burst::{Deviating, larger};
 use super::median::median;
 use super::reversals::{REVERSALS, apart};
 use super::{Point, radial_um};
@@ -104,13 +104,19 @@ pub fn causes(seen: &BothDirections<'_>) -> Causes {
 fn spikes_um(seen: &BothDirections<'_>, smooth: Option<&Sized<'_>>) -> [f64; 4] {
     let of = |points: &[Point], sense: f64| {
         let left = |point: &Point| {
-            let explained = smooth.map_or(0.0, |smooth| smooth.at(point, sense));
-            radial_um(point, seen.radius_m) - explained
+            let (explained, step) = smooth.map_or((0.0, 0.0), |smooth| smooth.at(point, sense));
+            let off_um = radial_um(point, seen.radius_m) - explained;
+            // On its way across a gap the table is somewhere between the two sides of the step.
+            (off_um.abs() - step).max(0.0).copysign(off_um)
         };
         let left_um: Vec<f64> = points.iter().map(left).collect();
         let path = Deviating {
             points,
-            median_um: median(&left_um),
+            median_um: if smooth.is_some() {
+                0.0
+            } else {
+                median(&left_um)
+            },
             deviation_um: &left_um,
             window_rad: seen.window_rad,
             from_rad: MEASURE_FROM_RAD,
@@ -130,15 +136,6 @@ fn spikes(seen: &BothDirections<'_>, spikes_um: &[f64; 4]) -> [Cause; 2] {
         let name = format!("reversal spike {}", seen.axes[axis].name);
         cause(name, Some(um), Some(um), "µm")
     })
-}
-
-/// The larger one; `NaN` where one of them is, so that a diverged run never looks perfect.
-fn larger(one: f64, other: f64) -> f64 {
-    if one.is_nan() || other.is_nan() {
-        f64::NAN
-    } else {
-        one.max(other)
-    }
 }
 
 /// A column of the sum.
@@ -259,12 +256,17 @@ impl Sized<'_> {
         list
     }
 
-    /// Radial deviation at a point, µm.
-    fn at(&self, point: &Point, sense: f64) -> f64 {
-        let pairs = self.terms.iter().zip(&self.coefficients);
-        pairs
-            .map(|(term, um)| um * term.at(self.seen, point, sense))
-            .sum()
+    /// Radial deviation at a point, µm, without what steps at reversals, and that.
+    fn at(&self, point: &Point, sense: f64) -> (f64, f64) {
+        let (mut smooth, mut steps) = (0.0, 0.0);
+        for (term, um) in self.terms.iter().zip(&self.coefficients) {
+            let own = um * term.at(self.seen, point, sense);
+            match term {
+                Term::Backlash(_) => steps += own.abs(),
+                _ => smooth += own,
+            }
+        }
+        (smooth, steps)
     }
 
     /// Coefficient of a term, µm.
@@ -383,6 +385,7 @@ fn is_quiet(seen: &BothDirections<'_>, point: &Point) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trajectory::Circle;
 
     const RADIUS_M: f64 = 0.1;
     const FEED_M_PER_S: f64 = 2.0 / 60.0;
@@ -407,11 +410,14 @@ mod tests {
         (0..20_000).map(at).collect()
     }
 
-    fn found(wrong: Wrong, is_at_table: bool) -> Vec<Cause> {
-        let [counter_clockwise, clockwise] = [1.0, -1.0].map(|sense| path(sense, wrong));
-        let causes = causes(&BothDirections {
-            counter_clockwise: &counter_clockwise,
-            clockwise: &clockwise,
+    fn both<'a>(
+        counter_clockwise: &'a [Point],
+        clockwise: &'a [Point],
+        is_at_table: bool,
+    ) -> BothDirections<'a> {
+        BothDirections {
+            counter_clockwise,
+            clockwise,
             radius_m: RADIUS_M,
             feed_m_per_s: FEED_M_PER_S,
             axes: ["X", "Y"].map(|name| CircleAxis {
@@ -421,8 +427,12 @@ mod tests {
             window_rad: 15.0_f64.to_radians(),
             settling_s: 0.0,
             is_at_table,
-        });
-        causes.list
+        }
+    }
+
+    fn found(wrong: Wrong, is_at_table: bool) -> Vec<Cause> {
+        let [forth, back] = [1.0, -1.0].map(|sense| path(sense, wrong));
+        causes(&both(&forth, &back, is_at_table)).list
     }
 
     /// Each cause alone comes back in its own unit, and nothing else beside it.
@@ -468,6 +478,59 @@ mod tests {
             let own = list.iter().find(|own| own.cause == name).unwrap();
             let value = own.value.unwrap();
             assert!((value / wanted - 1.0).abs() < 0.03, "{name}: {value}");
+        }
+    }
+
+    /// A circle as a machine runs it, with a bump of 5 µm just beyond a place on it.
+    fn run(is_counter_clockwise: bool, place_rad: Option<f64>) -> Vec<Point> {
+        let circle = Circle {
+            radius_m: RADIUS_M,
+            feed_m_per_s: FEED_M_PER_S,
+            turns: 1,
+            counter_clockwise: is_counter_clockwise,
+        };
+        let at = |i: u32| {
+            let time_s = 1.0e-3 * f64::from(i);
+            let reference_m = circle.at(time_s);
+            let angle = reference_m[1].atan2(reference_m[0]);
+            let near = place_rad.is_some_and(|place| apart(angle, place) < 0.02);
+            let stretched = 1.0 + if near { 5.0e-6 / RADIUS_M } else { 0.0 };
+            Point {
+                angle_rad: circle.angle_rad(time_s),
+                table_m: reference_m.map(|own| own * stretched),
+                motor_m: reference_m,
+                reference_m,
+            }
+        };
+        let cycles = (1.0e3 * circle.duration_s()) as u32;
+        let measured = MEASURE_FROM_RAD..circle.measure_to_rad();
+        let points = (0..cycles).map(at);
+        points
+            .filter(|point| measured.contains(&point.angle_rad))
+            .collect()
+    }
+
+    #[test]
+    fn a_spike_stands_at_its_place_in_either_direction() {
+        for place in 0..4_u8 {
+            let angle = FRAC_PI_2 * f64::from(place);
+            for clockwise in [false, true] {
+                let bump = |is_there: bool| is_there.then_some(angle);
+                let (forth, back) = (run(true, bump(!clockwise)), run(false, bump(clockwise)));
+                let seen = both(&forth, &back, true);
+                let spikes_um = causes(&seen).spikes_um;
+                for (other, um) in spikes_um.into_iter().enumerate() {
+                    let wanted_um = if other == usize::from(place) {
+                        5.0
+                    } else {
+                        0.0
+                    };
+                    assert!(
+                        (um - wanted_um).abs() < 0.01,
+                        "{place} {clockwise}: {spikes_um:?}"
+                    );
+                }
+            }
         }
     }
 

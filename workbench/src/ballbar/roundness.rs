@@ -22,6 +22,19 @@ pub fn circular_deviation_um(points: &[Point]) -> f64 {
     (high - low) * 1.0e6
 }
 
+/// The zone of a path: its middle, m, and the mean of the radii of the circles that enclose it, m.
+#[must_use]
+pub fn zone_m(points: &[Point]) -> Option<([f64; 2], f64)> {
+    let center = least_squares_center(points)?;
+    let radii = points
+        .iter()
+        .map(|point| (point.table_m[0] - center[0]).hypot(point.table_m[1] - center[1]));
+    let (low, high) = radii.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
+        (low.min(r), high.max(r))
+    });
+    Some((center, 0.5 * (low + high)))
+}
+
 /// Least-squares circle by the linear (Kåsa) fit: x² + y² = 2 a x + 2 b y + c.
 fn least_squares_center(points: &[Point]) -> Option<[f64; 2]> {
     let count = points.len() as f64;

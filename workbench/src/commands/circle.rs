@@ -11,6 +11,7 @@ use crate::output_files::{self, json, write};
 use crate::presentation::circle_pictures::{Shown, circles};
 use crate::presentation::plots::{Ink, standalone};
 use crate::session::Stand;
+use crate::trajectory::Circle;
 use crate::trajectory::circle_limits::check_circle;
 
 /// Runs the circle, prints its figures and writes what was asked for.
@@ -35,6 +36,10 @@ pub fn run(arguments: &cli::CircleArguments, interrupt: &Interrupt) -> Outcome<(
         ));
     }
     let turns = arguments.self_tune;
+    if turns > 0 {
+        check_circle(&machine, &Circle { turns, ..circle })
+            .map_err(|failure| Failure::new(format!("--self-tune {turns}: {failure}")))?;
+    }
     let asked = asked(&arguments.compensation, &stand)?;
     let refining = compensation::self_tuning(&asked).filter(|_| turns > 0);
     let compensation = refining.unwrap_or(asked);

@@ -25,7 +25,7 @@ use crate::error::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::network::candump::dbc;
 use crate::network::place::Place;
-use crate::output_files::{claim_folder, write};
+use crate::output_files::{claim_folder, remove_stale, write};
 use crate::progress;
 use crate::say;
 use crate::session::Stand;
@@ -50,7 +50,31 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
             "--real-axes: needs --can; in process there are simulated axes alone",
         ));
     }
+    refuse_own_results(arguments)?;
     commission(&machine, place, &wanted, interrupt)
+}
+
+/// A machine file among the results would be gone before it is used again.
+fn refuse_own_results(arguments: &cli::Commission) -> Outcome<()> {
+    let whole = |path: &Path| path.canonicalize().ok();
+    let folder = arguments.machine.machine.as_deref().and_then(Path::parent);
+    let folder = folder.map(|own| {
+        if own.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            own
+        }
+    });
+    let is_inside = folder
+        .and_then(whole)
+        .is_some_and(|own| Some(own) == whole(&arguments.out));
+    if is_inside {
+        return Err(Failure::new(format!(
+            "--machine: lies in {}, whose results are replaced; copy it or name another --out",
+            arguments.out.display()
+        )));
+    }
+    Ok(())
 }
 
 /// What is wanted of the job.
@@ -92,7 +116,7 @@ pub fn commission(
     let out = wanted.out;
     let circle = fitting_circle(machine);
     check_circle(machine, &circle)?;
-    claim_folder(out, "commission", &stale(machine))?;
+    claim_folder(out, "commission")?;
     print_machine(machine);
     let stand = Stand {
         machine,
@@ -103,8 +127,10 @@ pub fn commission(
     for oscillation in &oscillations {
         say!("{}", oscillation.sentence());
     }
+    // The machine answers: what comes now takes the place of what an earlier run has left.
+    remove_stale(out, &stale(machine))?;
     if oscillations.iter().any(Oscillation::is_unfit) {
-        return end_unfit(machine, &oscillations, out);
+        return end_unfit(&stand, &oscillations, wanted);
     }
     identified_axes::record(&stand, out)?;
     let kept =
@@ -135,11 +161,12 @@ fn stale(machine: &Machine) -> Vec<String> {
 }
 
 /// A machine that oscillates is not commissioned: the report says what to change first.
-fn end_unfit(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
-    unfit::report(machine, oscillations, out)?;
+fn end_unfit(stand: &Stand<'_>, oscillations: &[Oscillation], wanted: &Wanted<'_>) -> Outcome<()> {
+    let is_simulation = !wanted.are_real_axes;
+    unfit::report(stand.machine, oscillations, is_simulation, wanted.out)?;
     say!(
         "not commissioned; report: {}",
-        out.join("report.html").display()
+        wanted.out.join("report.html").display()
     );
     Ok(())
 }
@@ -177,8 +204,8 @@ fn after_recording(
         is_simulation: !wanted.are_real_axes,
     };
     feeds::print(&commissioned.feeds);
-    if let Some(judged) = commissioned.judged() {
-        say!("{}", judged.sentence());
+    if let Some(verdict) = commissioned.verdict() {
+        say!("{verdict}");
     }
     commissioned.write(out)
 }

@@ -77,10 +77,13 @@ fn unlike(runs: &[RunFolder]) -> Vec<String> {
     };
     for run in others {
         let of = |run: &RunFolder| {
-            (
-                run.summary.machine.clone(),
-                run.summary.circle_after.conditions(),
-            )
+            let simulated = if run.summary.simulation {
+                "simulated "
+            } else {
+                ""
+            };
+            let machine = format!("{simulated}{}", run.summary.machine);
+            (machine, run.summary.circle_after.conditions())
         };
         let (was, now) = (of(first), of(run));
         if was != now {
@@ -109,7 +112,9 @@ fn write_page(
         circles(runs, Circles::After)?,
     ]);
     page.pictures(&[trend(runs)]);
-    page.heading("What changed since the first run by more than its intervals");
+    page.heading(
+        "Effects and parameters that changed since the first run by more than their intervals",
+    );
     if changes.is_empty() {
         page.paragraph(UNCHANGED);
     } else {
@@ -356,20 +361,122 @@ fn trend(runs: &[RunFolder]) -> String {
             row.circular_deviation_g_after_um
         }),
     ];
-    let plot = Plot {
-        title: "Reversal spike and circular deviation from run to run",
-        x: "run",
-        y: "µm",
-        size_px: (540.0, 340.0),
-        x_range: None,
-        is_logarithmic: false,
-    };
+    let plot = Plot::new(
+        "Reversal spike and circular deviation from run to run",
+        "run",
+        "µm",
+        (540.0, 340.0),
+    );
     curves(&plot, &list)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::commissioning::run_folder::RunSummary;
+
+    /// Name, effects that were found, parameters.
+    type Axis<'a> = (&'a str, &'a [&'a str], &'a [(&'a str, Option<f64>)]);
+
+    fn folder(name: &str, axes: &[Axis<'_>]) -> RunFolder {
+        let circle = RunCircle {
+            radius_mm: 100.0,
+            feed_mm_min: 2000.0,
+            deviation_of: "table".into(),
+            spikes_um: [1.0; 4],
+            circular_deviation_g_both_um: 2.0,
+            circular_hysteresis_h_um: None,
+        };
+        let parameter = |(name, value): &(&str, Option<f64>)| {
+            let of = value.unwrap_or(0.0);
+            let own = RunParameter {
+                value: *value,
+                unit: "N".into(),
+                low: of - 1.0,
+                high: of + 1.0,
+            };
+            ((*name).to_owned(), own)
+        };
+        let axis = |(name, found, parameters): &Axis<'_>| RunAxis {
+            name: (*name).to_owned(),
+            found: found.iter().map(|own| (*own).to_owned()).collect(),
+            parameters: parameters.iter().map(parameter).collect(),
+        };
+        RunFolder {
+            path: name.into(),
+            name: name.into(),
+            summary: RunSummary {
+                machine: "m".into(),
+                date: String::new(),
+                program: String::new(),
+                simulation: true,
+                method: "model".into(),
+                circle_before: circle.clone(),
+                circle_after: circle,
+                axes: axes.iter().map(axis).collect(),
+            },
+        }
+    }
+
+    #[test]
+    fn what_came_what_went_and_what_changed_is_told_and_nothing_else() {
+        let first = folder(
+            "a",
+            &[(
+                "X",
+                &["stribeck"],
+                &[
+                    ("coulomb", Some(400.0)),
+                    ("offset", Some(3.0)),
+                    ("gap", None),
+                ],
+            )],
+        );
+        let later = folder(
+            "b",
+            &[
+                (
+                    "X",
+                    &["backlash"],
+                    &[
+                        ("coulomb", Some(280.0)),
+                        ("offset", Some(4.5)),
+                        ("gap", Some(8.0)),
+                    ],
+                ),
+                ("Z", &["delay"], &[("coulomb", Some(1.0))]),
+            ],
+        );
+        let told: Vec<(String, Option<f64>)> = changes(&[first.clone(), later])
+            .into_iter()
+            .map(|own| (own.what, own.by_percent.map(f64::round)))
+            .collect();
+        let wanted = [
+            ("backlash is new", None),
+            ("stribeck is gone", None),
+            ("coulomb", Some(-30.0)),
+            ("gap", None),
+        ]
+        .map(|(what, by)| (what.to_owned(), by));
+        assert_eq!(told, wanted);
+        assert_eq!(changes(&[first.clone(), first]), []);
+    }
+
+    #[test]
+    fn folders_of_one_name_are_told_apart_and_another_circle_is_noted() {
+        let mut runs = vec![folder("a/out", &[]), folder("b/out", &[])];
+        runs[1].summary.circle_after.feed_mm_min = 500.0;
+        let runs = named(runs);
+        assert_eq!(
+            (runs[0].name.as_str(), runs[1].name.as_str()),
+            ("a/out", "b/out")
+        );
+        let notes = unlike(&runs);
+        assert!(
+            notes.len() == 1 && notes[0].contains("F 500 mm/min"),
+            "{notes:?}"
+        );
+    }
 
     #[test]
     fn a_parameter_has_changed_where_the_intervals_have_nothing_in_common() {

@@ -22,7 +22,7 @@ use crate::say;
 pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     output_files::check([arguments.json.as_ref()])?;
     if let Some(folder) = &arguments.out {
-        claim_folder(folder, "identify", &[])?;
+        claim_folder(folder, "identify")?;
     }
     let dataset = Dataset::read(
         &arguments.dataset,

@@ -46,12 +46,8 @@ fn plot(report: &TimingReport) -> String {
         .map(|(number, spread)| Curve::line(spread.of, Ink::Other(number), outline(spread)))
         .collect();
     let plot = Plot {
-        title: &title,
-        x: "duration, µs",
-        y: "share of all, %",
-        size_px: SIZE_PX,
-        x_range: None,
         is_logarithmic: true,
+        ..Plot::new(&title, "duration, µs", "share of all, %", SIZE_PX)
     };
     curves(&plot, &list)
 }

@@ -158,12 +158,13 @@ pub fn picture(feeds: &Feeds) -> String {
         }),
     ];
     let plot = Plot {
-        title: "Reversal spike and circular deviation G against feed",
-        x: "feed, mm/min",
-        y: "µm",
-        size_px: (540.0, 270.0),
-        x_range: None,
         is_logarithmic: true,
+        ..Plot::new(
+            "Reversal spike and circular deviation G against feed",
+            "feed, mm/min",
+            "µm",
+            (540.0, 270.0),
+        )
     };
     curves(&plot, &list)
 }

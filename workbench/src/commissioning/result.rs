@@ -9,7 +9,7 @@ use super::feeds::{AtFeed, Feeds, less_percent};
 use super::fitness::Oscillation;
 use super::program::program;
 use super::trials::{TrialSummary, Trials};
-use crate::circle_test::{CircleReport, CircleRun};
+use crate::circle_test::{CircleReport, CircleRun, Whole};
 use crate::error::Outcome;
 use crate::output_files::{json, write};
 use crate::presentation::certificate::Judged;
@@ -40,6 +40,8 @@ struct SummaryFile<'a> {
     tolerance_um: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     passes: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verdict: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -75,9 +77,6 @@ pub struct Commissioned<'a> {
     pub is_simulation: bool,
 }
 
-/// With fewer points than this share of all, nothing is judged.
-const LEAST_POINTS: f64 = 0.995;
-
 /// How much smaller the largest burst has become, percent.
 #[must_use]
 pub fn burst_reduction_percent(before: &CircleReport, after: &CircleReport) -> f64 {
@@ -95,12 +94,28 @@ impl Commissioned<'_> {
         write(&out.join("report.html"), &self.page()?)
     }
 
-    /// Circular deviation against the tolerance, where there is one and no point of the circle was
-    /// lost.
+    /// The verdict in a sentence, where there is a tolerance: why there is none, where too much of
+    /// the circle was lost.
+    #[must_use]
+    pub fn verdict(&self) -> Option<String> {
+        self.tolerance_um?;
+        let Whole {
+            points: [there, wanted],
+            largest_hole_deg,
+        } = self.after.report.whole;
+        let not_judged = || {
+            format!(
+                "NOT JUDGED: {there} of {wanted} points of the circle came over the bus, the largest hole is {largest_hole_deg:.1}°"
+            )
+        };
+        let judged = self.judged();
+        Some(judged.map_or_else(not_judged, |judged| judged.sentence()))
+    }
+
+    /// Circular deviation against the tolerance, where there is one and the circle is whole.
     #[must_use]
     pub fn judged(&self) -> Option<Judged> {
-        let [there, wanted] = self.after.report.points;
-        let is_whole = there as f64 >= LEAST_POINTS * wanted as f64;
+        let is_whole = self.after.report.is_whole;
         self.tolerance_um
             .filter(|_| is_whole)
             .map(|tolerance_um| Judged {
@@ -136,6 +151,7 @@ impl Commissioned<'_> {
             simulation: self.is_simulation,
             tolerance_um: self.tolerance_um,
             passes: self.judged().map(|judged| judged.passes()),
+            verdict: self.verdict(),
         }
     }
 

@@ -71,7 +71,10 @@ impl Commissioned<'_> {
         let certificate = Certificate {
             machine: &self.stand.machine.name,
             is_simulation: self.is_simulation,
-            judged: self.judged(),
+            verdict: self.verdict().map(|verdict| {
+                let passes = self.judged().is_some_and(|judged| judged.passes());
+                (verdict, passes)
+            }),
             sentence: &sentence,
             facts: &self.facts(),
             circle: &self.circle_picture(),
@@ -178,9 +181,20 @@ impl Commissioned<'_> {
         let mut notes = vec![
             seen.to_owned(),
             "G, H, Fmax and Fmin by ISO 230-4:2022: G about the least-squares centre, which the standard lets stand for the minimum zone (never smaller); H from means over 0.5°.".to_owned(),
-            "A reversal spike is the largest deviation within 15° of a reversal (more with a gap) beside all other causes, of either direction, mean of its turns. The µm of every other cause are the circular \
-             deviation that it alone would make, by least squares over both directions outside the spikes. What is not friction or backlash is not corrected by this program.".to_owned(),
         ];
+        let hidden = [self.before, self.after].iter().any(|run| {
+            let causes = run.report.causes.iter();
+            causes
+                .filter(|own| own.cause == "servo mismatch")
+                .any(|own| own.um.is_none())
+        });
+        notes.push(if hidden {
+            "A reversal spike is the largest deviation from the median within 15° of a reversal (more with a gap), of either direction, mean of its turns. On so small or fast a circle the spikes take up so much of it that nothing else \
+             can be told apart from them: what else there is, is in them.".to_owned()
+        } else {
+            "A reversal spike is the largest deviation within 15° of a reversal (more with a gap) beside all other causes, of either direction, mean of its turns. The µm of every other cause are the circular \
+             deviation that it alone would make, by least squares over both directions outside the spikes. What is not friction or backlash is not corrected by this program.".to_owned()
+        });
         notes.extend(self.oscillations.iter().map(|own| own.sentence() + "."));
         notes
     }
@@ -239,7 +253,7 @@ impl Commissioned<'_> {
         let shown = Shown {
             name: "after",
             ink: Ink::After,
-            clockwise: Ink::Recorded,
+            clockwise: Ink::Other(3),
             run: self.after,
         };
         circles(
@@ -356,7 +370,7 @@ fn in_words(method: &str) -> &str {
         DECLARED => "the declared model of friction",
         "model" => "the model of friction",
         SELF_TUNED => "the model of friction, refined by the drives",
-        _ => "no compensation, since none helps",
+        other => other,
     }
 }
 

@@ -7,8 +7,7 @@ use plant_sim::Machine;
 
 use super::reversal_run::ReversalRow;
 use crate::network::master::AxisCycle;
-use crate::presentation::plots::{Curve, Ink, curves};
-use crate::presentation::result_pictures::plot;
+use crate::presentation::plots::{Curve, Ink, Plot, curves};
 
 /// Velocity and acceleration are differences over so many cycles to either side: single encoder
 /// counts would be noise.
@@ -63,7 +62,7 @@ pub fn six_curves(machine: &Machine, runs: &[ReversalRun<'_>]) -> Vec<String> {
     });
     let picture = |title: &str, unit: &str, list: &[Curve]| {
         curves(
-            &plot(title, "time from the reversal, ms", unit, SIZE_PX),
+            &Plot::new(title, "time from the reversal, ms", unit, SIZE_PX),
             list,
         )
     };

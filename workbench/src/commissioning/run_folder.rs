@@ -18,6 +18,8 @@ pub struct RunSummary {
     pub date: String,
     /// Version and commit.
     pub program: String,
+    /// Whether a simulator stood in for the machine.
+    pub simulation: bool,
     /// What was downloaded.
     pub method: String,
     /// The circle without it.

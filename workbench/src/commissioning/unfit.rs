@@ -19,6 +19,7 @@ struct Summary<'a> {
     machine: &'a str,
     date: String,
     program: String,
+    simulation: bool,
     verdict: &'static str,
     oscillations: &'a [Oscillation],
 }
@@ -27,20 +28,32 @@ struct Summary<'a> {
 ///
 /// # Errors
 /// Where a file cannot be written.
-pub fn report(machine: &Machine, oscillations: &[Oscillation], out: &Path) -> Outcome<()> {
+pub fn report(
+    machine: &Machine,
+    oscillations: &[Oscillation],
+    is_simulation: bool,
+    out: &Path,
+) -> Outcome<()> {
     let summary = Summary {
         machine: &machine.name,
         date: now(),
         program: program(),
+        simulation: is_simulation,
         verdict: "unfit",
         oscillations,
     };
     write(&out.join("summary.json"), &json(&summary)?)?;
-    write(&out.join("report.html"), &page(machine, oscillations))
+    write(
+        &out.join("report.html"),
+        &page(machine, oscillations, is_simulation),
+    )
 }
 
-fn page(machine: &Machine, oscillations: &[Oscillation]) -> String {
+fn page(machine: &Machine, oscillations: &[Oscillation], is_simulation: bool) -> String {
     let mut page = Page::new(&format!("Machine {} is not commissioned", machine.name));
+    if is_simulation {
+        page.simulation();
+    }
     page.paragraph(&format!("{}; {}.", now(), program()));
     for oscillation in oscillations {
         page.key(&oscillation.sentence());

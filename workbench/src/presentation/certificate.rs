@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::page::table;
+use super::page::{SIMULATION, table};
 use super::result_tables::TextTable;
 
 /// A pass or a fail against a tolerance.
@@ -49,8 +49,8 @@ pub struct Certificate<'a> {
     pub machine: &'a str,
     /// Whether a simulator has stood in for it.
     pub is_simulation: bool,
-    /// Where a tolerance was given.
-    pub judged: Option<Judged>,
+    /// The verdict, and whether it is a good one, where a tolerance was given.
+    pub verdict: Option<(String, bool)>,
     /// The sentence that matters.
     pub sentence: &'a str,
     /// Date, program, test block: name and words.
@@ -88,9 +88,9 @@ impl Certificate<'_> {
         html! {
             section.certificate {
                 header { h1 { "Circular test and reversal compensation" } div { "machine " b { (self.machine) } } }
-                @if self.is_simulation { div.simulation { "SIMULATION" } }
-                @if let Some(judged) = &self.judged {
-                    p class={ "verdict " @if judged.passes() { "pass" } @else { "fail" } } { (judged.sentence()) }
+                @if self.is_simulation { div.simulation { (SIMULATION) } }
+                @if let Some((verdict, is_good)) = &self.verdict {
+                    p class={ "verdict " @if *is_good { "pass" } @else { "fail" } } { (verdict) }
                 }
                 p.key { b { (self.sentence) } }
                 div.facts { @for (name, words) in self.facts { div { span.dt { (name) } span { (words) } } } }

@@ -1,7 +1,7 @@
 //! Circles as people know them from a ballbar: both directions, before and after on one scale.
 
 use super::plots::{Ink, Polar, Trace, Zone, polar};
-use crate::ballbar::radial_um;
+use crate::ballbar::zone_m;
 use crate::circle_test::CircleRun;
 
 /// A circle and what it is called.
@@ -36,26 +36,19 @@ pub fn circles(
         axes,
         traces: &traces,
         bursts: [0, 1, 2, 3].map(burst),
-        zone: tolerance_um.map(|tolerance_um| zone(list, tolerance_um)),
+        zone: tolerance_um.and_then(|tolerance_um| zone(list, tolerance_um)),
     })
 }
 
-/// The zone about the middle of the last circle: G is a width, wherever it lies.
-fn zone(list: &[Shown<'_>], tolerance_um: f64) -> Zone {
-    let last = list.last().map(|shown| shown.run);
-    let radius_m = last.map_or(0.0, |run| 1.0e-3 * run.report.radius_mm);
-    let points = last
-        .into_iter()
-        .flat_map(|run| run.points.iter().chain(&run.clockwise));
-    let (low, high) = points
-        .map(|point| radial_um(point, radius_m))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), um| {
-            (low.min(um), high.max(um))
-        });
-    Zone {
+/// The zone about the last circle: G is a width, wherever it lies.
+fn zone(list: &[Shown<'_>], tolerance_um: f64) -> Option<Zone> {
+    let run = list.last()?.run;
+    let (center_m, radius_m) = zone_m(&[&run.points[..], &run.clockwise].concat())?;
+    Some(Zone {
         width_um: tolerance_um,
-        middle_um: 0.5 * (low + high),
-    }
+        middle_um: 1.0e6 * (radius_m - 1.0e-3 * run.report.radius_mm),
+        center_um: center_m.map(|own| 1.0e6 * own),
+    })
 }
 
 fn both_directions<'a>(shown: &Shown<'a>) -> [Trace<'a>; 2] {

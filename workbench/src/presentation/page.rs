@@ -9,6 +9,9 @@ const STYLE: &str = include_str!("page.css");
 /// Wheel and drag on a picture; without it the page is whole all the same.
 const SCRIPT: &str = include_str!("zoom.js");
 
+/// What stands across a page about a simulated machine.
+pub const SIMULATION: &str = "SIMULATION";
+
 /// An HTML page in the making.
 pub struct Page {
     title: String,
@@ -45,6 +48,12 @@ impl Page {
     pub fn add(&mut self, markup: &Markup) {
         self.body.push_str(&markup.0);
         self.body.push('\n');
+    }
+
+    /// Says in large letters that nothing was measured, here and on every printed page.
+    pub fn simulation(&mut self) {
+        self.foot = format!("SIMULATION, {}", self.foot);
+        self.add(&html! { div.simulation { (SIMULATION) } });
     }
 
     /// A heading.

@@ -10,23 +10,6 @@ use super::result_tables::position_error_unit;
 const HALF_PX: (f64, f64) = (540.0, 340.0);
 const WHOLE_PX: (f64, f64) = (1080.0, 330.0);
 
-/// A linear plot of all that its curves reach.
-pub(crate) const fn plot<'a>(
-    title: &'a str,
-    x: &'a str,
-    y: &'a str,
-    size_px: (f64, f64),
-) -> Plot<'a> {
-    Plot {
-        title,
-        x,
-        y,
-        size_px,
-        x_range: None,
-        is_logarithmic: false,
-    }
-}
-
 /// What the models leave, against velocity and against position.
 #[must_use]
 pub fn residual_pictures(result: &Identification) -> Vec<String> {
@@ -47,7 +30,10 @@ fn residual(result: &Identification, column: usize, name: &str, label: &str) -> 
         Curve::cloud("extended model", Ink::After, of(3)),
     ];
     let title = format!("Residual against {name}, validation record");
-    curves(&plot(&title, label, result.effort_unit, HALF_PX), &list)
+    curves(
+        &Plot::new(&title, label, result.effort_unit, HALF_PX),
+        &list,
+    )
 }
 
 /// Recorded and predicted effort over time.
@@ -65,7 +51,10 @@ pub fn time_picture(result: &Identification) -> String {
         over_time("extended model", Ink::After, &of.extended),
     ];
     let title = "Effort on the validation record";
-    curves(&plot(title, "time, s", result.effort_unit, WHOLE_PX), &list)
+    curves(
+        &Plot::new(title, "time, s", result.effort_unit, WHOLE_PX),
+        &list,
+    )
 }
 
 /// Each effect that was found in the effort: what the model without it leaves, and the effect.
@@ -97,7 +86,7 @@ fn effect_picture(result: &Identification, curve: &EffectCurve) -> String {
     });
     let plot = Plot {
         x_range: reach,
-        ..plot(&title, &x, result.effort_unit, HALF_PX)
+        ..Plot::new(&title, &x, result.effort_unit, HALF_PX)
     };
     curves(&plot, &list)
 }
@@ -127,7 +116,7 @@ pub fn presliding_picture(result: &Identification) -> Option<String> {
     let title = format!("Friction after a reversal ({})", curve.law);
     let label = format!("way since the reversal, {unit}");
     Some(curves(
-        &plot(&title, &label, result.effort_unit, HALF_PX),
+        &Plot::new(&title, &label, result.effort_unit, HALF_PX),
         &list,
     ))
 }
@@ -145,7 +134,7 @@ pub fn free_run_picture(result: &Identification) -> String {
     ];
     let title = "Free run on the validation record: simulated − recorded";
     curves(
-        &plot(title, "time, s", position_error_unit(result), WHOLE_PX),
+        &Plot::new(title, "time, s", position_error_unit(result), WHOLE_PX),
         &list,
     )
 }

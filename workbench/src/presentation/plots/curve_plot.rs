@@ -43,6 +43,21 @@ pub struct Plot<'a> {
     pub is_logarithmic: bool,
 }
 
+impl<'a> Plot<'a> {
+    /// A linear plot of all that its curves reach.
+    #[must_use]
+    pub const fn new(title: &'a str, x: &'a str, y: &'a str, size_px: (f64, f64)) -> Self {
+        Self {
+            title,
+            x,
+            y,
+            size_px,
+            x_range: None,
+            is_logarithmic: false,
+        }
+    }
+}
+
 /// Draws curves, the first one lowest.
 #[must_use]
 pub fn curves(plot: &Plot<'_>, list: &[Curve]) -> String {
@@ -254,14 +269,7 @@ mod tests {
     use super::*;
 
     fn plot(title: &str) -> Plot<'_> {
-        Plot {
-            title,
-            x: "time, s",
-            y: "N",
-            size_px: (540.0, 300.0),
-            x_range: None,
-            is_logarithmic: false,
-        }
+        Plot::new(title, "time, s", "N", (540.0, 300.0))
     }
 
     #[test]

@@ -61,6 +61,8 @@ pub struct Zone {
     pub width_um: f64,
     /// Deviation in the middle of it, µm.
     pub middle_um: f64,
+    /// Where its centre is, µm from the nominal one.
+    pub center_um: [f64; 2],
 }
 
 impl Zone {
@@ -104,8 +106,8 @@ pub fn polar(plot: &Polar<'_>) -> String {
     for (place, text) in plot.bursts.iter().enumerate() {
         rings.burst(&mut figure, place, text);
     }
-    for edge_um in edges_um.into_iter().flatten() {
-        figure.circle("tolerance", middle, rings.radius_px(edge_um), "tolerance");
+    if let Some(zone) = plot.zone {
+        rings.draw_zone(&mut figure, zone);
     }
     for trace in plot.traces {
         rings.draw(&mut figure, trace);
@@ -149,8 +151,9 @@ fn legend(figure: &mut Figure, plot: &Polar<'_>, top_px: f64) {
 }
 
 fn class(trace: &Trace<'_>) -> String {
-    let dashes = if trace.is_dashed { " back" } else { "" };
-    format!("curve {}{dashes}", trace.ink.class())
+    // Dashes tell the direction here, and nothing else.
+    let dashes = if trace.is_dashed { "back" } else { "solid" };
+    format!("curve {} {dashes}", trace.ink.class())
 }
 
 /// Where deviations are drawn.
@@ -237,6 +240,18 @@ impl Rings {
             let number = if place == 1 { count - index } else { index + 1 };
             let (at, anchor) = self.beside(place, number as f64);
             figure.text("burst", at, anchor, line);
+        }
+    }
+
+    fn draw_zone(&self, figure: &mut Figure, zone: Zone) {
+        let [x, y] = zone.center_um;
+        for edge_um in zone.edges_um() {
+            let around = (0..=360_u16).map(|degrees| {
+                let angle = f64::from(degrees).to_radians();
+                let (sin, cos) = angle.sin_cos();
+                self.at(angle, self.radius_px(edge_um + x * cos + y * sin))
+            });
+            figure.path("tolerance", &path_through(around), "tolerance");
         }
     }
 
@@ -333,7 +348,10 @@ mod tests {
             bursts: Default::default(),
             zone: None,
         });
-        let path = svg.split("class=\"curve after\" d=\"").nth(2).unwrap();
+        let path = svg
+            .split("class=\"curve after solid\" d=\"")
+            .nth(2)
+            .unwrap();
         let places = places(path.split('"').next().unwrap());
         let middle = (0.5 * WIDTH_PX, LEGEND_LINE_PX + ABOVE_PX + 10.0);
         // Four rings of 2 µm.
