@@ -30,8 +30,8 @@ fn effect(axis: &mut MachineAxis, text: &str) {
         .clone();
 }
 
-/// A cause: its name, its size in its own unit, the circular deviation that it makes, µm, and how it
-/// comes into the plant.
+/// A cause: its name, its size in its own unit, the circular deviation that it makes, µm, and how
+/// it comes into the plant.
 struct Set {
     cause: &'static str,
     value: f64,

@@ -31,9 +31,9 @@ pub(super) struct Deviating<'a> {
 }
 
 impl Deviating<'_> {
-    /// Mean over the turns of the largest deviation in the window about `at`, µm; turns of which the
-    /// window was lost do not count. A diverged run has no burst but `NaN`, so that it never looks
-    /// perfect, and so has one that was lost there; an empty path has zero.
+    /// Mean over the turns of the largest deviation in the window about `at`, µm; turns of which
+    /// the window was lost do not count. A diverged run has no burst but `NaN`, so that it
+    /// never looks perfect, and so has one that was lost there; an empty path has zero.
     pub(super) fn burst_um(&self, at: f64) -> f64 {
         let mut largest: Vec<Option<f64>> = Vec::new();
         for (point, deviation) in self.points.iter().zip(self.deviation_um) {
