@@ -92,7 +92,7 @@ pub fn cause_table(before: &[Cause], after: &[Cause]) -> TextTable {
     let nothing: Vec<&str> = nothing.map(|own| own.cause.as_str()).collect();
     if !nothing.is_empty() {
         let mut row = vec![nothing.join(", ")];
-        let little = format!("< {NOTHING_UM}");
+        let little = format!("<\u{a0}{NOTHING_UM}");
         row.extend([little.as_str(), "", little.as_str(), "", "–"].map(String::from));
         rows.push(row);
     }
