@@ -43,6 +43,9 @@ addEventListener("load", () => {
     if (contrast < 4.5 && !told.has(colour)) { told.add(colour); wrong.push(`"${text}" has a contrast of ${contrast.toFixed(1)}`); }
   }
   for (const row of document.querySelectorAll("tr")) if (window.isPaper && getComputedStyle(row).breakInside !== "avoid") { wrong.push("a row may be cut by the end of a page"); break; }
+  const beside = document.querySelector(".certificate .columns");
+  if (beside && innerWidth > 1000 && Math.abs(beside.children[0].getBoundingClientRect().top - beside.children[1].getBoundingClientRect().top) > 30)
+    wrong.push("half the page beside the circle is empty");
   for (const head of document.querySelectorAll("h2, h3")) if (window.isPaper && getComputedStyle(head).breakAfter !== "avoid") { wrong.push("a heading may be the last line of a page"); break; }
   for (const svg of document.querySelectorAll("svg"))
     if (svg.getAttribute("role") !== "img" || !svg.querySelector(":scope > title").textContent || !svg.querySelector(":scope > desc").textContent)
