@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::error::{Failure, Outcome};
 
-/// A folder with this file in it is ours: its files may be overwritten.
+/// Results in a folder with this file in it are ours: they may be overwritten.
 const MARKER: &str = ".quadrant";
 
 /// What stands in it.
@@ -98,12 +98,12 @@ pub fn make_folder(path: &Path) -> Outcome<()> {
     fs::create_dir_all(path).map_err(|error| Failure::file(path, &error))
 }
 
-/// Makes a folder for the results of a command, or takes one that is empty or of an earlier run of
-/// it.
+/// Makes a folder for the results of a command, `names` of files below it; another run of the same
+/// command may overwrite them.
 ///
 /// # Errors
-/// Where somebody else's files are in it, or nothing can be written there.
-pub fn claim_folder(path: &Path, command: &str) -> Outcome<()> {
+/// Where one of them is somebody else's, or nothing can be written there.
+pub fn claim_folder(path: &Path, command: &str, names: &[String]) -> Outcome<()> {
     if path.exists() && !path.is_dir() {
         return Err(Failure::new(format!(
             "{}: is a file; name a folder",
@@ -111,14 +111,14 @@ pub fn claim_folder(path: &Path, command: &str) -> Outcome<()> {
         )));
     }
     make_folder(path)?;
-    let failed = |error: std::io::Error| Failure::file(path, &error);
-    let is_empty = fs::read_dir(path).map_err(failed)?.next().is_none();
     let marker = path.join(MARKER);
     let is_ours = fs::read_to_string(&marker).is_ok_and(|text| text == marked_by(command));
-    if !is_empty && !is_ours {
+    let has_content = |path: &PathBuf| fs::metadata(path).is_ok_and(|found| found.len() > 0);
+    let strange = names.iter().map(|name| path.join(name)).find(has_content);
+    if let Some(strange) = strange.filter(|_| !is_ours) {
         return Err(Failure::new(format!(
-            "{}: holds files that are not results of quadrant {command} (no {MARKER} that says so); name another folder or an empty one",
-            path.display()
+            "{}: is there and not a result of quadrant {command} (no {MARKER} beside it says so); name another folder",
+            strange.display()
         )));
     }
     write(&marker, &marked_by(command))
@@ -202,23 +202,25 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_with_files_of_others_is_refused_and_one_of_ours_is_not() {
+    fn a_file_of_others_is_not_overwritten_and_one_of_ours_is() {
         let folder = tempfile::tempdir().unwrap();
         let own = folder.path().join("out");
-        claim_folder(&own, "commission").unwrap();
-        for name in ["summary.json", "notes.txt"] {
-            fs::write(own.join(name), "{}").unwrap();
-        }
-        let stale = ["summary.json", "gone.svg"].map(String::from);
-        assert_eq!(claim_folder(&own, "commission"), Ok(()));
-        remove_stale(&own, &stale).unwrap();
-        assert!(!own.join("summary.json").exists() && own.join("notes.txt").exists());
-        let refusal = claim_folder(&own, "identify").unwrap_err().to_string();
+        let names = ["summary.json", "gone.svg"].map(String::from);
+        // What stands beside our files is nobody's business: a log of this very run, say.
+        make_folder(&own).unwrap();
+        fs::write(own.join("notes.txt"), "{}").unwrap();
+        claim_folder(&own, "commission", &names).unwrap();
+        fs::write(own.join("summary.json"), "{}").unwrap();
+        assert_eq!(claim_folder(&own, "commission", &names), Ok(()));
+        let refusal = claim_folder(&own, "identify", &names).unwrap_err();
         assert!(
-            refusal.contains("not results of quadrant identify"),
+            refusal.to_string().contains("summary.json: is there"),
             "{refusal}"
         );
-        let file = claim_folder(&own.join("notes.txt"), "identify").unwrap_err();
+        remove_stale(&own, &names).unwrap();
+        assert!(!own.join("summary.json").exists() && own.join("notes.txt").exists());
+        assert_eq!(claim_folder(&own, "identify", &names), Ok(()));
+        let file = claim_folder(&own.join("notes.txt"), "identify", &names).unwrap_err();
         assert!(file.to_string().contains("is a file"), "{file}");
     }
 }

@@ -50,27 +50,25 @@ pub fn run(arguments: &cli::Commission, interrupt: &Interrupt) -> Outcome<()> {
             "--real-axes: needs --can; in process there are simulated axes alone",
         ));
     }
-    refuse_own_results(arguments)?;
+    refuse_own_results(arguments, &machine)?;
     commission(&machine, place, &wanted, interrupt)
 }
 
 /// A machine file among the results would be gone before it is used again.
-fn refuse_own_results(arguments: &cli::Commission) -> Outcome<()> {
+fn refuse_own_results(arguments: &cli::Commission, machine: &Machine) -> Outcome<()> {
     let whole = |path: &Path| path.canonicalize().ok();
-    let folder = arguments.machine.machine.as_deref().and_then(Path::parent);
-    let folder = folder.map(|own| {
-        if own.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            own
-        }
-    });
-    let is_inside = folder
-        .and_then(whole)
-        .is_some_and(|own| Some(own) == whole(&arguments.out));
-    if is_inside {
+    let Some(file) = arguments.machine.machine.as_deref().and_then(whole) else {
+        return Ok(());
+    };
+    let results = stale(machine)
+        .into_iter()
+        .map(|name| arguments.out.join(name));
+    if results
+        .filter_map(|path| whole(&path))
+        .any(|path| path == file)
+    {
         return Err(Failure::new(format!(
-            "--machine: lies in {}, whose results are replaced; copy it or name another --out",
+            "--machine: is a result in {}, which is replaced; copy it or name another --out",
             arguments.out.display()
         )));
     }
@@ -116,7 +114,7 @@ pub fn commission(
     let out = wanted.out;
     let circle = fitting_circle(machine);
     check_circle(machine, &circle)?;
-    claim_folder(out, "commission")?;
+    claim_folder(out, "commission", &stale(machine))?;
     print_machine(machine);
     let stand = Stand {
         machine,

@@ -15,6 +15,14 @@ use crate::presentation::result_chapters::add_identification;
 use crate::progress;
 use crate::say;
 
+/// What `--out` leaves.
+const FILES: [&str; 4] = [
+    "identification.json",
+    "prediction.csv",
+    "model.toml",
+    "report.html",
+];
+
 /// Identifies a dataset, writes what was asked for and prints the result.
 ///
 /// # Errors
@@ -22,7 +30,7 @@ use crate::say;
 pub fn run(arguments: &cli::Identify) -> Outcome<()> {
     output_files::check([arguments.json.as_ref()])?;
     if let Some(folder) = &arguments.out {
-        claim_folder(folder, "identify")?;
+        claim_folder(folder, "identify", &FILES.map(String::from))?;
     }
     let dataset = Dataset::read(
         &arguments.dataset,
