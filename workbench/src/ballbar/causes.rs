@@ -179,13 +179,39 @@ fn terms(seen: &BothDirections<'_>) -> Vec<Term> {
     terms
 }
 
-impl Term {
-    /// At a place, in a direction, for a coefficient of 1 µm.
-    fn at(self, seen: &BothDirections<'_>, point: &Point, sense: f64) -> f64 {
+/// A place on the circle, and the direction in which it is passed.
+struct Place {
+    angle: f64,
+    sense: f64,
+    /// Of the radius, along each axis.
+    along: [f64; 2],
+    /// Of the feed, along each axis.
+    speed: [f64; 2],
+}
+
+impl Place {
+    fn of(point: &Point, sense: f64) -> Self {
         let angle = point.reference_m[1].atan2(point.reference_m[0]);
         let (sin, cos) = angle.sin_cos();
-        let along = [cos, sin];
-        let speed = [-sense * sin, sense * cos];
+        Self {
+            angle,
+            sense,
+            along: [cos, sin],
+            speed: [-sense * sin, sense * cos],
+        }
+    }
+}
+
+impl Term {
+    /// At a place, for a coefficient of 1 µm.
+    fn at(self, seen: &BothDirections<'_>, place: &Place) -> f64 {
+        let Place {
+            angle,
+            sense,
+            along,
+            speed,
+        } = *place;
+        let [cos, sin] = along;
         let wave = |axis: usize| TAU * seen.radius_m * along[axis] / seen.axes[axis].lead_m;
         match self {
             Self::Radius => 1.0,
@@ -259,8 +285,9 @@ impl Sized<'_> {
     /// Radial deviation at a point, µm, without what steps at reversals, and that.
     fn at(&self, point: &Point, sense: f64) -> (f64, f64) {
         let (mut smooth, mut steps) = (0.0, 0.0);
+        let place = Place::of(point, sense);
         for (term, um) in self.terms.iter().zip(&self.coefficients) {
-            let own = um * term.at(self.seen, point, sense);
+            let own = um * term.at(self.seen, &place);
             match term {
                 Term::Backlash(_) => steps += own.abs(),
                 _ => smooth += own,
@@ -363,7 +390,8 @@ fn fitted(seen: &BothDirections<'_>, terms: &[Term]) -> Option<Vec<f64>> {
         // Both directions count the same, however many turns were run.
         let weight = 1.0 / quiet.len().max(1) as f64;
         for point in quiet {
-            let row = terms.iter().map(|term| term.at(seen, point, sense));
+            let place = Place::of(point, sense);
+            let row = terms.iter().map(|term| term.at(seen, &place));
             let row = DVector::from_iterator(count, row);
             right += &row * (weight * radial_um(point, seen.radius_m));
             normal += &row * row.transpose() * weight;

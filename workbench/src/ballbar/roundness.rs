@@ -10,21 +10,11 @@ use super::point::{Point, radial_um};
 /// so that nothing passes for it.
 #[must_use]
 pub fn circular_deviation_um(points: &[Point]) -> f64 {
-    let Some(center) = least_squares_center(points) else {
-        return f64::NAN;
-    };
-    let radii = points
-        .iter()
-        .map(|point| (point.table_m[0] - center[0]).hypot(point.table_m[1] - center[1]));
-    let (low, high) = radii.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
-        (low.min(r), high.max(r))
-    });
-    (high - low) * 1.0e6
+    enclosed(points).map_or(f64::NAN, |(_, [low, high])| (high - low) * 1.0e6)
 }
 
-/// The zone of a path: its middle, m, and the mean of the radii of the circles that enclose it, m.
-#[must_use]
-pub fn zone_m(points: &[Point]) -> Option<([f64; 2], f64)> {
+/// Least-squares centre of a path, m, and the radii about it of the circles that enclose it, m.
+fn enclosed(points: &[Point]) -> Option<([f64; 2], [f64; 2])> {
     let center = least_squares_center(points)?;
     let radii = points
         .iter()
@@ -32,6 +22,13 @@ pub fn zone_m(points: &[Point]) -> Option<([f64; 2], f64)> {
     let (low, high) = radii.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
         (low.min(r), high.max(r))
     });
+    Some((center, [low, high]))
+}
+
+/// The zone of a path: its middle, m, and the mean of the radii of the circles that enclose it, m.
+#[must_use]
+pub fn zone_m(points: &[Point]) -> Option<([f64; 2], f64)> {
+    let (center, [low, high]) = enclosed(points)?;
     Some((center, 0.5 * (low + high)))
 }
 

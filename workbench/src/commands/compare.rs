@@ -311,7 +311,7 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
             directions
                 .enumerate()
                 .map(|(place, (direction, points))| Trace {
-                    name: format!("{} {direction}", run.name.clone()),
+                    name: format!("{} {direction}", run.name),
                     ink: Ink::Other(number),
                     is_dashed: place > 0,
                     points,
@@ -319,7 +319,7 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
                 }),
         );
     }
-    let burst = |place: usize| {
+    let spike = |place: usize| {
         let each = read
             .iter()
             .map(|(figures, _)| format!("{:.2}", figures.spikes_um[place]));
@@ -336,7 +336,7 @@ fn circles(runs: &[RunFolder], which: Circles) -> Outcome<String> {
         title,
         axes: [axis(0), axis(1)],
         traces: &traces,
-        bursts: [0, 1, 2, 3].map(burst),
+        bursts: [0, 1, 2, 3].map(spike),
         zone: None,
     }))
 }

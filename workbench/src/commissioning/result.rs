@@ -90,8 +90,9 @@ impl Commissioned<'_> {
     /// Where a file cannot be written, or the machine does not run the reversals.
     pub fn write(&self, out: &Path) -> Outcome<()> {
         write(&out.join("summary.json"), &json(&self.summary())?)?;
-        write(&out.join("circle.svg"), &standalone(&self.circle_picture()))?;
-        write(&out.join("report.html"), &self.page()?)
+        let circle = self.circle_picture();
+        write(&out.join("circle.svg"), &standalone(&circle))?;
+        write(&out.join("report.html"), &self.page(&circle)?)
     }
 
     /// The verdict in a sentence, where there is a tolerance: why there is none, where too much of

@@ -49,10 +49,11 @@ impl Commissioned<'_> {
         )
     }
 
-    pub(super) fn page(&self) -> Outcome<String> {
+    /// The report; `circle` is the picture of the circle before and after.
+    pub(super) fn page(&self, circle: &str) -> Outcome<String> {
         let machine = self.stand.machine;
         let mut page = Page::untitled(&format!("Machine {}: circular test", machine.name));
-        self.add_certificate(&mut page);
+        self.add_certificate(&mut page, circle);
         self.add_chain(&mut page);
         for (axis, result) in machine.axes.iter().zip(self.results) {
             let title = format!("Axis {}: what the model lacks", axis.name);
@@ -64,7 +65,7 @@ impl Commissioned<'_> {
         Ok(page.finish())
     }
 
-    fn add_certificate(&self, page: &mut Page) {
+    fn add_certificate(&self, page: &mut Page, circle: &str) {
         let (before, after) = (&self.before.report, &self.after.report);
         let sentence = self.headline();
         page.foot(&self.foot());
@@ -77,7 +78,7 @@ impl Commissioned<'_> {
             }),
             sentence: &sentence,
             facts: &self.facts(),
-            circle: &self.circle_picture(),
+            circle,
             figures: &circle_table(before, after),
             causes: &cause_table(&before.causes, &after.causes),
             feeds: &feeds::table(&self.feeds),

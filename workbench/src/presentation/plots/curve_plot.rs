@@ -9,7 +9,7 @@
 //! ```
 
 use super::curve::{Curve, Form};
-use super::density::{LEVELS, cells};
+use super::density::cells;
 use super::scale::Scale;
 use super::svg::{Anchor, Figure, path_through, text_width_px};
 use super::thinning::by_columns;
@@ -70,7 +70,7 @@ pub fn curves(plot: &Plot<'_>, list: &[Curve]) -> String {
     let (x, y) = scales(plot, list, size_px, head_px);
     let mut figure = Figure::new(size_px, plot.title, description(plot, list));
     for (line, text) in title.iter().enumerate() {
-        let at = (10.0, 4.0 + TITLE_LINE_PX * (line + 1) as f64 - 4.0);
+        let at = (10.0, TITLE_LINE_PX * (line + 1) as f64);
         figure.text("name", at, Anchor::Start, text);
     }
     legend(
@@ -243,7 +243,7 @@ impl Area {
             }
             Form::Cloud(points) => {
                 let paths = cells(self.places(points));
-                for (level, path) in paths.iter().enumerate().take(LEVELS) {
+                for (level, path) in paths.iter().enumerate() {
                     if !path.is_empty() {
                         let class = format!("cloud {class} thin{level}");
                         figure.path(&class, path, &curve.name);

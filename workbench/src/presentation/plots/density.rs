@@ -8,7 +8,7 @@ use super::svg::px;
 /// Edge of a cell, px.
 const CELL_PX: f64 = 3.0;
 /// Darknesses.
-pub(super) const LEVELS: usize = 4;
+const LEVELS: usize = 4;
 
 /// The path of each darkness, the faintest first.
 pub(super) fn cells(places: impl IntoIterator<Item = (f64, f64)>) -> [String; LEVELS] {

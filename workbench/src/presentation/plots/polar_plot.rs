@@ -190,7 +190,7 @@ impl Rings {
         let outermost = NOMINAL_PX + BAND_PX;
         for ring in -self.count..=self.count {
             let class = if ring == 0 { "nominal" } else { "grid" };
-            figure.circle(class, self.middle, self.ring_px(ring), "");
+            figure.circle(class, self.middle, self.ring_px(ring));
         }
         for step in 0..12_u8 {
             let degrees = 30.0 * f64::from(step);

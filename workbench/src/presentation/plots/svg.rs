@@ -97,11 +97,9 @@ impl Figure {
     }
 
     /// A circle.
-    pub(super) fn circle(&mut self, class: &str, at: (f64, f64), radius: f64, tip: &str) {
+    pub(super) fn circle(&mut self, class: &str, at: (f64, f64), radius: f64) {
         self.add(&html! {
-            circle class=(class) cx=(px(at.0)) cy=(px(at.1)) r=(px(radius)) {
-                @if !tip.is_empty() { title { (tip) } }
-            }
+            circle class=(class) cx=(px(at.0)) cy=(px(at.1)) r=(px(radius)) {}
         });
     }
 
