@@ -18,7 +18,7 @@ use axis_model::{Effect, Estimate};
 
 use crate::evidence::free_run::decision::{Accepted, Left, Scene, Tried};
 use crate::evidence::free_run::excerpt::Excerpt;
-use crate::evidence::thresholds::{FEWEST_COUNTS, SHAPE_RATIO, VISIBLE_ROUNDINGS};
+use crate::evidence::thresholds::{FEWEST_COUNTS, RIVAL_RATIO, SHAPE_RATIO, VISIBLE_ROUNDINGS};
 use crate::fit::fitted::Fitted;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
@@ -53,6 +53,9 @@ const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
 const LOAD_SHARE: f64 = 0.45;
 /// So many of the best gaps are fitted.
 const STARTS: usize = 3;
+/// The fit to all rows takes no more than this share off what a fit on the excerpt left there: a
+/// shape that would have to lose more to count is judged as it is.
+const TAKEN_OFF: f64 = 0.5;
 /// Another start is fitted to the whole record where it leaves this share on the excerpt.
 const WORTH_A_FIT: f64 = 0.97;
 
@@ -112,6 +115,18 @@ pub(crate) struct Summary {
     /// Whether rigid friction leaves more than the rounding of the encoder.
     pub something_left: bool,
 }
+
+/// When a shape counts: it leaves at most a share of what each of its rivals leaves.
+struct Counts<'a> {
+    ratio: f64,
+    rivals: &'a [&'a Judged],
+}
+
+/// A shape without a rival counts whatever it leaves.
+const ALONE: Counts<'static> = Counts {
+    ratio: 1.0,
+    rivals: &[],
+};
 
 struct Judge<'a> {
     drive: Drive,
@@ -177,8 +192,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The best fit from the best of several starts, as the excerpt tells them.
-    fn best(&self, starts: &[Simulated], count: usize) -> Option<Judged> {
+    /// The best fit from the best of several starts, as the excerpt tells them; only judged where
+    /// it cannot come down to what counts beside its rivals.
+    fn best(&self, starts: &[Simulated], count: usize, counts: &Counts<'_>) -> Option<Judged> {
         let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
         let best = nearest(side_by_side(starts, error), starts, count);
         let near = best
@@ -186,7 +202,14 @@ impl<'a> Judge<'a> {
             .map(|start| self.excerpt.near(start, &self.drive));
         let near: Vec<Simulated> = near.collect();
         let nearest = nearest(near.iter().map(error).collect(), &near, 1);
-        nearest.first().map(|start| self.fitted_from(start))
+        let start = *nearest.first()?;
+        let rivals = counts.rivals.iter().map(|rival| error(&rival.model));
+        let wanted = counts.ratio * rivals.fold(f64::INFINITY, f64::min);
+        if (1.0 - TAKEN_OFF) * error(start) > wanted {
+            let run = simulate(start, &self.drive, self.record);
+            return Some(self.judged(start.clone(), &run));
+        }
+        Some(self.fitted_from(start))
     }
 
     /// A shape, started once more from the masses and forces of other fits, as far as the excerpt
@@ -279,7 +302,11 @@ impl Judge<'_> {
         progress(&Step::Rigid);
         let rigid = self.fitted(&start(Shape::default())?);
         progress(&Step::Bristle);
-        let bristle = self.best(&bristles(unit, rigid.model.mechanics.mass, start), 1)?;
+        let bristle = self.best(
+            &bristles(unit, rigid.model.mechanics.mass, start),
+            1,
+            &ALONE,
+        )?;
         let mut shapes = Shapes {
             rigid,
             bristle,
@@ -288,7 +315,12 @@ impl Judge<'_> {
         progress(&Step::Gap);
         let scene = shapes.scene(dataset.resolution);
         if scene.is_worth_a_gap(rounding(dataset.resolution)) {
-            shapes.gap = self.best(&gaps(unit, start), STARTS);
+            // One that leaves more than that does not even make the bristle doubtful.
+            let counts = Counts {
+                ratio: 1.0 / RIVAL_RATIO,
+                rivals: &[&shapes.bristle],
+            };
+            shapes.gap = self.best(&gaps(unit, start), STARTS, &counts);
         }
         Some(shapes)
     }
@@ -380,10 +412,14 @@ impl Judge<'_> {
         start: &impl Fn(Shape) -> Option<Simulated>,
     ) -> Option<Judged> {
         let gap = gap.filter(|_| accepted.presliding || accepted.backlash || accepted.undecided)?;
-        let bristle = bristle.model.mechanics.shape.bristle?;
-        let shapes = bristles_behind_gaps(bristle, gap.width(), unit).into_iter();
+        let alone = bristle.model.mechanics.shape.bristle?;
+        let shapes = bristles_behind_gaps(alone, gap.width(), unit).into_iter();
         let starts: Vec<Simulated> = shapes.filter_map(start).collect();
-        self.best(&starts, 1)
+        let counts = Counts {
+            ratio: SHAPE_RATIO,
+            rivals: &[bristle, gap],
+        };
+        self.best(&starts, 1, &counts)
     }
 }
 
@@ -838,9 +874,8 @@ mod tests {
         assert!(!found.is_evidence());
     }
 
-    /// A shape that was left in the wrong valley gets out of it from where another one ended.
-    #[test]
-    fn rigid_friction_starts_once_more_where_a_gap_ended_with_the_gap_at_zero() {
+    /// A record that rigid friction made, in closed loop along two sines.
+    fn simulated() -> (Dataset, Law, Simulated) {
         let law = Law {
             form: Form::Voltage { gain: 14_000.0 },
             position_gain: 40.0,
@@ -855,8 +890,14 @@ mod tests {
             ..made::record(1.0e-3, path)
         };
         let (mut dataset, truth) = (made::dataset(record, None), model(Shape::default()));
-        let run = simulate(&truth, &Drive::Known(law), &dataset.train);
-        dataset.train.position = run.motor;
+        dataset.train.position = simulate(&truth, &Drive::Known(law), &dataset.train).motor;
+        (dataset, law, truth)
+    }
+
+    /// A shape that was left in the wrong valley gets out of it from where another one ended.
+    #[test]
+    fn rigid_friction_starts_once_more_where_a_gap_ended_with_the_gap_at_zero() {
+        let (dataset, law, truth) = simulated();
         let judge = Judge::of(&dataset, Controller::Known(law));
         let of = |model: Simulated| {
             let run = simulate(&model, &judge.drive, judge.record);
@@ -871,6 +912,27 @@ mod tests {
         let (before, again) = (lost.all, judge.restarted(lost, &[&gap]));
         assert!(again.all < 0.01 * before, "{before} {}", again.all);
         assert_eq!(again.model.mechanics.shape, Shape::default());
+    }
+
+    #[test]
+    fn a_gap_that_cannot_come_down_to_what_its_rival_leaves_is_judged_and_not_fitted() {
+        let (dataset, law, truth) = simulated();
+        let judge = Judge::of(&dataset, Controller::Known(law));
+        let rival = judge.judged(truth.clone(), &simulate(&truth, &judge.drive, judge.record));
+        let mut start = truth;
+        start.mechanics.shape.gap = shape(0.0, 80.0e-6).gap;
+        start.mechanics.mass *= 1.5;
+        let near = judge.excerpt.near(&start, &judge.drive);
+        let best = |counts: &Counts<'_>| {
+            let best = judge.best(std::slice::from_ref(&start), 1, counts);
+            best.unwrap().model.mechanics
+        };
+        let beside = Counts {
+            ratio: 1.0,
+            rivals: &[&rival],
+        };
+        assert_eq!(best(&beside), near.mechanics);
+        assert_ne!(best(&ALONE), near.mechanics);
     }
 
     #[test]
