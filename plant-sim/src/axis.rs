@@ -10,7 +10,7 @@ use protocol::states::BrakeState;
 use crate::brake::{Brake, BrakeParameters};
 use crate::effects::{Effects, Instant};
 use crate::friction::{Friction, Law, Sides, Sliding};
-use crate::lag::{lag_share, mean_share};
+use crate::lag::Lag;
 use crate::mechanics::{Drive, Mechanics, Motion};
 use crate::stops::Stops;
 
@@ -240,7 +240,7 @@ impl Axis {
         let disturbance = self.parameters.force_noise_n * noise;
         let steps = (cycle_s / self.sub_step_s).round().max(1.0);
         let dt_s = cycle_s / steps;
-        let lag = lag_share(dt_s, self.parameters.current_loop_time_constant_s);
+        let lag = Lag::over(dt_s, self.parameters.current_loop_time_constant_s);
         let before = std::mem::replace(&mut self.delayed_n, wanted);
         let delay_s = effects.delay_s().min(cycle_s);
         let mut elapsed = 0.0;
@@ -254,21 +254,21 @@ impl Axis {
         self.time_s += cycle_s;
     }
 
-    fn sub_step(&mut self, target_n: f64, disturbance_n: f64, lag: f64, dt_s: f64) {
+    fn sub_step(&mut self, target_n: f64, disturbance_n: f64, lag: Lag, dt_s: f64) {
         let before = self.force_n;
-        self.force_n += lag * (target_n - self.force_n);
-        let mean_n = target_n + (before - target_n) * mean_share(lag);
-        let at = Instant {
+        self.force_n += lag.end * (target_n - self.force_n);
+        let mean_n = target_n + (before - target_n) * lag.mean_left;
+        let effects = &self.parameters.effects;
+        let acting = effects.acting(|| Instant {
             delivered_n: mean_n,
             ..self.instant(dt_s)
-        };
-        let effects = &self.parameters.effects;
+        });
         let drive = Drive {
-            motor_n: mean_n + disturbance_n + effects.motor_n(&at),
-            table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) + effects.table_n(&at),
-            friction_factor: effects.friction_factor(&at),
-            friction_level_n: effects.friction_level_n(&at),
-            added_mass_kg: effects.added_mass_kg(&at),
+            motor_n: mean_n + disturbance_n + acting.motor_n,
+            table_n: self.parameters.mounting.gravity_n + self.stop_n(dt_s) + acting.table_n,
+            friction_factor: acting.friction_factor,
+            friction_level_n: acting.friction_level_n,
+            added_mass_kg: acting.added_mass_kg,
             brake_n: self.brake.as_mut().map_or(0.0, |brake| brake.pass(dt_s)),
         };
         self.parameters

@@ -122,6 +122,32 @@ pub struct Refused {
     pub text: &'static str,
 }
 
+/// What all effects of an axis do together within a sub-step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Acting {
+    /// Force on the motor, N.
+    pub motor_n: f64,
+    /// Force on the table, N.
+    pub table_n: f64,
+    /// Mass that moves with the table beside its own, kg.
+    pub added_mass_kg: f64,
+    /// Factor on the friction level at the table.
+    pub friction_factor: f64,
+    /// Friction level at the table beside the one of the law, N.
+    pub friction_level_n: f64,
+}
+
+impl Acting {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        motor_n: 0.0,
+        table_n: 0.0,
+        added_mass_kg: 0.0,
+        friction_factor: 1.0,
+        friction_level_n: 0.0,
+    };
+}
+
 /// All further effects of an axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects(Vec<Effect>);
@@ -153,34 +179,50 @@ impl Effects {
         self.0.iter().filter_map(simulated)
     }
 
+    /// What they do at an instant, which nobody asks for where there is none.
+    #[must_use]
+    pub fn acting(&self, at: impl FnOnce() -> Instant) -> Acting {
+        if self.0.is_empty() {
+            return Acting::NONE;
+        }
+        let at = at();
+        Acting {
+            motor_n: self.motor_n(&at),
+            table_n: self.table_n(&at),
+            added_mass_kg: self.added_mass_kg(&at),
+            friction_factor: self.friction_factor(&at),
+            friction_level_n: self.friction_level_n(&at),
+        }
+    }
+
     /// Force on the motor, N.
     #[must_use]
-    pub fn motor_n(&self, at: &Instant) -> f64 {
+    fn motor_n(&self, at: &Instant) -> f64 {
         self.all().map(|effect| effect.motor_n(at)).sum()
     }
 
     /// Force on the table, N.
     #[must_use]
-    pub fn table_n(&self, at: &Instant) -> f64 {
+    fn table_n(&self, at: &Instant) -> f64 {
         self.all().map(|effect| effect.table_n(at)).sum()
     }
 
     /// Mass that moves with the table beside its own, kg.
     #[must_use]
-    pub fn added_mass_kg(&self, at: &Instant) -> f64 {
+    fn added_mass_kg(&self, at: &Instant) -> f64 {
         self.all().map(|effect| effect.added_mass_kg(at)).sum()
     }
 
     /// Factor on the friction level.
     #[must_use]
-    pub fn friction_factor(&self, at: &Instant) -> f64 {
+    fn friction_factor(&self, at: &Instant) -> f64 {
         let factors = self.all().map(|effect| effect.friction_factor(at));
         factors.product::<f64>().max(SMALLEST_FACTOR)
     }
 
     /// Friction level beside the one of the law, N.
     #[must_use]
-    pub fn friction_level_n(&self, at: &Instant) -> f64 {
+    fn friction_level_n(&self, at: &Instant) -> f64 {
         self.all().map(|effect| effect.friction_level_n(at)).sum()
     }
 
@@ -233,12 +275,7 @@ mod tests {
     #[test]
     fn an_axis_without_effects_is_left_alone() {
         let none = Effects::default();
-        assert_eq!((none.motor_n(&AT), none.table_n(&AT)), (0.0, 0.0));
-        assert_eq!(none.added_mass_kg(&AT), 0.0);
-        assert_eq!(
-            (none.friction_factor(&AT), none.friction_level_n(&AT)),
-            (1.0, 0.0)
-        );
+        assert_eq!(none.acting(|| unreachable!("of none")), Acting::NONE);
         assert_eq!((none.scale_error_m(0.1), none.delay_s()), (0.0, 0.0));
         assert_eq!(none.delivered_n(123.4), 123.4);
     }
@@ -259,13 +296,14 @@ mod tests {
             quadratic: None,
         };
         effects.add(slope).unwrap();
-        assert_eq!(effects.table_n(&AT), -25.0);
-        assert!((effects.friction_factor(&AT) - 1.2 * 1.5).abs() < 1.0e-12);
+        let acting = effects.acting(|| AT);
+        assert_eq!(acting.table_n, -25.0);
+        assert!((acting.friction_factor - 1.2 * 1.5).abs() < 1.0e-12);
         let far = Instant {
             table_m: -0.6,
             ..AT
         };
-        assert_eq!(effects.friction_factor(&far), SMALLEST_FACTOR);
+        assert_eq!(effects.acting(|| far).friction_factor, SMALLEST_FACTOR);
     }
 
     #[test]

@@ -102,6 +102,8 @@ pub struct Friction {
 pub struct State {
     deflection_m: Vec<f64>,
     fall: Fall,
+    at: At,
+    decay: Decay,
 }
 
 impl State {
@@ -151,6 +153,8 @@ impl Friction {
             state: State {
                 deflection_m: vec![0.0; states],
                 fall: Fall::default(),
+                at: At::default(),
+                decay: Decay::default(),
             },
         }
     }
@@ -160,7 +164,13 @@ impl Friction {
         let Self {
             sliding,
             law,
-            state: State { deflection_m, fall },
+            state:
+                State {
+                    deflection_m,
+                    fall,
+                    at,
+                    decay,
+                },
         } = self;
         *fall = fall.after(sliding, body.velocity, body.dt_s);
         let curve = Curve {
@@ -177,7 +187,7 @@ impl Friction {
                     stiffness: *bristle_stiffness_n_per_m,
                     damping: *bristle_damping_n_s_per_m,
                 };
-                lugre(curve, bristle, &mut deflection_m[0], body)
+                lugre(curve, bristle, (&mut deflection_m[0], at, decay), body)
             }
             Law::MaxwellSlip {
                 stiffness_n_per_m,
@@ -242,40 +252,129 @@ struct Bristle {
     damping: f64,
 }
 
+/// Sliding at a velocity. A sub-step ends with the velocity that the next one begins with: what
+/// was computed last is asked for first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct At {
+    velocity: f64,
+    sign: f64,
+    level_n: f64,
+    viscous_n_s_per_m: f64,
+}
+
+impl Default for At {
+    /// Of no velocity yet.
+    fn default() -> Self {
+        Self {
+            velocity: f64::NAN,
+            sign: 0.0,
+            level_n: 0.0,
+            viscous_n_s_per_m: 0.0,
+        }
+    }
+}
+
+impl At {
+    fn of(curve: Curve<'_>, velocity: f64) -> Self {
+        Self {
+            velocity,
+            sign: sign(velocity),
+            level_n: curve.level_n(velocity),
+            viscous_n_s_per_m: curve.viscous_n_s_per_m(velocity),
+        }
+    }
+
+    /// The same at a velocity, which it may be at already.
+    fn moved_to(self, curve: Curve<'_>, velocity: f64) -> Self {
+        if self.velocity == velocity && !curve.lags() {
+            self
+        } else {
+            Self::of(curve, velocity)
+        }
+    }
+
+    /// Rate at which a bristle of a stiffness goes towards its end there, with the friction level
+    /// of a body, 1/s.
+    fn rate_per_s(&self, stiffness: f64, level_n: f64) -> f64 {
+        stiffness * self.velocity.abs() / level_n
+    }
+}
+
+/// What a bristle goes towards its end in half a sub-step, by its rate; kept for the same reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Decay {
+    rate: f64,
+    half_s: f64,
+    share_s: f64,
+}
+
+impl Default for Decay {
+    /// Of no rate yet.
+    fn default() -> Self {
+        Self {
+            rate: f64::NAN,
+            half_s: 0.0,
+            share_s: 0.0,
+        }
+    }
+}
+
+impl Decay {
+    /// Solution of `ż = v − r z` after `dt` at constant `v` and `r`.
+    fn relaxed(&mut self, z: f64, v: f64, rate: f64, dt: f64) -> f64 {
+        if self.rate != rate || self.half_s != dt {
+            *self = Self {
+                rate,
+                half_s: dt,
+                share_s: decayed(rate, dt),
+            };
+        }
+        z + (v - rate * z) * self.share_s
+    }
+}
+
+/// `(1 − exp(−r dt)) / r`.
+fn decayed(rate: f64, dt: f64) -> f64 {
+    let x = rate * dt;
+    if x < 1e-6 {
+        dt * (1.0 - 0.5 * x)
+    } else {
+        -(-x).exp_m1() / rate
+    }
+}
+
 /// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the body with
 /// the part of the bristle force that is linear in its velocity taken implicitly, the other half of
 /// the bristle.
-fn lugre(curve: Curve<'_>, bristle: Bristle, z: &mut f64, body: Body) -> f64 {
+fn lugre(
+    curve: Curve<'_>,
+    bristle: Bristle,
+    (z, at, decay): (&mut f64, &mut At, &mut Decay),
+    body: Body,
+) -> f64 {
     let Body {
         velocity,
         free_velocity,
         mass_kg,
         dt_s,
-        ..
+        factor,
+        level_n,
     } = body;
-    let rate = |v: f64| bristle.stiffness * v.abs() / body.friction_n(curve, v);
-    *z = relaxed(*z, velocity, rate(velocity), 0.5 * dt_s);
+    let now = at.moved_to(curve, velocity);
+    let level = now.level_n * factor + level_n;
+    let rate = now.rate_per_s(bristle.stiffness, level);
+    *z = decay.relaxed(*z, velocity, rate, 0.5 * dt_s);
     // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
     // trapezoidal.
-    let level = body.friction_n(curve, velocity);
     let constant = bristle.stiffness * *z;
-    let linear = bristle.damping * (1.0 - sign(velocity) * bristle.stiffness * *z / level)
-        + curve.viscous_n_s_per_m(velocity);
+    let linear =
+        bristle.damping * (1.0 - now.sign * bristle.stiffness * *z / level) + now.viscous_n_s_per_m;
     let half = 0.5 * linear * dt_s / mass_kg;
     let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
-    *z = relaxed(*z, next, rate(next), 0.5 * dt_s);
+    *at = now.moved_to(curve, next);
+    let rate = at.rate_per_s(bristle.stiffness, at.level_n * factor + level_n);
+    *z = decay.relaxed(*z, next, rate, 0.5 * dt_s);
     next
-}
-
-/// Solution of `ż = v − r z` after `dt` at constant `v` and `r`.
-fn relaxed(z: f64, v: f64, rate: f64, dt: f64) -> f64 {
-    let x = rate * dt;
-    let share = if x < 1e-6 {
-        dt * (1.0 - 0.5 * x)
-    } else {
-        -(-x).exp_m1() / rate
-    };
-    z + (v - rate * z) * share
 }
 
 fn maxwell(

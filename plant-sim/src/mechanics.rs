@@ -177,6 +177,9 @@ struct Kick {
 impl Kick {
     /// What the friction of the motor's side leaves.
     fn rubbed(self, motion: &Motion, friction: &mut Sides) -> Self {
+        if friction.motor.is_none() {
+            return self;
+        }
         let mass_kg = self.m1 + self.half;
         let motor = Body {
             velocity: motion.motor_m_per_s,

@@ -37,6 +37,9 @@ ranged! {
     }
 }
 
+/// Of exp(−x) no number is left from 745.2 on, and getting there takes longest.
+const NOTHING_LEFT: f64 = 746.0;
+
 impl Sliding {
     /// Coulomb friction alone. The Stribeck velocity matters only where there is a fall.
     #[must_use]
@@ -69,9 +72,13 @@ impl Sliding {
     /// Share of the excess that is left in the end, at a velocity.
     fn left(&self, v: f64) -> f64 {
         if self.static_n == self.coulomb_n {
+            return 0.0;
+        }
+        let power = self.power(v);
+        if power > NOTHING_LEFT {
             0.0
         } else {
-            (-self.power(v)).exp()
+            (-power).exp()
         }
     }
 
@@ -99,7 +106,7 @@ pub(crate) const fn gaussian() -> f64 {
 }
 
 pub(super) fn sign(v: f64) -> f64 {
-    if v == 0.0 { 0.0 } else { v.signum() }
+    f64::from(u8::from(v > 0.0)) - f64::from(u8::from(v < 0.0))
 }
 
 /// What is left of the excess, where it lags: `τ ṡ = exp(−|v / vs|^p) − s`, exact for constant
@@ -135,12 +142,17 @@ pub(super) struct Curve<'a> {
 }
 
 impl Curve<'_> {
+    /// Whether its fall lags: what a velocity makes is another level every time then.
+    pub(super) fn lags(&self) -> bool {
+        self.sliding.stribeck_lag_s != 0.0
+    }
+
     /// Friction without the viscous part, for a direction of `v`.
     pub(super) fn level_n(&self, v: f64) -> f64 {
-        if self.sliding.stribeck_lag_s == 0.0 {
-            self.sliding.level_n(v)
-        } else {
+        if self.lags() {
             self.sliding.level_with_n(self.fall.0, v)
+        } else {
+            self.sliding.level_n(v)
         }
     }
 
