@@ -122,7 +122,7 @@ impl Limits {
             acceleration: i64::from(reference.acceleration_limit.0.to_bits()),
             low: reference.position_min.0.to_bits(),
             high: reference.position_max.0.to_bits(),
-            torque: i64::from(config.cascade.torque_limit.to_micro_nm_lossy()),
+            torque: i64::from(config.cascade.torque_limit.micro_nm()),
             half_gap: i64::from(config.backlash.half_gap.0.to_bits()),
         })
     }

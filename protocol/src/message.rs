@@ -151,12 +151,18 @@ pub enum Decoded {
 /// # Errors
 /// [`DecodeError`] where the identifier is ours and the content is not.
 pub fn decode(ids: AxisIds, frame: &CanFrame) -> Result<Decoded, DecodeError> {
-    let Id::Standard(id) = frame.id() else {
-        return Ok(Decoded::Foreign);
-    };
-    match ids.classify(id) {
+    match kind_of(ids, frame) {
         None => Ok(Decoded::Foreign),
         Some(kind) => decode_as(kind, frame).map(Decoded::Message),
+    }
+}
+
+/// What a frame is on an axis; `None` for other people's traffic.
+#[must_use]
+pub fn kind_of(ids: AxisIds, frame: &CanFrame) -> Option<FrameKind> {
+    match frame.id() {
+        Id::Standard(id) => ids.classify(id),
+        Id::Extended(_) => None,
     }
 }
 
@@ -165,22 +171,12 @@ pub fn decode(ids: AxisIds, frame: &CanFrame) -> Result<Decoded, DecodeError> {
 /// # Errors
 /// [`DecodeError`] with the first field that is wrong.
 pub fn decode_as(kind: FrameKind, frame: &CanFrame) -> Result<Message, DecodeError> {
-    if frame.is_remote_frame() {
-        return Err(DecodeError {
-            kind,
-            field: "RTR",
-            wanted: "a data frame",
-            got: 1,
-        });
-    }
     match kind {
         FrameKind::Nmt => nmt(bytes(kind, frame, "2 bytes")?),
-        FrameKind::Sync => {
-            bytes(kind, frame, "1 byte").and_then(|[c]| Ok(Message::Sync(counter(kind, c)?)))
-        }
-        FrameKind::Feedback => feedback(bytes(kind, frame, "8 bytes")?),
-        FrameKind::Torque => torque(bytes(kind, frame, "7 bytes")?),
-        FrameKind::Setpoint => setpoint(bytes(kind, frame, "8 bytes")?),
+        FrameKind::Sync => SyncCounter::decode(frame).map(Message::Sync),
+        FrameKind::Feedback => Feedback::decode(frame).map(Message::Feedback),
+        FrameKind::Torque => Torque::decode(frame).map(Message::Torque),
+        FrameKind::Setpoint => Setpoint::decode(frame).map(Message::Setpoint),
         FrameKind::PlantStatus => plant_status(bytes(kind, frame, "8 bytes")?),
         FrameKind::Status => status(bytes(kind, frame, "8 bytes")?),
         FrameKind::ServoHeartbeat => heartbeat(kind, frame).map(Message::ServoHeartbeat),
@@ -196,19 +192,32 @@ pub fn decode_as(kind: FrameKind, frame: &CanFrame) -> Result<Message, DecodeErr
     }
 }
 
+/// The bytes of a data frame of a fixed length.
 fn bytes<const N: usize>(
     kind: FrameKind,
     frame: &CanFrame,
     wanted: &'static str,
 ) -> Result<[u8; N], DecodeError> {
-    let payload = frame.payload();
-    let got = u32::try_from(payload.len()).unwrap_or(u32::MAX);
-    payload.try_into().map_err(|_| DecodeError {
+    let payload = frame.payload().try_into().ok();
+    payload.ok_or_else(|| not_of_its_length(kind, frame, wanted))
+}
+
+#[cold]
+fn not_of_its_length(kind: FrameKind, frame: &CanFrame, wanted: &'static str) -> DecodeError {
+    if frame.is_remote_frame() {
+        return DecodeError {
+            kind,
+            field: "RTR",
+            wanted: "a data frame",
+            got: 1,
+        };
+    }
+    DecodeError {
         kind,
         field: "length",
         wanted,
-        got,
-    })
+        got: u32::try_from(frame.dlc()).unwrap_or(u32::MAX),
+    }
 }
 
 fn counter(kind: FrameKind, value: u8) -> Result<SyncCounter, DecodeError> {
@@ -235,28 +244,60 @@ fn nmt([command, node]: [u8; 2]) -> Result<Message, DecodeError> {
     Ok(Message::Nmt(known, NodeId::new(node)))
 }
 
-fn feedback([a, b, c, d, e, f, g, count]: [u8; 8]) -> Result<Message, DecodeError> {
-    Ok(Message::Feedback(Feedback {
-        motor: MotorIncrements(i32::from_le_bytes([a, b, c, d])),
-        load: LoadIncrements24::from_counts(i64::from(u32::from_le_bytes([e, f, g, 0]))),
-        counter: counter(FrameKind::Feedback, count)?,
-    }))
+impl SyncCounter {
+    /// What a SYNC carries.
+    ///
+    /// # Errors
+    /// [`DecodeError`] with the first field that is wrong.
+    pub fn decode(frame: &CanFrame) -> Result<Self, DecodeError> {
+        let [count] = bytes(FrameKind::Sync, frame, "1 byte")?;
+        counter(FrameKind::Sync, count)
+    }
 }
 
-fn torque([a, b, c, d, e, f, count]: [u8; 7]) -> Result<Message, DecodeError> {
-    Ok(Message::Torque(Torque {
-        torque: TorqueMicroNm(i32::from_le_bytes([a, b, c, d])),
-        control: ControlWord(u16::from_le_bytes([e, f])),
-        counter: counter(FrameKind::Torque, count)?,
-    }))
+impl Feedback {
+    /// What a frame of this kind carries.
+    ///
+    /// # Errors
+    /// [`DecodeError`] with the first field that is wrong.
+    pub fn decode(frame: &CanFrame) -> Result<Self, DecodeError> {
+        let [a, b, c, d, e, f, g, count] = bytes(FrameKind::Feedback, frame, "8 bytes")?;
+        Ok(Self {
+            motor: MotorIncrements(i32::from_le_bytes([a, b, c, d])),
+            load: LoadIncrements24::from_counts(i64::from(u32::from_le_bytes([e, f, g, 0]))),
+            counter: counter(FrameKind::Feedback, count)?,
+        })
+    }
 }
 
-fn setpoint([a, b, count, c, d, e, f, g]: [u8; 8]) -> Result<Message, DecodeError> {
-    Ok(Message::Setpoint(Setpoint {
-        control: ControlWord(u16::from_le_bytes([a, b])),
-        counter: counter(FrameKind::Setpoint, count)?,
-        position: SetpointFine::from_bytes([c, d, e, f, g]),
-    }))
+impl Torque {
+    /// What a frame of this kind carries.
+    ///
+    /// # Errors
+    /// [`DecodeError`] with the first field that is wrong.
+    pub fn decode(frame: &CanFrame) -> Result<Self, DecodeError> {
+        let [a, b, c, d, e, f, count] = bytes(FrameKind::Torque, frame, "7 bytes")?;
+        Ok(Self {
+            torque: TorqueMicroNm(i32::from_le_bytes([a, b, c, d])),
+            control: ControlWord(u16::from_le_bytes([e, f])),
+            counter: counter(FrameKind::Torque, count)?,
+        })
+    }
+}
+
+impl Setpoint {
+    /// What a frame of this kind carries.
+    ///
+    /// # Errors
+    /// [`DecodeError`] with the first field that is wrong.
+    pub fn decode(frame: &CanFrame) -> Result<Self, DecodeError> {
+        let [a, b, count, c, d, e, f, g] = bytes(FrameKind::Setpoint, frame, "8 bytes")?;
+        Ok(Self {
+            control: ControlWord(u16::from_le_bytes([a, b])),
+            counter: counter(FrameKind::Setpoint, count)?,
+            position: SetpointFine::from_bytes([c, d, e, f, g]),
+        })
+    }
 }
 
 fn status_word(kind: FrameKind, bytes: [u8; 2]) -> Result<StatusWord, DecodeError> {
@@ -361,7 +402,7 @@ impl Message {
             }
             Self::Sync(count) => CanFrame::of(id, [count.get()]),
             Self::Feedback(feedback) => CanFrame::full(id, feedback.bytes()),
-            Self::Torque(torque) => CanFrame::of(id, torque.bytes()),
+            Self::Torque(torque) => torque.encode(ids),
             Self::Setpoint(setpoint) => CanFrame::full(id, setpoint.bytes()),
             Self::PlantStatus(status) => CanFrame::full(id, status.bytes()),
             Self::Status(status) => CanFrame::full(id, status.bytes()),
@@ -396,10 +437,13 @@ impl Feedback {
 }
 
 impl Torque {
-    const fn bytes(self) -> [u8; 7] {
+    /// The frame of a torque command on an axis.
+    #[must_use]
+    pub fn encode(self, ids: AxisIds) -> CanFrame {
         let [a, b, c, d] = self.torque.0.to_le_bytes();
         let [e, f] = self.control.0.to_le_bytes();
-        [a, b, c, d, e, f, self.counter.get()]
+        let payload = [a, b, c, d, e, f, self.counter.get()];
+        CanFrame::of(ids.identifier(FrameKind::Torque), payload)
     }
 }
 

@@ -44,6 +44,7 @@ impl SyncTracker {
     }
 
     /// A SYNC frame came.
+    #[inline]
     pub fn take(&mut self, counter: SyncCounter) -> SyncEvent {
         let Some(now) = self.now else {
             return self.begin(counter);
@@ -55,6 +56,11 @@ impl SyncTracker {
         if ahead <= SYNC_OVERFLOW / 2 {
             return self.begin(counter);
         }
+        self.take_stale(now, counter)
+    }
+
+    #[cold]
+    fn take_stale(&mut self, now: SyncCounter, counter: SyncCounter) -> SyncEvent {
         let in_sequence = match self.suspect {
             Some((before, times)) if before.next() == counter => times.saturating_add(1),
             _ => 1,

@@ -552,7 +552,7 @@ mod tests {
         assert_same("velocity filter", cascade.velocity_filter.to_num(), 0.6);
         assert_same(
             "torque limit",
-            cascade.torque_limit.0.to_num::<f64>() * newton_per_micro_nm,
+            f64::from(cascade.torque_limit.micro_nm()) * newton_per_micro_nm,
             9000.0,
         );
     }

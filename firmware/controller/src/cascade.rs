@@ -16,8 +16,8 @@
 use fixed::types::{I2F30, I20F12};
 
 use crate::units::{
-    Acceleration, AccelerationGain, PositionError, PositionGain, Torque, Velocity, VelocityGain,
-    narrowed,
+    Acceleration, AccelerationGain, PositionError, PositionGain, Torque, TorqueLimit, Velocity,
+    VelocityGain, narrowed,
 };
 
 /// Gains of the cascade.
@@ -34,7 +34,7 @@ pub struct CascadeConfig {
     /// α: share of the new difference in the velocity filter; 1 switches it off.
     pub velocity_filter: I2F30,
     /// Limit of the commanded torque.
-    pub torque_limit: Torque,
+    pub torque_limit: TorqueLimit,
 }
 
 /// What the cascade gets in one cycle.
@@ -103,10 +103,8 @@ impl CascadeState {
         let off = input.motor_velocity.minus(input.expected_velocity);
         self.velocity = filtered(self.velocity, off, config.velocity_filter);
         let error = setpoint.minus(self.velocity);
-        let integral = self
-            .integral
-            .with(config.integral_gain.times(error))
-            .limited(config.torque_limit);
+        let integral = self.integral.with(config.integral_gain.times(error));
+        let integral = config.torque_limit.cut(integral);
         let direct = config.velocity_gain.times(error);
         let feedforward = config
             .acceleration_gain
@@ -119,17 +117,17 @@ impl CascadeState {
         }
     }
 
-    /// Second half: `commanded` is what is left of it after every limit and filter. Tells whether a
-    /// limit cut it.
+    /// Second half: `commanded_micro_nm` is what is left of it after every limit and filter. Tells
+    /// whether a limit cut it.
     pub fn settle(
         &mut self,
         config: &CascadeConfig,
         proposal: &Proposal,
-        commanded: Torque,
+        commanded_micro_nm: i32,
     ) -> bool {
-        let limit = config.torque_limit;
-        let high = commanded >= limit || proposal.torque > limit;
-        let low = commanded <= limit.reversed() || proposal.torque < limit.reversed();
+        let (high, low) = config
+            .torque_limit
+            .stops(commanded_micro_nm, proposal.torque);
         if !(high && proposal.error > Velocity::ZERO || low && proposal.error < Velocity::ZERO) {
             self.integral = proposal.integral;
         }
@@ -163,7 +161,7 @@ mod tests {
         CascadeConfig {
             velocity_gain: VelocityGain(I20F12::from_num(1000)),
             integral_gain: VelocityGain(I20F12::from_num(100)),
-            torque_limit: Torque::from_micro_nm(50_000),
+            torque_limit: TorqueLimit::from_micro_nm(50_000),
             velocity_filter: I2F30::ONE,
             ..CascadeConfig::default()
         }
@@ -176,9 +174,9 @@ mod tests {
         }
     }
 
-    fn step(state: &mut CascadeState, velocity_setpoint: i32) -> (Torque, bool) {
+    fn step(state: &mut CascadeState, velocity_setpoint: i32) -> (i32, bool) {
         let proposal = state.propose(&config(), &input(velocity_setpoint));
-        let commanded = proposal.torque.limited(config().torque_limit);
+        let commanded = config().torque_limit.cut_to_micro_nm(proposal.torque);
         (commanded, state.settle(&config(), &proposal, commanded))
     }
 
@@ -186,22 +184,17 @@ mod tests {
     fn the_integral_stands_still_at_the_limit_and_comes_back_at_once() {
         let mut state = CascadeState::default();
         for _ in 0..1000 {
-            assert_eq!(step(&mut state, 200), (Torque::from_micro_nm(50_000), true));
+            assert_eq!(step(&mut state, 200), (50_000, true));
         }
         assert_eq!(state.integral(), Torque::ZERO);
         let (torque, limited) = step(&mut state, -10);
-        assert!(
-            torque < Torque::ZERO && !limited,
-            "no stored torque to undo"
-        );
+        assert!(torque < 0 && !limited, "no stored torque to undo");
     }
 
     #[test]
     fn below_the_limit_the_integral_takes_over() {
         let mut state = CascadeState::default();
-        let torques: Vec<i32> = (0..5)
-            .map(|_| step(&mut state, 10).0.to_micro_nm_lossy())
-            .collect();
+        let torques: Vec<i32> = (0..5).map(|_| step(&mut state, 10).0).collect();
         assert_eq!(torques, [11_000, 12_000, 13_000, 14_000, 15_000]);
     }
 }

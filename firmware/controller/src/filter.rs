@@ -3,14 +3,11 @@
 //! `y0 = b0 x0 + b1 x1 + b2 x2 + a1 y1 + a2 y2` (a's with the sign of this equation), direct form
 //! 1, coefficients in Q29 computed on the host. What rounding cuts off is carried into the next
 //! cycle (first-order error feedback), so that the gain at rest is exact and small torques do not
-//! stick. Headroom: inputs and outputs stay within [`TORQUE_LIMIT_MICRO_NM`] < 2²⁸, and
+//! stick. Headroom: inputs and outputs stay within [`TorqueLimit::LARGEST_MICRO_NM`] < 2²⁸, and
 //! [`FilterConfig::new`] takes no set whose magnitudes add up to more than 7 < 2³, so the
 //! accumulator stays below 2⁶⁰.
 
-use crate::units::{Torque, narrowed};
-
-/// Largest torque limit that the drive takes: 250 N·m.
-pub const TORQUE_LIMIT_MICRO_NM: i32 = 250_000_000;
+use crate::units::{Torque, TorqueLimit, narrowed};
 
 /// Fractional bits of a coefficient.
 pub const COEFFICIENT_FRACTION_BITS: u32 = 29;
@@ -97,18 +94,14 @@ impl FilterState {
         }
     }
 
-    /// Filters one torque; both sides within `±limit`, which is whole µN·m.
-    pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: Torque) -> Torque {
-        let limit = limit.whole_micro_nm().clamp(0, TORQUE_LIMIT_MICRO_NM);
-        let x0 = torque
-            .to_micro_nm_lossy()
-            .max(limit.saturating_neg())
-            .min(limit);
+    /// Filters one torque, cut to a limit before and after; gives whole µN·m.
+    pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: TorqueLimit) -> i32 {
+        let x0 = limit.cut_to_micro_nm(torque);
         let [x1, x2, y1, y2] = self.past;
         if config.is_off {
             // What the sum below comes to.
             self.past = [x0, x1, x0, y1];
-            return Torque::from_micro_nm(x0);
+            return x0;
         }
         let products = config.coefficients.into_iter().zip([x0, x1, x2, y1, y2]);
         // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the
@@ -116,11 +109,10 @@ impl FilterState {
         let sum = products.fold(self.rest, |sum, (c, v)| {
             sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v)))
         });
-        let whole = narrowed::<COEFFICIENT_FRACTION_BITS>(sum);
-        let y0 = whole.max(limit.saturating_neg()).min(limit);
+        let y0 = limit.cut_micro_nm(narrowed::<COEFFICIENT_FRACTION_BITS>(sum));
         self.rest = sum & REST_MASK;
         self.past = [x0, x1, y0, y1];
-        Torque::from_micro_nm(y0)
+        y0
     }
 }
 
@@ -134,28 +126,24 @@ mod tests {
     #[test]
     fn off_passes_every_torque_within_the_limit() {
         let mut state = FilterState::default();
-        let limit = Torque::from_micro_nm(1_000_000);
+        let limit = TorqueLimit::from_micro_nm(1_000_000);
         for torque in [0, 1, -1, 999_999, -1_000_000] {
             let out = state.step(&FilterConfig::OFF, Torque::from_micro_nm(torque), limit);
-            assert_eq!(out.to_micro_nm_lossy(), torque);
+            assert_eq!(out, torque);
         }
-        assert_eq!(
-            state.step(&FilterConfig::OFF, Torque::from_micro_nm(2_000_000), limit),
-            limit
-        );
+        let beyond = Torque::from_micro_nm(2_000_000);
+        assert_eq!(state.step(&FilterConfig::OFF, beyond, limit), 1_000_000);
     }
 
     #[test]
     fn a_one_pole_low_pass_has_gain_one_at_rest() {
         // y += 0.25 (x − y), in Q29.
         let config = FilterConfig::new([1 << 27, 0, 0, 3 << 27, 0]).unwrap();
-        let (mut state, limit) = (
-            FilterState::default(),
-            Torque::from_micro_nm(TORQUE_LIMIT_MICRO_NM),
-        );
-        let mut out = Torque::ZERO;
+        let mut state = FilterState::default();
+        let limit = TorqueLimit::from_micro_nm(TorqueLimit::LARGEST_MICRO_NM);
+        let mut out = 0;
         (0..100).for_each(|_| out = state.step(&config, Torque::from_micro_nm(1_000_000), limit));
-        assert!((out.to_micro_nm_lossy() - 1_000_000).abs() <= 1);
+        assert!((out - 1_000_000).abs() <= 1);
     }
 
     #[test]

@@ -328,13 +328,11 @@ pub fn step(config: &Config, state: &mut State, input: &Input) -> Output {
         },
     );
     let limit = config.cascade.torque_limit;
-    let torque = state
-        .filter
-        .step(&config.filter, proposal.torque.limited(limit), limit);
-    let limited = state.cascade.settle(&config.cascade, &proposal, torque);
+    let micro_nm = state.filter.step(&config.filter, proposal.torque, limit);
+    let limited = state.cascade.settle(&config.cascade, &proposal, micro_nm);
     state.refine(config, (setpoint, reference.position), limited);
     Output {
-        torque,
+        torque: Torque::from_micro_nm(micro_nm),
         following_error,
         limited,
     }

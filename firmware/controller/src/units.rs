@@ -8,8 +8,9 @@
 //! | [`Acceleration`] | 10 nm per cycle² | `I20F12` | ±5.2 km/s² at 1 kHz, 2.4 µm/s² |
 //! | [`Torque`] | µN·m | `I40F24` | ±550 kN·m |
 //!
-//! Every sum saturates, but for those of the law's torques, whose terms are bounded so that it has
-//! room. Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
+//! Every sum saturates, but for those that have room: of the law's torques, whose terms are bounded,
+//! and of positions, which have 2⁶³ of 39 pm to go (a way of a cycle is 2³¹ of them at most, so that
+//! takes 50 days at 84 m/s). Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
 //! cannot overflow, and saturate only when they are brought back to 32 bits.
 
 use fixed::types::{I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};
@@ -65,14 +66,14 @@ impl Position {
     /// `self − other` as an error.
     #[must_use]
     pub fn error_from(self, other: Self) -> PositionError {
-        let way = self.0.saturating_sub(other.0);
+        let way = self.0.wrapping_sub(other.0);
         PositionError(I24F8::from_bits(saturated(way.to_bits())))
     }
 
     /// Way from `earlier` to `self` within one cycle.
     #[must_use]
     pub fn step_from(self, earlier: Self) -> Velocity {
-        let way = self.0.saturating_sub(earlier.0);
+        let way = self.0.wrapping_sub(earlier.0);
         Velocity(I20F12::from_bits(sixteenfold(saturated(way.to_bits()))))
     }
 
@@ -83,16 +84,23 @@ impl Position {
         Velocity(way.0.checked_div_int(i32::from(cycles)).unwrap_or(way.0))
     }
 
+    /// The position so many counts of 10 nm beyond `self`.
+    #[must_use]
+    pub fn moved_by_counts(self, counts: i32) -> Self {
+        let way = i64::from(counts).wrapping_shl(8);
+        Self(self.0.wrapping_add(I56F8::from_bits(way)))
+    }
+
     /// The position that far beyond `self`, for ways of any length.
     #[must_use]
     pub fn moved(self, way: Self) -> Self {
-        Self(self.0.saturating_add(way.0))
+        Self(self.0.wrapping_add(way.0))
     }
 
     /// Where a constant velocity leads within one cycle.
     #[must_use]
     pub fn after(self, velocity: Velocity) -> Self {
-        Self(self.0.saturating_add(I56F8::wrapping_from_num(velocity.0)))
+        Self(self.0.wrapping_add(I56F8::wrapping_from_num(velocity.0)))
     }
 }
 
@@ -122,6 +130,13 @@ impl PositionError {
     #[must_use]
     pub fn magnitude(self) -> Self {
         Self(self.0.saturating_abs())
+    }
+
+    /// Whether it is more than a limit, either way; a negative limit counts as zero.
+    #[must_use]
+    pub fn is_beyond(self, limit: Self) -> bool {
+        let limit = limit.0.max(I24F8::ZERO).to_bits().cast_unsigned();
+        self.0.to_bits().unsigned_abs() > limit
     }
 }
 
@@ -248,12 +263,65 @@ impl Torque {
     pub fn reversed(self) -> Self {
         Self(self.0.saturating_neg())
     }
+}
 
-    /// `self` limited to `±limit`; a negative limit counts as zero.
+/// Largest torque either way, in whole µN·m: at most [`Self::LARGEST_MICRO_NM`], never negative.
+/// What a cycle needs of it is made once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TorqueLimit {
+    micro_nm: i32,
+    high: Torque,
+    low: Torque,
+}
+
+impl TorqueLimit {
+    /// The largest limit that the drive takes: 250 N·m, below 2²⁸.
+    pub const LARGEST_MICRO_NM: i32 = 250_000_000;
+
+    /// From µN·m; what is negative counts as zero, what is larger as the largest.
     #[must_use]
-    pub fn limited(self, limit: Self) -> Self {
-        let limit = limit.0.max(I40F24::ZERO);
-        Self(self.0.min(limit).max(limit.saturating_neg()))
+    pub fn from_micro_nm(limit: i32) -> Self {
+        let micro_nm = limit.clamp(0, Self::LARGEST_MICRO_NM);
+        Self {
+            micro_nm,
+            high: Torque::from_micro_nm(micro_nm),
+            low: Torque::from_micro_nm(micro_nm.saturating_neg()),
+        }
+    }
+
+    /// In µN·m.
+    #[must_use]
+    pub const fn micro_nm(self) -> i32 {
+        self.micro_nm
+    }
+
+    /// A torque brought within it.
+    #[must_use]
+    pub fn cut(self, torque: Torque) -> Torque {
+        torque.min(self.high).max(self.low)
+    }
+
+    /// The same in whole µN·m, to nearest; what is amid two goes away from zero.
+    pub(crate) fn cut_to_micro_nm(self, torque: Torque) -> i32 {
+        let bits = self.cut(torque).0.to_bits();
+        let half = (1_i64 << 23).wrapping_add(bits.wrapping_shr(63));
+        // Below 2⁵² of the last bits, and the limit is whole: nothing is lost, and it stays within.
+        lower(bits.wrapping_add(half).wrapping_shr(24))
+    }
+
+    /// Whole µN·m brought within it.
+    pub(crate) fn cut_micro_nm(self, micro_nm: i32) -> i32 {
+        micro_nm
+            .min(self.micro_nm)
+            .max(self.micro_nm.wrapping_neg())
+    }
+
+    /// Whether a command is at the limit, or a torque that is wanted beyond it: above, below.
+    pub(crate) fn stops(self, commanded_micro_nm: i32, wanted: Torque) -> (bool, bool) {
+        (
+            commanded_micro_nm >= self.micro_nm || wanted > self.high,
+            commanded_micro_nm <= self.micro_nm.wrapping_neg() || wanted < self.low,
+        )
     }
 }
 
@@ -455,6 +523,17 @@ mod tests {
             let quarter = 1_i64 << 61;
             let raised_product = I40F24::saturating_from_num(product).to_bits().clamp(-quarter, quarter - 1);
             prop_assert_eq!(raised::<4>(wide), raised_product);
+        }
+
+        #[test]
+        fn a_cut_torque_is_rounded_as_the_fixed_crate_does(wide in any::<i64>(), small in 0_u32..64, limit in any::<i32>()) {
+            let torque = Torque(I40F24::from_bits(wide.wrapping_shr(small)));
+            let limit = TorqueLimit::from_micro_nm(limit);
+            let within = I40F24::from_num(limit.micro_nm());
+            prop_assert!((0..=TorqueLimit::LARGEST_MICRO_NM).contains(&limit.micro_nm()));
+            let cut = torque.0.clamp(-within, within);
+            prop_assert_eq!(limit.cut(torque).0, cut);
+            prop_assert_eq!(limit.cut_to_micro_nm(torque), cut.round().to_num::<i32>());
         }
 
         #[test]

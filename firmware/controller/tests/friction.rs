@@ -15,7 +15,8 @@ use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
 use controller::ripple::RippleConfig;
 use controller::units::{
-    Acceleration, AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain,
+    Acceleration, AccelerationGain, Position, PositionGain, Torque, TorqueLimit, Velocity,
+    VelocityGain,
 };
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8, U17F15};
@@ -497,7 +498,7 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
         velocity_gain: VelocityGain(I20F12::from_num(2794)),
         integral_gain: VelocityGain(I20F12::from_num(131.6)),
         velocity_filter: I2F30::ONE,
-        torque_limit: Torque::from_micro_nm(14_000_000),
+        torque_limit: TorqueLimit::from_micro_nm(14_000_000),
         ..CascadeConfig::default()
     };
     // Beyond the factors and the viscous part, which go with the speed, nothing changes.

@@ -7,7 +7,9 @@ use controller::filter::FilterConfig;
 use controller::pulse::PulseConfig;
 use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::ripple::RippleConfig;
-use controller::units::{AccelerationGain, Position, PositionGain, Torque, Velocity, VelocityGain};
+use controller::units::{
+    AccelerationGain, Position, PositionGain, Torque, TorqueLimit, Velocity, VelocityGain,
+};
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8};
 
@@ -40,7 +42,7 @@ fn config() -> Config {
             integral_gain: VelocityGain(I20F12::from_num(131.6)),
             acceleration_gain: AccelerationGain(I24F8::from_num(14_827)),
             velocity_filter: I2F30::from_num(0.6),
-            torque_limit: Torque::from_micro_nm(14_323_944),
+            torque_limit: TorqueLimit::from_micro_nm(14_323_944),
         },
         pulse: PulseConfig::default(),
         backlash: BacklashConfig::default(),

@@ -95,10 +95,8 @@ impl Twin {
             self.config.pulse.shape.amplitude.0.to_num(),
             self.config.pulse.shape.decay.to_num(),
         );
-        let (limit, coulomb): (f64, f64) = (
-            cascade.torque_limit.0.to_num(),
-            self.config.coulomb.0.to_num(),
-        );
+        let limit = f64::from(cascade.torque_limit.micro_nm());
+        let coulomb: f64 = self.config.coulomb.0.to_num();
         let motor_velocity = motor - self.motor.replace(motor).unwrap_or(motor);
         self.pulse *= decay;
         if path.next_velocity != 0.0 {

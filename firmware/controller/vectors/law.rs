@@ -13,7 +13,8 @@ use controller::pulse::{PulseConfig, Shape};
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
 use controller::ripple::RippleConfig;
 use controller::units::{
-    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
+    AccelerationGain, Position, PositionError, PositionGain, Torque, TorqueLimit, Velocity,
+    VelocityGain,
 };
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I8F24, I20F12, I24F8, I56F8};
@@ -60,7 +61,7 @@ pub fn config(source: PositionSource) -> Config {
             integral_gain: VelocityGain(I20F12::from_num(INTEGRAL_GAIN)),
             acceleration_gain: AccelerationGain(I24F8::from_num(ACCELERATION_GAIN)),
             velocity_filter: I2F30::from_num(FILTER_SHARE),
-            torque_limit: Torque::from_micro_nm(LIMIT as i32),
+            torque_limit: TorqueLimit::from_micro_nm(LIMIT as i32),
         },
         pulse: PulseConfig {
             shape: Shape {

@@ -99,7 +99,7 @@ impl Axis {
         let expected = self.expects_setpoint(settings);
         let measured = self.measure(settings, contents.feedback, notices);
         self.watch_setpoints(settings, contents, expected, notices);
-        if circumstances.listens {
+        if circumstances.listens && !self.goes_on(contents) {
             self.follow_control_word(settings, contents, circumstances, notices);
         }
         let refused = self.control_axis(settings, contents, measured, notices);
@@ -247,6 +247,13 @@ impl Axis {
         }
     }
 
+    /// The control word of an axis in operation is the one that has brought it there: nothing comes
+    /// of it.
+    fn goes_on(&self, contents: &Contents) -> bool {
+        let same = |setpoint: Setpoint| setpoint.control == self.control;
+        self.drive == Drive::OperationEnabled && contents.preview.is_ok_and(same)
+    }
+
     fn follow_control_word(
         &mut self,
         settings: &Settings,
@@ -305,7 +312,10 @@ impl Axis {
             Some(Fault::EncoderRelation)
         } else if !self.stage.is_ready() {
             Some(Fault::StageRefused)
-        } else if setpoint.error_from(at).magnitude() > settings.limits.enable_window {
+        } else if setpoint
+            .error_from(at)
+            .is_beyond(settings.limits.enable_window)
+        {
             Some(Fault::ReferenceTooFar)
         } else {
             None
@@ -422,6 +432,9 @@ impl Axis {
     }
 
     fn advance(&mut self, settings: &Settings, standing: bool, notices: &mut Notices) {
+        if self.drive == Drive::OperationEnabled && self.stage.is_enabled() {
+            return;
+        }
         let patience = Patience {
             stage: settings.limits.stage_cycles,
             brake_opens: settings.brake.open_cycles,
@@ -460,7 +473,7 @@ impl Axis {
         self.last.following_error = following_error;
         self.last.limited = limited || reference.limited;
         self.last.torque = torque;
-        if following_error.magnitude() > settings.limits.following_error
+        if following_error.is_beyond(settings.limits.following_error)
             && self.drive.fault().is_none()
         {
             self.latch(Fault::FollowingError, settings, notices);

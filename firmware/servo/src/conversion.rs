@@ -26,8 +26,8 @@ use controller::friction::{
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::ripple::{RippleConfig, Wave};
 use controller::units::{
-    AccelerationGain, Position, PositionError, PositionGain, Torque, Velocity, VelocityGain,
-    WayPerIncrement,
+    AccelerationGain, Position, PositionError, PositionGain, Torque, TorqueLimit, Velocity,
+    VelocityGain, WayPerIncrement,
 };
 use controller::{Config, PositionSource};
 use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8, U17F15};
@@ -227,7 +227,7 @@ impl Reading<'_> {
             integral_gain: VelocityGain(I20F12::from_bits(self.integral_gain()?)),
             acceleration_gain: AccelerationGain(I24F8::from_bits(self.acceleration_gain()?)),
             velocity_filter: I2F30::ONE.saturating_sub(self.decay(Parameter::VelocityFilterTime)),
-            torque_limit: self.torque(Parameter::TorqueLimit),
+            torque_limit: TorqueLimit::from_micro_nm(self.raw(Parameter::TorqueLimit)),
         })
     }
 
@@ -1224,7 +1224,7 @@ mod tests {
             let cascade = settings.config.cascade;
             assert_eq!(
                 (cascade.torque_limit, cascade.position_gain),
-                (Torque::ZERO, PositionGain::default())
+                (TorqueLimit::default(), PositionGain::default())
             );
             assert_eq!(
                 settings.limits.sync_timeout_us,

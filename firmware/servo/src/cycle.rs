@@ -26,7 +26,7 @@ impl Servo {
     pub fn wake_at_us(&self) -> Option<u64> {
         let heartbeat = self
             .timing
-            .sync_due_us()
+            .began_us()
             .is_none()
             .then(|| self.periodic.heartbeat_due_us())
             .flatten();
@@ -77,7 +77,7 @@ impl Servo {
             }
         } else if self.next_begin_us().is_some_and(|due| due <= now_us) {
             self.go_on_without_sync(now_us);
-        } else if self.timing.sync_due_us().is_none() {
+        } else if self.timing.began_us().is_none() {
             self.beat(now_us);
         }
     }
@@ -114,7 +114,7 @@ impl Servo {
     }
 
     pub(crate) fn begin_by_sync(&mut self, counter: SyncCounter, now_us: u64) {
-        let first = self.timing.sync_due_us().is_none();
+        let first = self.timing.began_us().is_none();
         self.timing.begin_by_sync(now_us, counter);
         if first {
             self.periodic.beat_now(now_us);
@@ -144,6 +144,13 @@ impl Servo {
 
     /// A committed set becomes active as a whole, between two cycles.
     pub(crate) fn activate(&mut self) {
+        if self.committed.is_some() {
+            self.activate_committed();
+        }
+    }
+
+    #[cold]
+    fn activate_committed(&mut self) {
         if let Some(settings) = self.committed.take() {
             self.timing.set_period(settings.period_us);
             self.axis.begin_set(self.active.as_ref(), &settings);

@@ -72,19 +72,20 @@ struct Track {
 struct Followed {
     at: Position,
     velocity: Velocity,
-    /// The last position that was read.
-    good: Position,
-    /// Cycles since then.
+    /// Cycles since the last reading.
     predicted_cycles: u16,
+    /// The last position that was read, where that is longer ago.
+    good: Position,
 }
 
-/// Raw counts of the last good feedback, and the counts from which the motor's position is counted.
+/// Raw counts of the last good feedback, the counts from which the motor's position is counted, and
+/// where the load scale stood.
 #[derive(Clone, Copy, Debug)]
 struct Raw {
     base_counts: i32,
     base: Position,
     load: LoadIncrements24,
-    load_counts: i64,
+    load_at: Position,
 }
 
 impl Encoders {
@@ -113,7 +114,7 @@ impl Encoders {
     #[must_use]
     pub fn relation_holds(&self, relation: Relation) -> bool {
         self.track
-            .is_some_and(|track| track.relation_error.magnitude() <= relation.window)
+            .is_some_and(|track| !track.relation_error.is_beyond(relation.window))
     }
 
     /// Takes a feedback.
@@ -131,9 +132,9 @@ impl Encoders {
             return Ok(self.track.insert(Track::first(feedback, encoding)).at());
         };
         let scale_is_true = track.take(feedback, encoding)?;
-        self.scale_warnings = self
-            .scale_warnings
-            .saturating_add(u32::from(!scale_is_true));
+        if !scale_is_true {
+            self.scale_warnings = self.scale_warnings.saturating_add(1);
+        }
         Ok(track.at())
     }
 
@@ -178,8 +179,8 @@ impl Followed {
         Self {
             at,
             velocity: Velocity::ZERO,
-            good: at,
             predicted_cycles: 0,
+            good: at,
         }
     }
 
@@ -187,25 +188,27 @@ impl Followed {
     /// is what it may be beside what was expected, for each cycle since then.
     fn reached(&self, position: Position, jump: PositionError) -> Option<Velocity> {
         let way = position.error_from(self.at);
-        let off = way.minus(self.velocity.way_lossy()).magnitude();
+        let off = way.minus(self.velocity.way_lossy());
         if self.predicted_cycles == 0 {
             // The last position was good, and this is the way since then.
-            return (off <= jump).then(|| way.in_a_cycle());
+            return (!off.is_beyond(jump)).then(|| way.in_a_cycle());
         }
         let cycles = self.predicted_cycles.saturating_add(1);
         let allowed = PositionError(jump.0.saturating_mul_int(i32::from(cycles)));
-        (off <= allowed).then(|| position.velocity_since(self.good, cycles))
+        (!off.is_beyond(allowed)).then(|| position.velocity_since(self.good, cycles))
     }
 
     const fn take(&mut self, position: Position, velocity: Velocity) {
-        *self = Self {
-            velocity,
-            ..Self::standing(position)
-        };
+        self.at = position;
+        self.velocity = velocity;
+        self.predicted_cycles = 0;
     }
 
     /// A cycle without a reading.
     fn go_on(&mut self, change: Velocity) {
+        if self.predicted_cycles == 0 {
+            self.good = self.at;
+        }
         self.velocity = self.velocity.plus(change);
         self.at = self.at.after(self.velocity);
         self.predicted_cycles = self.predicted_cycles.saturating_add(1);
@@ -222,11 +225,11 @@ impl Track {
             base_counts: feedback.motor.0,
             base: motor,
             load: feedback.load,
-            load_counts,
+            load_at: Position::from_counts(load_counts),
         };
         Self {
             motor: Followed::standing(motor),
-            load: Followed::standing(Position::from_counts(load_counts)),
+            load: Followed::standing(raw.load_at),
             raw,
             relation_error,
         }
@@ -244,10 +247,7 @@ impl Track {
     fn take(&mut self, feedback: Feedback, encoding: &Encoding) -> Result<bool, Implausible> {
         let raw = &mut self.raw;
         let motor = raw.motor_position(feedback.motor, encoding.way);
-        let load_counts = raw
-            .load_counts
-            .saturating_add(i64::from(raw.load.step_to(feedback.load)));
-        let load = Position::from_counts(load_counts);
+        let load = raw.load_at.moved_by_counts(raw.load.step_to(feedback.load));
         let velocity = self.motor.reached(motor, encoding.jump);
         let load_velocity = self.load.reached(load, encoding.jump);
         let velocity = velocity.ok_or(Implausible)?;
@@ -259,7 +259,7 @@ impl Track {
         match load_velocity {
             Some(velocity) => {
                 raw.load = feedback.load;
-                raw.load_counts = load_counts;
+                raw.load_at = load;
                 self.load.take(load, velocity);
             }
             None => self.load.go_on(Velocity::ZERO),

@@ -2,7 +2,7 @@
 
 use protocol::cob::{FrameKind, NodeId};
 use protocol::message::{
-    self, Decoded, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint,
+    self, DecodeError, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint,
 };
 use protocol::sdo::Request;
 use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent};
@@ -28,27 +28,56 @@ impl Servo {
         self.outbox.clear();
         self.start_clock(now_us);
         self.catch_up(now_us);
-        match message::decode(self.ids, frame) {
-            Ok(Decoded::Foreign) => {}
-            Ok(Decoded::Message(message)) => self.on_message(message, now_us),
-            Err(error) => self.on_malformed(error.kind),
+        if let Some(kind) = message::kind_of(self.ids, frame)
+            && let Err(error) = self.on_known(kind, frame, now_us)
+        {
+            self.on_malformed(error.kind);
         }
         self.close_if_complete();
         &self.outbox
     }
 
+    /// What comes in every cycle is taken as it is, and not as one of thirteen messages.
+    fn on_known(
+        &mut self,
+        kind: FrameKind,
+        frame: &CanFrame,
+        now_us: u64,
+    ) -> Result<(), DecodeError> {
+        match kind {
+            FrameKind::Sync => self.on_sync(SyncCounter::decode(frame)?, now_us),
+            FrameKind::Setpoint => self.on_setpoint(Setpoint::decode(frame)?, now_us),
+            FrameKind::Feedback => self.on_feedback(Feedback::decode(frame)?, now_us),
+            FrameKind::Nmt
+            | FrameKind::Torque
+            | FrameKind::PlantStatus
+            | FrameKind::Status
+            | FrameKind::ServoHeartbeat
+            | FrameKind::PlantHeartbeat
+            | FrameKind::ServoEmergency
+            | FrameKind::PlantEmergency
+            | FrameKind::SdoRequest
+            | FrameKind::SdoResponse => {
+                self.on_message(message::decode_as(kind, frame)?, now_us);
+            }
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
     fn on_message(&mut self, message: Message, now_us: u64) {
         match message {
             Message::Nmt(command, node) => self.on_nmt(command, node),
-            Message::Sync(counter) => self.on_sync(counter, now_us),
-            Message::Setpoint(setpoint) => self.on_setpoint(setpoint, now_us),
-            Message::Feedback(feedback) => self.on_feedback(feedback, now_us),
             Message::PlantStatus(status) => self.on_plant_status(status),
             Message::PlantHeartbeat(state) => self.on_plant_heartbeat(state, now_us),
             Message::PlantEmergency(emergency) => self.on_plant_emergency(emergency),
             Message::SdoRequest(request) => self.on_sdo(request),
-            // Our own frames, or those of a second servo with our id: nothing to do with them.
-            Message::Torque(_)
+            // Taken before; our own frames, or those of a second servo with our id: nothing to do
+            // with them.
+            Message::Sync(_)
+            | Message::Setpoint(_)
+            | Message::Feedback(_)
+            | Message::Torque(_)
             | Message::Status(_)
             | Message::ServoHeartbeat(_)
             | Message::ServoEmergency(_)

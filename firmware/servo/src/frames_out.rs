@@ -71,11 +71,13 @@ impl Servo {
             return;
         };
         let torque = TorqueMicroNm(stage.torque.whole_micro_nm());
-        self.send(Message::Torque(message::Torque {
+        let torque = message::Torque {
             torque,
             control: stage.control,
             counter,
-        }));
+        };
+        // As in `send`.
+        let _ = self.outbox.push(torque.encode(self.ids));
     }
 
     pub(crate) fn send_periodic(&mut self) {
@@ -140,6 +142,13 @@ impl Servo {
     }
 
     pub(crate) fn send_notices(&mut self, notices: &Notices) {
+        if !notices.is_empty() {
+            self.send_all(notices);
+        }
+    }
+
+    #[cold]
+    fn send_all(&mut self, notices: &Notices) {
         let counter = self.inbox.counter().map_or(0, SyncCounter::get);
         for notice in notices {
             let message = match notice {

@@ -116,12 +116,20 @@ impl Inbox {
     /// A preview that came after its cycle was closed is the setpoint of the cycle that begins;
     /// before the first SYNC the newest setpoint waits for the cycle that it names.
     fn keep_what_is_due(&mut self, counter: SyncCounter) {
-        let early = match self.counter {
-            None => self.contents.present,
-            Some(_) if self.preview_used => None,
-            Some(_) => self.contents.preview.ok(),
-        };
-        self.contents.present = early.filter(|setpoint| setpoint.counter == counter);
+        if self.counter.is_some() {
+            self.contents.present = None;
+            if self.preview_used {
+                return;
+            }
+            self.contents.present = self.contents.preview.ok();
+        }
+        if self
+            .contents
+            .present
+            .is_some_and(|setpoint| setpoint.counter != counter)
+        {
+            self.contents.present = None;
+        }
     }
 
     /// Closes the present cycle.

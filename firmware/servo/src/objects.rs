@@ -286,7 +286,7 @@ const POSITIVE: (i32, i32) = (0, i32::MAX);
 const EVERY: (i32, i32) = (i32::MIN, i32::MAX);
 const SWITCH: (i32, i32) = (0, 1);
 const FREQUENCY: (i32, i32) = (0, 10_000_000);
-const TORQUE: i32 = controller::filter::TORQUE_LIMIT_MICRO_NM;
+const TORQUE: i32 = controller::units::TorqueLimit::LARGEST_MICRO_NM;
 const SIGNED_TORQUE: (i32, i32) = (-TORQUE, TORQUE);
 /// A coefficient of the filter is below 4.
 const COEFFICIENT: (i32, i32) = (-i32::MAX, i32::MAX);

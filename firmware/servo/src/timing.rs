@@ -16,31 +16,28 @@ use protocol::SyncCounter;
 /// Times of the cycles.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing {
-    period_us: u32,
-    cycle: Option<Cycle>,
+    spans: Spans,
+    /// When the present cycle began.
+    began_us: Option<u64>,
     sync: Option<(u64, SyncCounter)>,
     odd_intervals: u8,
 }
 
-/// When the present cycle began, and what follows from that: taken once a cycle, asked for at every
-/// frame.
+/// What follows from a period, taken once for all cycles; from the beginning of a cycle on.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "what they share is their unit")]
-struct Cycle {
-    began_us: u64,
-    deadline_us: u64,
-    sync_due_us: u64,
-    own_timer_us: u64,
+struct Spans {
+    period_us: u32,
+    deadline_us: u32,
+    own_timer_us: u32,
 }
 
-impl Cycle {
-    fn of(began_us: u64, period_us: u32) -> Self {
-        let sync_due_us = began_us.saturating_add(u64::from(period_us));
+impl Spans {
+    const fn of(period_us: u32) -> Self {
         Self {
-            began_us,
-            deadline_us: began_us.saturating_add(tenths(period_us, DEADLINE_TENTHS)),
-            sync_due_us,
-            own_timer_us: sync_due_us.saturating_add(tenths(period_us, PATIENCE_TENTHS)),
+            period_us,
+            deadline_us: tenths(period_us, DEADLINE_TENTHS),
+            own_timer_us: period_us.saturating_add(tenths(period_us, PATIENCE_TENTHS)),
         }
     }
 }
@@ -59,24 +56,21 @@ impl Timing {
     #[must_use]
     pub const fn new(period_us: u32) -> Self {
         Self {
-            period_us,
-            cycle: None,
+            spans: Spans::of(period_us),
+            began_us: None,
             sync: None,
             odd_intervals: 0,
         }
     }
 
     /// The same node with the period of another parameter set.
-    pub fn set_period(&mut self, period_us: u32) {
-        self.period_us = period_us;
+    pub const fn set_period(&mut self, period_us: u32) {
+        self.spans = Spans::of(period_us);
         self.odd_intervals = 0;
-        if let Some(cycle) = self.cycle {
-            self.begin(cycle.began_us);
-        }
     }
 
-    fn begin(&mut self, at_us: u64) {
-        self.cycle = Some(Cycle::of(at_us, self.period_us));
+    const fn begin(&mut self, at_us: u64) {
+        self.began_us = Some(at_us);
     }
 
     /// A cycle begins with a SYNC frame.
@@ -94,7 +88,7 @@ impl Timing {
     /// belongs to this cycle by its time.
     pub fn confirm(&mut self, now_us: u64, counter: SyncCounter) {
         self.note_sync(now_us, counter);
-        let half = u64::from(self.period_us >> 1);
+        let half = u64::from(self.spans.period_us >> 1);
         if self
             .began_us()
             .is_none_or(|began| now_us.saturating_sub(began) < half)
@@ -105,10 +99,10 @@ impl Timing {
 
     fn note_sync(&mut self, now_us: u64, counter: SyncCounter) {
         if let Some((last_us, last)) = self.sync {
-            let cycles = u64::from(counter.cycles_since(last));
-            let wanted = cycles.saturating_mul(u64::from(self.period_us));
-            let got = now_us.saturating_sub(last_us);
-            let odd = got.abs_diff(wanted) > u64::from(self.period_us >> 2);
+            let period_us = self.spans.period_us;
+            let wanted_us = u32::from(counter.cycles_since(last)).saturating_mul(period_us);
+            let got_us = u32::try_from(now_us.saturating_sub(last_us)).unwrap_or(u32::MAX);
+            let odd = got_us.abs_diff(wanted_us) > period_us >> 2;
             self.odd_intervals = if odd {
                 self.odd_intervals.saturating_add(1)
             } else {
@@ -126,26 +120,31 @@ impl Timing {
 
     /// When the present cycle began.
     #[must_use]
-    pub fn began_us(&self) -> Option<u64> {
-        self.cycle.map(|cycle| cycle.began_us)
+    pub const fn began_us(&self) -> Option<u64> {
+        self.began_us
     }
 
     /// When the present cycle closes without its frames.
     #[must_use]
     pub fn deadline_us(&self) -> Option<u64> {
-        self.cycle.map(|cycle| cycle.deadline_us)
+        self.after(self.spans.deadline_us)
     }
 
     /// When the next SYNC is due.
     #[must_use]
     pub fn sync_due_us(&self) -> Option<u64> {
-        self.cycle.map(|cycle| cycle.sync_due_us)
+        self.after(self.spans.period_us)
     }
 
     /// When the node goes on without it.
     #[must_use]
     pub fn own_timer_us(&self) -> Option<u64> {
-        self.cycle.map(|cycle| cycle.own_timer_us)
+        self.after(self.spans.own_timer_us)
+    }
+
+    fn after(&self, span_us: u32) -> Option<u64> {
+        let began_us = self.began_us?;
+        Some(began_us.saturating_add(u64::from(span_us)))
     }
 
     /// Whether the last SYNC frame is longer ago than a timeout.
@@ -158,18 +157,18 @@ impl Timing {
     /// So many periods, µs.
     #[must_use]
     pub fn periods_us(&self, periods: u16) -> u64 {
-        u64::from(self.period_us).saturating_mul(u64::from(periods))
+        u64::from(self.spans.period_us).saturating_mul(u64::from(periods))
     }
 
     /// Forgets the phase: the next SYNC is the first.
     pub const fn stop(&mut self) {
-        *self = Self::new(self.period_us);
+        *self = Self::new(self.spans.period_us);
     }
 }
 
 /// Tenths of a period; a period is at most 20 000 µs, so the product fits.
-fn tenths(period_us: u32, tenths: u32) -> u64 {
-    u64::from(period_us.saturating_mul(tenths) / 10)
+const fn tenths(period_us: u32, tenths: u32) -> u32 {
+    period_us.saturating_mul(tenths) / 10
 }
 
 #[cfg(test)]

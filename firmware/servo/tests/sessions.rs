@@ -668,7 +668,7 @@ fn an_nmt_reset_while_moving_ramps_down_and_then_boots() {
             .config
             .cascade
             .torque_limit
-            .to_micro_nm_lossy(),
+            .micro_nm(),
         0
     );
 }
