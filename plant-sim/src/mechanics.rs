@@ -90,6 +90,11 @@ impl Mechanics {
     }
 
     /// One sub-step.
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a sub-step passes a dozen numbers through memory: with the two below, 35 of 540 instructions"
+    )]
+    #[inline(always)]
     pub fn advance(&self, motion: &mut Motion, friction: &mut Sides, drive: Drive, dt_s: f64) {
         motion.motor_m += 0.5 * dt_s * motion.motor_m_per_s;
         motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
@@ -98,6 +103,11 @@ impl Mechanics {
         motion.table_m += 0.5 * dt_s * motion.table_m_per_s;
     }
 
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a sub-step passes a dozen numbers through memory: as above"
+    )]
+    #[inline(always)]
     fn kick(&self, motion: &mut Motion, friction: &mut Sides, drive: Drive, dt_s: f64) {
         let deflection = self.deflection_m(motion);
         let in_contact = self.backlash_m == 0.0 || deflection != 0.0;
@@ -115,16 +125,26 @@ impl Mechanics {
                 - mean(before.table_m_per_s, motion.table_m_per_s);
             let force = self.screw_stiffness_n_per_m * deflection + damping * relative;
             if force * deflection < 0.0 {
-                // A gap cannot pull: separate without force.
                 *motion = before;
                 friction.restore(bristles);
-                self.solve(motion, friction, drive, 0.0, 0.0, dt_s);
+                self.separate(motion, friction, drive, dt_s);
             }
         }
     }
 
+    /// A gap cannot pull: the same without force.
+    #[cold]
+    fn separate(&self, motion: &mut Motion, friction: &mut Sides, drive: Drive, dt_s: f64) {
+        self.solve(motion, friction, drive, 0.0, 0.0, dt_s);
+    }
+
     /// Velocities after the kick: damping trapezoidal, friction as its law says, the brake as
     /// [`Kick::braked`] does.
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a sub-step passes a dozen numbers through memory: as above"
+    )]
+    #[inline(always)]
     fn solve(
         &self,
         motion: &mut Motion,

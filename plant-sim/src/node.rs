@@ -24,9 +24,9 @@
 //! comes starts over from its start position, with its noise from the beginning, so that a run that
 //! begins with a reset is the same run every time.
 
-use protocol::cob::{AxisIds, FrameKind};
+use protocol::cob::{AxisIds, FrameKind, HEARD_BY_PLANT};
 use protocol::counter::SYNC_OVERFLOW;
-use protocol::message::{self, Decoded, Feedback, NmtCommand, NmtState, PlantStatus};
+use protocol::message::{self, Feedback, NmtCommand, NmtState, PlantStatus};
 use protocol::states::{BrakeState, StatusWord};
 use protocol::table::PLANT_STATUS_EVERY_CYCLES;
 use protocol::weight::{LoadIncrements24, MotorIncrements, TorqueMicroNm};
@@ -257,12 +257,12 @@ impl Station for PlantNode {
         while let Some(due) = self.timer_us().filter(|due| *due < now_us) {
             self.begin_by_timer(due, send);
         }
-        match message::decode(self.ids, frame) {
-            Ok(Decoded::Message(message)) => self.on_message(message, now_us, send),
-            Ok(Decoded::Foreign) => {}
-            Err(error) if error.kind == FrameKind::Torque => self.torque.refuse(),
+        let heard = message::kind_of(self.ids, frame).filter(|kind| HEARD_BY_PLANT.contains(kind));
+        match heard.map(|kind| message::decode_as(kind, frame)) {
+            Some(Ok(message)) => self.on_message(message, now_us, send),
+            Some(Err(error)) if error.kind == FrameKind::Torque => self.torque.refuse(),
             // A SYNC that cannot be read is one that did not come; the timer knows when it was due.
-            Err(_) => {}
+            Some(Err(_)) | None => {}
         }
         self.beat(now_us, send);
     }

@@ -123,23 +123,30 @@ impl Servo {
     }
 
     fn open(&mut self, counter: SyncCounter, in_sync: bool) {
-        if self.inbox.is_open() {
-            self.close(true);
+        let follows = |before: SyncCounter| before.next() == counter;
+        if self.inbox.is_open() || !self.inbox.counter().is_some_and(follows) {
+            self.end_what_was(counter);
             if self.timing.began_us().is_none() {
                 // A command of NMT waited for the end of that cycle: this one is not the node's.
                 return;
             }
         }
-        let cycles = self
-            .inbox
-            .counter()
-            .map_or(1, |before| counter.cycles_since(before));
-        if cycles <= SYNC_OVERFLOW / 2 {
-            (1..cycles).for_each(|_| self.skip());
-        }
         self.activate();
         self.inbox.begin(counter);
         self.in_sync = in_sync;
+    }
+
+    /// The cycle before is still open, or cycles passed without a frame of theirs.
+    #[cold]
+    fn end_what_was(&mut self, counter: SyncCounter) {
+        if self.inbox.is_open() {
+            self.close(true);
+        }
+        let before = self.inbox.counter();
+        let cycles = before.map_or(1, |before| counter.cycles_since(before));
+        if self.timing.began_us().is_some() && cycles <= SYNC_OVERFLOW / 2 {
+            (1..cycles).for_each(|_| self.skip());
+        }
     }
 
     /// A committed set becomes active as a whole, between two cycles.
@@ -180,7 +187,9 @@ impl Servo {
         counts.by_deadline = counts.by_deadline.saturating_add(u32::from(late));
         self.send_torque(stage);
         self.send_periodic();
-        self.finish_nmt();
+        if self.pending_nmt.is_some() {
+            self.finish_nmt();
+        }
     }
 
     /// A cycle passed whose time and SYNC never came: everything in it counts as missing.
