@@ -1,42 +1,88 @@
 //! Integer square root, for every braking curve `v = √(2 a s)` of the drive.
 //!
-//! Digit by digit (Crenshaw, "Math Toolkit for Real-Time Programming", 2000, ch. 4): `u64::isqrt`
-//! of the core library divides, and a 64-bit division is a call of hundreds of cycles on a
-//! Cortex-M4.
+//! Without a division (the core library's `u64::isqrt` divides, and a 64-bit division is a call of
+//! hundreds of cycles on a Cortex-M4) and without a loop over digits: one over the root by Newton's
+//! method, `y ← y (3 − x y²) / 2` with x in [1/4, 1), three times from a parabola that is off by
+//! 2.4 %, then a step of Newton's method for the root itself and the last bit by comparison.
+//! 70 instructions, where 32 digits took 450.
 
-/// The whole part of the root; begins at its first digit.
+/// The whole part of the root.
 pub(crate) fn root(square: u64) -> u32 {
-    let digits = 64_u32
-        .wrapping_sub(square.leading_zeros())
-        .wrapping_add(1)
-        .wrapping_shr(1);
-    let (mut rest, mut root) = (square, 0_u64);
-    for digit in (0..digits).rev() {
-        let bit = 1_u64.wrapping_shl(digit.wrapping_mul(2));
-        let trial = root | bit;
-        root = root.wrapping_shr(1);
-        if rest >= trial {
-            rest = rest.wrapping_sub(trial);
-            root |= bit;
-        }
+    if square == 0 {
+        return 0;
     }
-    u32::try_from(root).unwrap_or(u32::MAX)
+    let places = square.leading_zeros() & !1;
+    normal_root(square.wrapping_shl(places)).wrapping_shr(places.wrapping_shr(1))
 }
 
-/// The same of 32 bits: 64-bit shifts are calls on a Cortex-M4.
-pub(crate) fn short_root(square: u32) -> u32 {
-    let (mut rest, mut root) = (square, 0_u32);
-    let mut bit = 1_u32 << 30;
-    while bit > 0 {
-        let trial = root | bit;
-        root = root.wrapping_shr(1);
-        if rest >= trial {
-            rest = rest.wrapping_sub(trial);
-            root |= bit;
-        }
-        bit = bit.wrapping_shr(2);
+/// The parabola `2.6708 − 3.2854 x + 1.6386 x²`, in 2⁻³⁰.
+const PARABOLA: [u32; 3] = [2_867_787_662, 3_527_624_809, 1_759_398_851];
+/// Three in 2⁻²⁸.
+const THREE: u32 = 3 << 28;
+
+/// The root of what has one of its two upper bits.
+fn normal_root(square: u64) -> u32 {
+    let x = upper(square);
+    let y = newton(newton(newton(start(x), x), x), x);
+    // √x = x y, two bits short of the root.
+    let short = upper_product(x, y).min((1 << 30) - 1);
+    let near = short.wrapping_shl(2);
+    // What is left of the square is at most 2⁴¹; times y over two roots, which is y 2⁻³³.
+    let left = square.wrapping_sub(product(near, near)).cast_signed();
+    let step = product_signed(narrow(left.wrapping_shr(10)), y.wrapping_shr(1).cast_signed());
+    exact(square, near.saturating_add_signed(narrow(step.wrapping_shr(52))))
+}
+
+/// One over the root, in 2⁻³⁰, to 2.4 %.
+fn start(x: u32) -> u32 {
+    let [level, slope, curve] = PARABOLA;
+    level
+        .wrapping_sub(upper_product(slope, x))
+        .wrapping_add(upper_product(curve, upper_product(x, x)))
+}
+
+/// The same nearer.
+fn newton(y: u32, x: u32) -> u32 {
+    // x y² is about one, in 2⁻²⁸.
+    let one = upper_product(upper_product(y, y), x);
+    upper_product(y, THREE.wrapping_sub(one).wrapping_shl(2)).wrapping_shl(1)
+}
+
+/// The whole root beside one that is off by one at most.
+fn exact(square: u64, near: u32) -> u32 {
+    let left = square.wrapping_sub(product(near, near)).cast_signed();
+    if left < 0 {
+        return near.wrapping_sub(1);
     }
-    root
+    let two_roots = i64::from(near).wrapping_mul(2);
+    near.wrapping_add(u32::from(left > two_roots))
+}
+
+fn product(one: u32, other: u32) -> u64 {
+    u64::from(one).wrapping_mul(u64::from(other))
+}
+
+fn product_signed(one: i32, other: i32) -> i64 {
+    i64::from(one).wrapping_mul(i64::from(other))
+}
+
+/// The upper word of a product.
+fn upper_product(one: u32, other: u32) -> u32 {
+    upper(product(one, other))
+}
+
+#[expect(clippy::as_conversions, reason = "the upper word of two")]
+const fn upper(wide: u64) -> u32 {
+    (wide >> 32) as u32
+}
+
+#[expect(
+    clippy::as_conversions,
+    clippy::cast_possible_truncation,
+    reason = "what is narrowed here has 32 bits"
+)]
+const fn narrow(wide: i64) -> i32 {
+    wide as i32
 }
 
 #[cfg(test)]
@@ -44,16 +90,37 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn is_exact(square: u64) {
+        assert_eq!(u64::from(root(square)), square.isqrt(), "{square}");
+    }
+
+    #[test]
+    fn the_root_is_exact_about_the_squares_of_powers_of_two_and_of_the_largest() {
+        for bits in 0..32_u32 {
+            for root in [1_u64 << bits, (1 << bits) + 1, (2 << bits) - 1] {
+                let root = root.min(u64::from(u32::MAX));
+                (0..3).for_each(|off| is_exact(root * root + off));
+                is_exact(root * root - 1);
+                is_exact(root * root + 2 * root);
+            }
+        }
+        (0..1000).for_each(|off| is_exact(u64::MAX - off));
+        (0..10_000).for_each(is_exact);
+    }
+
     proptest! {
         #[test]
-        fn the_root_is_that_of_the_core_library(square in any::<u64>()) {
-            prop_assert_eq!(u64::from(root(square)), square.isqrt());
+        fn the_root_is_that_of_the_core_library(square in any::<u64>(), shift in 0..64_u32) {
+            is_exact(square >> shift);
         }
 
+        /// Where the last bit is decided.
         #[test]
-        fn the_short_root_is_that_of_the_core_library(square in any::<u32>(), shift in 0..32_u32) {
-            let square = square >> shift;
-            prop_assert_eq!(short_root(square), square.isqrt());
+        fn the_root_is_exact_about_squares(root in any::<u32>(), shift in 0..32_u32) {
+            let root = u64::from(root >> shift).max(1);
+            is_exact(root * root);
+            is_exact(root * root - 1);
+            is_exact(root * root + 2 * root);
         }
     }
 }

@@ -12,7 +12,7 @@ use fixed::types::{I2F30, I20F12};
 
 use super::Shape;
 use crate::direction::Direction;
-use crate::root::{root, short_root};
+use crate::root::root;
 use crate::units::Velocity;
 
 /// Points of a schedule: 4⁸ from the first acceleration to the last one.
@@ -84,7 +84,7 @@ fn root_of(mean: MeanAcceleration) -> u64 {
         .saturating_sub(square.leading_zeros())
         .wrapping_shr(1);
     let head = u32::try_from(square.wrapping_shr(pairs_off.wrapping_mul(2)));
-    u64::from(short_root(head.unwrap_or(u32::MAX))).wrapping_shl(pairs_off)
+    u64::from(root(u64::from(head.unwrap_or(u32::MAX)))).wrapping_shl(pairs_off)
 }
 
 /// Below one.
