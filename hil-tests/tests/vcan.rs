@@ -452,6 +452,27 @@ fn counts(timing: &serde_json::Value, of: &str) -> (u64, u64) {
     (count, timing["missed_cycles"].as_u64().unwrap())
 }
 
+/// Every drive has timed every cycle by its own clock, and a little more: cycles go on while its
+/// objects are read.
+fn assert_drives_timed_themselves(timing: &serde_json::Value) {
+    let drives = timing["drives"].as_array().unwrap();
+    assert_eq!(drives.len(), 2);
+    for drive in drives {
+        let times = drive["times"].as_array().unwrap();
+        let all: Vec<&str> = times
+            .iter()
+            .map(|one| one["of"].as_str().unwrap())
+            .collect();
+        assert_eq!(all, ["frame received to torque sent", "control cycle"]);
+        for one in times {
+            let count = one["count"].as_u64().unwrap();
+            assert!((TIMED..TIMED + 300).contains(&count), "{one}");
+        }
+        let mean_us = |place: usize| times[place]["mean_us"].as_f64().unwrap();
+        assert!(0.0 < mean_us(1) && mean_us(1) < mean_us(0), "{drive}");
+    }
+}
+
 #[test]
 #[ignore = "run by over_vcan, in a kernel that has vcan"]
 fn every_cycle_is_timed_over_vcan_and_a_clock_that_is_not_kept_stops_the_axes_by_name() {
@@ -462,6 +483,7 @@ fn every_cycle_is_timed_over_vcan_and_a_clock_that_is_not_kept_stops_the_axes_by
     assert_eq!(counts(&in_step, "feedback to torque"), (2 * TIMED, 0));
     assert_eq!(counts(&in_step, "bare frame, there and back"), (2000, 0));
     assert_eq!(counts(&in_step, "lateness of SYNC"), (0, 0));
+    assert_drives_timed_themselves(&in_step);
     drop(nodes);
 
     let setup = Setup {

@@ -14,7 +14,7 @@
 
 use crate::cob::AxisIds;
 use crate::frame::CanFrame;
-use crate::leaf::LeafReport;
+use crate::leaf::{LeafReport, Timed};
 
 /// A node: frames and time in, frames out.
 pub trait Station {
@@ -34,4 +34,7 @@ pub trait Station {
     fn sync_due_us(&self) -> Option<u64>;
     /// The leaf reports of itself, to a node that has objects for it.
     fn report(&mut self, _leaf: LeafReport) {}
+
+    /// The leaf has timed something, ns.
+    fn took(&mut self, _timed: Timed, _ns: u32) {}
 }

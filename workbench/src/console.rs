@@ -8,6 +8,7 @@ use identification::{Identification, figures};
 use crate::ballbar::{Cause, REVERSALS};
 use crate::circle_test::CircleReport;
 use crate::contour_test::ContourReport;
+use crate::drive_times::DriveTimes;
 use crate::presentation::compensation_words::in_words;
 use crate::presentation::result_tables::{TextTable, error_table, position_error_unit, sentence};
 use crate::say;
@@ -136,6 +137,12 @@ pub fn print_timing(report: &TimingReport) {
             drive.latest_us
         );
     }
+    for drive in &report.drives {
+        drive
+            .times
+            .iter()
+            .for_each(|times| print_drive_times(&drive.axis, times));
+    }
     let late = report
         .times
         .iter()
@@ -146,6 +153,24 @@ pub fn print_timing(report: &TimingReport) {
         .into_iter()
         .chain(late)
         .for_each(print_histogram);
+}
+
+/// What a drive has timed of itself, in a line and one of classes.
+fn print_drive_times(axis: &str, times: &DriveTimes) {
+    say!(
+        "  drive of {axis} by its own clock, {}: {} times, least {:.2}, mean {:.2}, most {:.2} µs",
+        times.of,
+        times.count,
+        times.min_us,
+        times.mean_us,
+        times.max_us
+    );
+    let class = |(end_us, count): &(Option<f64>, u32)| match end_us {
+        Some(end_us) => format!("{count} below {end_us}"),
+        None => format!("{count} longer"),
+    };
+    let classes: Vec<String> = times.histogram.iter().map(class).collect();
+    say!("    {} µs", classes.join(", "));
 }
 
 fn print_histogram(spread: &Spread) {

@@ -25,6 +25,7 @@ pub mod compensation;
 pub mod console;
 pub mod contour_test;
 pub mod drive_parameters;
+pub mod drive_times;
 pub mod error;
 pub mod interrupt;
 pub mod model_file;

@@ -10,6 +10,7 @@ use quadrant_host::Pace;
 use serde::Serialize;
 use servo::objects;
 
+use crate::drive_times::{self, DriveTimes};
 use crate::error::Outcome;
 use crate::network::in_process::InProcess;
 use crate::network::link::Link;
@@ -90,6 +91,8 @@ pub struct DriveReport {
     pub missed_deadlines: u32,
     /// The latest that it was, µs.
     pub latest_us: u32,
+    /// What it timed of itself during the run.
+    pub times: Vec<DriveTimes>,
 }
 
 /// Times the cycles of a machine for so long, s of its own time.
@@ -163,16 +166,20 @@ fn timed(stand: &Stand<'_>, duration_s: f64) -> Outcome<Timed> {
         session.go_to(&here)?;
         progress::step(&format!("cycles for {duration_s} s"));
         *steps.borrow_mut() = no_durations();
+        (0..stand.machine.axes.len())
+            .try_for_each(|axis| drive_times::clear(session.master_mut(), axis))?;
         button.start();
         session.follow(duration_s, to_and_fro(stand.machine, duration_s), |_, _| ())?;
         let times = button.stop();
         let names = stand.axis_names().into_iter().enumerate();
         let drives = names.map(|(index, axis)| {
-            let mut read = |object| session.master_mut().upload(index, object);
+            let master = session.master_mut();
+            let mut read = |object| master.upload(index, object);
             Ok(DriveReport {
                 axis,
                 missed_deadlines: read(objects::MISSED_DEADLINES)?.to_u32(),
                 latest_us: read(objects::LATEST)?.to_u32(),
+                times: drive_times::read(master, index)?,
             })
         });
         let drives = drives.collect::<Outcome<_>>()?;

@@ -29,8 +29,14 @@ fn normal_root(square: u64) -> u32 {
     let near = short.wrapping_shl(2);
     // What is left of the square is at most 2⁴¹; times y over two roots, which is y 2⁻³³.
     let left = square.wrapping_sub(product(near, near)).cast_signed();
-    let step = product_signed(narrow(left.wrapping_shr(10)), y.wrapping_shr(1).cast_signed());
-    exact(square, near.saturating_add_signed(narrow(step.wrapping_shr(52))))
+    let step = product_signed(
+        narrow(left.wrapping_shr(10)),
+        y.wrapping_shr(1).cast_signed(),
+    );
+    exact(
+        square,
+        near.saturating_add_signed(narrow(step.wrapping_shr(52))),
+    )
 }
 
 /// One over the root, in 2⁻³⁰, to 2.4 %.

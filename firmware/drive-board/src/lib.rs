@@ -58,7 +58,7 @@ use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame as _, StandardId};
 use heapless::{Deque, Vec};
 use protocol::cob::{AxisIds, FrameKind, HEARD_BY_SERVO, NodeId};
-use protocol::leaf::{LeafReport, StartedBy};
+use protocol::leaf::{LeafReport, StartedBy, Timed};
 use protocol::{CanFrame, Station};
 use servo::Servo;
 use static_cell::StaticCell;
@@ -267,7 +267,7 @@ struct Node {
 impl Node {
     /// Something has been due since a time.
     fn time(&mut self, since_us: u64, now_us: u64) {
-        self.happens(since_us, |servo, send| servo.time(now_us, send));
+        let _is_no_frame = self.happens([since_us, now_us], |servo, send| servo.time(now_us, send));
     }
 
     /// A frame came; `at` is when the interrupt took it.
@@ -276,13 +276,21 @@ impl Node {
             return;
         };
         let now_us = Instant::now().as_micros();
-        self.happens(at.as_micros(), |servo, send| {
+        let at_us = at.as_micros();
+        if self.happens([at_us, now_us], |servo, send| {
             servo.take(&frame, now_us, send);
-        });
+        }) {
+            self.servo.took(Timed::ReceiveToTorque, ns_since(at_us));
+        }
     }
 
-    /// An event that waits since a time: what it makes the node say goes out.
-    fn happens(&mut self, since_us: u64, event: impl FnOnce(&mut Servo, &mut dyn FnMut(CanFrame))) {
+    /// An event that waits since a time, and begins at another: what it makes the node say goes
+    /// out. Tells whether that was a torque.
+    fn happens(
+        &mut self,
+        [since_us, begun_us]: [u64; 2],
+        event: impl FnOnce(&mut Servo, &mut dyn FnMut(CanFrame)),
+    ) -> bool {
         let Self {
             servo,
             contract,
@@ -292,14 +300,20 @@ impl Node {
         } = self;
         let has_torque = servo.drive().is_energised();
         let torque = embedded_can::Id::from(servo.ids().identifier(FrameKind::Torque));
+        let mut torque_ns = None;
         event(servo, &mut |frame| {
             if frame.id() == torque {
+                torque_ns = Some(ns_since(begun_us));
                 post(transmit, torques, &frame);
             } else {
                 wait(line, frame);
             }
         });
         contract.done(since_us, Instant::now().as_micros(), has_torque);
+        if let Some(ns) = torque_ns {
+            servo.took(Timed::ControlCycle, ns);
+        }
+        torque_ns.is_some()
     }
 
     /// Frames that are no torque take their mailboxes.
@@ -311,6 +325,12 @@ impl Node {
             transmit(&mut self.transmit, &frame);
         }
     }
+}
+
+/// The board's clock counts microseconds.
+fn ns_since(begun_us: u64) -> u32 {
+    let us = Instant::now().as_micros().saturating_sub(begun_us);
+    u32::try_from(us.saturating_mul(1000)).unwrap_or(u32::MAX)
 }
 
 /// Mailboxes that are taken, a bit each: requested, or about to be.

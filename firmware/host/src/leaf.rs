@@ -13,7 +13,8 @@ use bus::FaultyPort;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame, Id, StandardId};
-use protocol::leaf::{LeafReport, StartedBy};
+use protocol::cob::FrameKind;
+use protocol::leaf::{LeafReport, StartedBy, Timed};
 use protocol::table::{FRAMES, Sender};
 use protocol::{CanFrame, LockstepTime, Station};
 
@@ -27,10 +28,18 @@ const DEADLINES_UNTIL_ALONE: u8 = 3;
 pub(crate) struct Leaf {
     station: Box<dyn Station>,
     of_workbench: Vec<StandardId>,
+    torque: Id,
     port: Port,
     faults: Option<FaultyPort>,
     received: Vec<CanFrame>,
     time: LockstepTime,
+}
+
+type Acts<'a> = &'a mut dyn Station;
+type Sends<'a> = &'a mut dyn FnMut(CanFrame);
+
+fn ns_since(begun: std::time::Instant) -> u32 {
+    u32::try_from(begun.elapsed().as_nanos()).unwrap_or(u32::MAX)
 }
 
 /// The clock, counted on from a bus time.
@@ -67,6 +76,7 @@ impl Leaf {
         Self {
             station,
             of_workbench,
+            torque: ids.identifier(FrameKind::Torque).into(),
             port,
             faults,
             received: Vec::new(),
@@ -76,7 +86,7 @@ impl Leaf {
 
     /// The boot-up message.
     pub(crate) fn boot(&mut self) -> io::Result<()> {
-        self.act(|station, _, send| station.boot(send))
+        self.act(|station, _, send| station.boot(send)).map(|_| ())
     }
 
     /// Runs in lock-step until the port fails.
@@ -184,31 +194,53 @@ impl Leaf {
     }
 
     fn take_in_step(&mut self, frame: &CanFrame) -> io::Result<()> {
-        self.act(|station, time, send| time.deliver(station, frame, send))
+        self.take_by(|station, time, send| time.deliver(station, frame, send))
     }
 
     fn take(&mut self, frame: &CanFrame) -> io::Result<()> {
-        self.act(|station, time, send| station.take(frame, time.now_us(), send))
+        self.take_by(|station, time, send| station.take(frame, time.now_us(), send))
+    }
+
+    /// The same with a frame, which is what a torque may be due to.
+    fn take_by(
+        &mut self,
+        take: impl FnOnce(Acts<'_>, &mut LockstepTime, Sends<'_>),
+    ) -> io::Result<()> {
+        let received = std::time::Instant::now();
+        if self.act(take)? {
+            self.station
+                .took(Timed::ReceiveToTorque, ns_since(received));
+        }
+        Ok(())
     }
 
     /// Time reaches what is due next.
     fn wake(&mut self) -> io::Result<()> {
         self.act(|station, time, send| time.wake(station, send))
+            .map(|_| ())
     }
 
-    /// Lets the station act and sends what it says.
+    /// Lets the station act and sends what it says; tells whether that was a torque.
     fn act(
         &mut self,
-        act: impl FnOnce(&mut dyn Station, &mut LockstepTime, &mut dyn FnMut(CanFrame)),
-    ) -> io::Result<()> {
-        let (mut outcome, port) = (Ok(()), &self.port);
-        let mut send = |frame| {
+        act: impl FnOnce(Acts<'_>, &mut LockstepTime, Sends<'_>),
+    ) -> io::Result<bool> {
+        let begun = std::time::Instant::now();
+        let (mut outcome, mut torque_ns) = (Ok(()), None);
+        let (port, torque) = (&self.port, self.torque);
+        let mut send = |frame: CanFrame| {
+            if frame.id() == torque {
+                torque_ns = Some(ns_since(begun));
+            }
             if outcome.is_ok() {
                 outcome = port.send(&frame);
             }
         };
         act(self.station.as_mut(), &mut self.time, &mut send);
-        outcome
+        if let Some(ns) = torque_ns {
+            self.station.took(Timed::ControlCycle, ns);
+        }
+        outcome.map(|()| torque_ns.is_some())
     }
 
     fn is_of_workbench(&self, frame: &CanFrame) -> bool {

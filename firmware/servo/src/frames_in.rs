@@ -1,6 +1,7 @@
 //! Frames in: decode once, then only typed values.
 
 use protocol::cob::{FrameKind, NodeId};
+use protocol::leaf::Durations;
 use protocol::message::{
     self, DecodeError, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint,
 };
@@ -176,6 +177,7 @@ impl Servo {
         let (response, effect) = self.server.handle(request, &readings, has_torque);
         match effect {
             Effect::None => {}
+            Effect::Clear(timed) => *self.times.of(timed) = Durations::default(),
             // At rest at once; in motion with the next cycle, as a whole.
             Effect::Commit(settings) => {
                 self.committed = Some(settings);
@@ -219,6 +221,7 @@ impl Servo {
                 *self = Self {
                     outbox: said,
                     leaf: self.leaf,
+                    times: self.times,
                     ..Self::new(self.ids)
                 };
                 self.send(BOOT_UP);

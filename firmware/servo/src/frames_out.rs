@@ -225,6 +225,7 @@ impl Servo {
             refined_level: self.axis.refined_level_millionths(),
             counts: self.counts(),
             leaf: self.leaf,
+            times: self.times,
         }
     }
 }

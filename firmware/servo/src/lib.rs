@@ -59,7 +59,7 @@ use controller::reference::Reference;
 use controller::units::{PositionError, Torque};
 use heapless::Vec;
 use protocol::cob::AxisIds;
-use protocol::leaf::LeafReport;
+use protocol::leaf::{LeafReport, LeafTimes};
 use protocol::message::{EmergencyMessage, NmtCommand, NmtState};
 use protocol::{CanFrame, Fault, SyncTracker};
 
@@ -99,6 +99,8 @@ pub struct Servo {
     committed: Option<Settings>,
     /// What the leaf reports of itself.
     leaf: LeafReport,
+    /// What it has timed.
+    times: LeafTimes,
     /// What the present event has to say.
     outbox: Outbox,
 }
@@ -123,6 +125,7 @@ impl Servo {
             active,
             committed: None,
             leaf: LeafReport::default(),
+            times: LeafTimes::default(),
             outbox: Outbox::new(),
         }
     }

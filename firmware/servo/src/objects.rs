@@ -9,6 +9,7 @@
 //! client writes four bytes everywhere. Indices are those of CiA 301 and CiA 402-2 where these have
 //! the object, 2xxxh elsewhere.
 
+use protocol::leaf::{Durations, Timed};
 use protocol::sdo::Address;
 
 /// Step of a raw number.
@@ -525,11 +526,44 @@ pub const STARTED_BY: Address = Address::new(0x2203, 1);
 pub const MISSED_DEADLINES: Address = Address::new(0x2203, 2);
 /// The latest that the leaf was, µs.
 pub const LATEST: Address = Address::new(0x2203, 3);
+/// What the leaf has timed from the interrupt that takes a frame to the end of the torque that it
+/// causes: [`protocol::leaf::Durations`], subindex 1 to 16.
+pub const RECEIVE_TO_TORQUE_INDEX: u16 = 0x2204;
+/// The same from when the node begins with what closes a cycle to its torque.
+pub const CONTROL_CYCLE_INDEX: u16 = 0x2205;
+
+/// What the leaf has timed at an index.
+#[must_use]
+pub const fn timed(index: u16) -> Option<Timed> {
+    match index {
+        RECEIVE_TO_TORQUE_INDEX => Some(Timed::ReceiveToTorque),
+        CONTROL_CYCLE_INDEX => Some(Timed::ControlCycle),
+        _ => None,
+    }
+}
+
+/// What a write to an address clears, whatever is written: a count of durations.
+#[must_use]
+pub const fn cleared(address: Address) -> Option<Timed> {
+    match address.subindex {
+        1 => timed(address.index),
+        _ => None,
+    }
+}
+
+/// Whether an address is that of a class of a histogram.
+#[must_use]
+pub fn is_class(address: Address) -> bool {
+    timed(address.index).is_some()
+        && usize::from(address.subindex) > 4
+        && usize::from(address.subindex) <= Durations::NUMBERS
+}
+
 /// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
 
 /// Objects beside the parameters that can be read, with what they say.
-pub const READINGS: [(Address, &str); 30] = [
+pub const READINGS: [(Address, &str); 40] = [
     (DEVICE_TYPE, "device type"),
     (ERROR_REGISTER, "error register"),
     (HEARTBEAT_PERIOD, "heartbeat period, ms"),
@@ -564,6 +598,46 @@ pub const READINGS: [(Address, &str); 30] = [
     ),
     (MISSED_DEADLINES, "deadlines that the board missed since"),
     (LATEST, "the latest that the board was, us"),
+    (
+        Address::new(RECEIVE_TO_TORQUE_INDEX, 1),
+        "torques that were timed from the interrupt of the last frame that they needed; a write of anything clears 2204h",
+    ),
+    (
+        Address::new(RECEIVE_TO_TORQUE_INDEX, 2),
+        "least of these times, ns",
+    ),
+    (
+        Address::new(RECEIVE_TO_TORQUE_INDEX, 3),
+        "greatest of these times, ns",
+    ),
+    (
+        Address::new(RECEIVE_TO_TORQUE_INDEX, 4),
+        "sum of these times, us; stops at its end",
+    ),
+    (
+        Address::new(RECEIVE_TO_TORQUE_INDEX, 5),
+        "those below 1 us; subindices 6 to 15 below 2, 4, 8 to 1024 us, 16 from there on",
+    ),
+    (
+        Address::new(CONTROL_CYCLE_INDEX, 1),
+        "control cycles that were timed, from their last frame or deadline to their torque; a write of anything clears 2205h",
+    ),
+    (
+        Address::new(CONTROL_CYCLE_INDEX, 2),
+        "least of these times, ns",
+    ),
+    (
+        Address::new(CONTROL_CYCLE_INDEX, 3),
+        "greatest of these times, ns",
+    ),
+    (
+        Address::new(CONTROL_CYCLE_INDEX, 4),
+        "sum of these times, us; stops at its end",
+    ),
+    (
+        Address::new(CONTROL_CYCLE_INDEX, 5),
+        "those below 1 us; subindices 6 to 15 below 2, 4, 8 to 1024 us, 16 from there on",
+    ),
     (
         REFINED_LEVEL,
         "factor on the friction levels that turns have refined, 1e-6; another model sets it to one",

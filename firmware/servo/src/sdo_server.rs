@@ -5,7 +5,7 @@
 //! names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
 //! look at.
 
-use protocol::leaf::LeafReport;
+use protocol::leaf::{LeafReport, LeafTimes, Timed};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
 use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
@@ -15,10 +15,10 @@ use crate::settings::Settings;
 use crate::watchdog::Counts;
 
 /// A count by its subindex; subindex 0 tells how many there are.
-fn count(counts: &Counts, subindex: u8) -> Option<Expedited> {
+fn number(numbers: &[u32], subindex: u8) -> Option<Expedited> {
     match usize::from(subindex).checked_sub(1) {
-        None => u8::try_from(Counts::NUMBER).ok().map(Expedited::u8),
-        Some(place) => counts.in_order().get(place).copied().map(Expedited::u32),
+        None => u8::try_from(numbers.len()).ok().map(Expedited::u8),
+        Some(place) => numbers.get(place).copied().map(Expedited::u32),
     }
 }
 
@@ -47,6 +47,8 @@ pub struct Readings {
     pub counts: Counts,
     /// What the leaf reports of itself, objects 2203h.
     pub leaf: LeafReport,
+    /// What it has timed.
+    pub times: LeafTimes,
 }
 
 /// Which set an upload reads.
@@ -77,6 +79,8 @@ pub struct SdoServer {
 pub enum Effect {
     /// Nothing that the drive has to know.
     None,
+    /// What the leaf timed begins anew.
+    Clear(Timed),
     /// A new set becomes active at the next cycle. For uploads it is the active one from now on.
     Commit(Settings),
 }
@@ -109,6 +113,10 @@ impl SdoServer {
         match request {
             Request::Upload(address) => (Some(self.upload(address, readings)), Effect::None),
             Request::Download(objects::COMMIT, data) => self.commit(data, has_torque),
+            Request::Download(address, _) if objects::cleared(address).is_some() => (
+                Some(Response::Downloaded(address)),
+                objects::cleared(address).map_or(Effect::None, Effect::Clear),
+            ),
             Request::Download(address, data) => (Some(self.download(address, data)), Effect::None),
             Request::Unsupported(address) => (
                 Some(aborted(address, AbortCode::CommandUnknown)),
@@ -193,7 +201,8 @@ impl SdoServer {
 
     fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
         let Some(entry) = objects::find(address) else {
-            let is_known = objects::READINGS.iter().any(|(known, _)| *known == address);
+            let is_known = objects::READINGS.iter().any(|(known, _)| *known == address)
+                || objects::is_class(address);
             return Err(if is_known {
                 AbortCode::ReadOnly
             } else {
@@ -253,7 +262,12 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
         Address {
             index: objects::DIAGNOSTICS_INDEX,
             subindex,
-        } => return count(&readings.counts, subindex),
+        } => return number(&readings.counts.in_order(), subindex),
+        Address { index, subindex } if objects::timed(index).is_some() => {
+            let mut times = readings.times;
+            let numbers = times.of(objects::timed(index)?).in_order();
+            return number(&numbers, subindex);
+        }
         _ => return None,
     })
 }
@@ -381,7 +395,7 @@ mod tests {
         let mut server = SdoServer::default();
         for (address, name) in objects::READINGS {
             read(&mut server, address);
-            if !writable.contains(&address) {
+            if !writable.contains(&address) && objects::cleared(address).is_none() {
                 let answer = ask(&mut server, Request::Download(address, Expedited::u32(0)));
                 assert_eq!(code(answer), AbortCode::ReadOnly.value(), "{name}");
             }

@@ -1,7 +1,7 @@
 //! The node as a station of a bus.
 
 use protocol::cob::AxisIds;
-use protocol::leaf::LeafReport;
+use protocol::leaf::{LeafReport, Timed};
 use protocol::{CanFrame, Station};
 
 use crate::Servo;
@@ -33,5 +33,9 @@ impl Station for Servo {
 
     fn report(&mut self, leaf: LeafReport) {
         self.leaf = leaf;
+    }
+
+    fn took(&mut self, timed: Timed, ns: u32) {
+        self.times.of(timed).took(ns);
     }
 }

@@ -10,7 +10,7 @@ pub const IDENTIFICATION: [&str; 10] = [
 ];
 
 /// The floors of `workbench`, from the ground up: `commands` use everything.
-pub const WORKBENCH: [&str; 23] = [
+pub const WORKBENCH: [&str; 24] = [
     "error",
     "interrupt",
     "progress",
@@ -20,6 +20,7 @@ pub const WORKBENCH: [&str; 23] = [
     "compensation",
     "drive_parameters",
     "network",
+    "drive_times",
     "trajectory",
     "ballbar",
     "session",
