@@ -238,8 +238,10 @@ fn changed_since(first: &RunFolder, run: &RunFolder) -> Vec<Change> {
     changes
 }
 
+/// Whether the intervals say that it is another value: one without ends says nothing.
 fn is_apart(one: &RunParameter, other: &RunParameter) -> bool {
-    one.high < other.low || other.high < one.low
+    let below = |high: Option<f64>, low: Option<f64>| high.zip(low).is_some_and(|(h, l)| h < l);
+    below(one.high, other.low) || below(other.high, one.low)
 }
 
 fn runs_table(runs: &[RunFolder]) -> TextTable {
@@ -392,8 +394,8 @@ mod tests {
             let own = RunParameter {
                 value: *value,
                 unit: "N".into(),
-                low: of - 1.0,
-                high: of + 1.0,
+                low: Some(of - 1.0),
+                high: Some(of + 1.0),
             };
             ((*name).to_owned(), own)
         };
@@ -483,9 +485,14 @@ mod tests {
         let own = |low: f64, high: f64| RunParameter {
             value: Some(0.5 * (low + high)),
             unit: "N".into(),
-            low,
-            high,
+            low: Some(low),
+            high: Some(high),
         };
+        let open = RunParameter {
+            high: None,
+            ..own(5.0, 6.0)
+        };
+        assert!(!is_apart(&open, &own(7.0, 8.0)));
         assert!(is_apart(&own(1.0, 2.0), &own(2.1, 3.0)));
         assert!(is_apart(&own(2.1, 3.0), &own(1.0, 2.0)));
         assert!(!is_apart(&own(1.0, 2.0), &own(1.9, 3.0)));

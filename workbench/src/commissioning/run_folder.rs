@@ -84,12 +84,12 @@ pub struct RunParameter {
     /// Unit.
     #[serde(default)]
     pub unit: String,
-    /// Lower end of its interval.
+    /// Lower end of its interval; none where it was no number, as JSON has it.
     #[serde(default)]
-    pub low: f64,
+    pub low: Option<f64>,
     /// Upper end.
     #[serde(default)]
-    pub high: f64,
+    pub high: Option<f64>,
 }
 
 /// A folder of `commission`.
@@ -189,4 +189,17 @@ fn read_circle(path: &Path) -> Outcome<[Vec<Point>; 2]> {
         });
     }
     Ok(turns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_no_number_is_read_as_unknown() {
+        let text = r#"{ "value": null, "unit": "N", "low": null, "high": 7.0 }"#;
+        let parameter: RunParameter = serde_json::from_str(text).unwrap();
+        assert_eq!((parameter.value, parameter.low), (None, None));
+        assert_eq!(parameter.high, Some(7.0));
+    }
 }
