@@ -33,10 +33,9 @@ pub(crate) struct Leaf {
     faults: Option<FaultyPort>,
     received: Vec<CanFrame>,
     time: LockstepTime,
+    /// What the station does is timed.
+    is_timed: bool,
 }
-
-type Acts<'a> = &'a mut dyn Station;
-type Sends<'a> = &'a mut dyn FnMut(CanFrame);
 
 fn ns_since(begun: std::time::Instant) -> u32 {
     u32::try_from(begun.elapsed().as_nanos()).unwrap_or(u32::MAX)
@@ -81,6 +80,7 @@ impl Leaf {
             faults,
             received: Vec::new(),
             time: LockstepTime::default(),
+            is_timed: false,
         }
     }
 
@@ -124,6 +124,7 @@ impl Leaf {
     /// Runs by the clock until the port fails, and counts what it was late for. A program has no
     /// watchdog: beyond contract nothing more happens.
     pub(crate) async fn by_the_clock(&mut self) -> io::Result<Infallible> {
+        self.is_timed = true;
         let clock = ClockTime::from(self.time.now_us());
         let (mut contract, mut due) = (Contract::default(), Due::default());
         loop {
@@ -194,20 +195,14 @@ impl Leaf {
     }
 
     fn take_in_step(&mut self, frame: &CanFrame) -> io::Result<()> {
-        self.take_by(|station, time, send| time.deliver(station, frame, send))
+        self.act(|station, time, send| time.deliver(station, frame, send))
+            .map(|_| ())
     }
 
+    /// Of a torque that is due to the frame the node is told how long it took.
     fn take(&mut self, frame: &CanFrame) -> io::Result<()> {
-        self.take_by(|station, time, send| station.take(frame, time.now_us(), send))
-    }
-
-    /// The same with a frame, which is what a torque may be due to.
-    fn take_by(
-        &mut self,
-        take: impl FnOnce(Acts<'_>, &mut LockstepTime, Sends<'_>),
-    ) -> io::Result<()> {
         let received = std::time::Instant::now();
-        if self.act(take)? {
+        if self.act(|station, time, send| station.take(frame, time.now_us(), send))? {
             self.station
                 .took(Timed::ReceiveToTorque, ns_since(received));
         }
@@ -220,27 +215,29 @@ impl Leaf {
             .map(|_| ())
     }
 
-    /// Lets the station act and sends what it says; tells whether that was a torque.
+    /// Lets the station act and sends what it says; tells whether that was a torque. At the pace of
+    /// the clock the station is told how long that took it: in lock-step nobody waits for it, and
+    /// a clock is slow to read where the kernel is a process.
     fn act(
         &mut self,
-        act: impl FnOnce(Acts<'_>, &mut LockstepTime, Sends<'_>),
+        act: impl FnOnce(&mut dyn Station, &mut LockstepTime, &mut dyn FnMut(CanFrame)),
     ) -> io::Result<bool> {
-        let begun = std::time::Instant::now();
-        let (mut outcome, mut torque_ns) = (Ok(()), None);
+        let begun = self.is_timed.then(std::time::Instant::now);
+        let (mut outcome, mut is_torque, mut took_ns) = (Ok(()), false, None);
         let (port, torque) = (&self.port, self.torque);
         let mut send = |frame: CanFrame| {
             if frame.id() == torque {
-                torque_ns = Some(ns_since(begun));
+                (is_torque, took_ns) = (true, begun.map(ns_since));
             }
             if outcome.is_ok() {
                 outcome = port.send(&frame);
             }
         };
         act(self.station.as_mut(), &mut self.time, &mut send);
-        if let Some(ns) = torque_ns {
+        if let Some(ns) = took_ns {
             self.station.took(Timed::ControlCycle, ns);
         }
-        outcome.map(|()| torque_ns.is_some())
+        outcome.map(|()| is_torque)
     }
 
     fn is_of_workbench(&self, frame: &CanFrame) -> bool {
