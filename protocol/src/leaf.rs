@@ -61,10 +61,10 @@ pub struct LeafReport {
 /// What a leaf times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timed {
-    /// From the interrupt that takes a frame, or where there is none from when it was received, to
-    /// the end of what it causes, where that is a torque.
+    /// From the interrupt that takes a frame, or where there is none from when the program has it,
+    /// to the end of what it causes, where a torque is among that.
     ReceiveToTorque,
-    /// From when the node begins with what closes a cycle to its torque.
+    /// From when the node begins with what closes a cycle to when its torque is ready.
     ControlCycle,
 }
 

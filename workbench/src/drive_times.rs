@@ -50,9 +50,14 @@ pub fn clear<L: Link>(master: &mut Master<L>, axis: usize) -> Outcome<()> {
 pub fn read<L: Link>(master: &mut Master<L>, axis: usize) -> Outcome<Vec<DriveTimes>> {
     let mut list = Vec::new();
     for (index, of) in TIMED {
+        let mut read = |subindex| master.upload(axis, Address::new(index, subindex));
         let mut numbers = [0; Durations::NUMBERS];
-        for (subindex, number) in (1_u8..).zip(&mut numbers) {
-            *number = master.upload(axis, Address::new(index, subindex))?.to_u32();
+        // Cycles go on meanwhile: the sum next to the count that it is of.
+        for subindex in [1, 4, 2, 3].into_iter().chain(5..) {
+            let Some(number) = numbers.get_mut(usize::from(subindex) - 1) else {
+                break;
+            };
+            *number = read(subindex)?.to_u32();
         }
         list.extend(DriveTimes::of(of, &numbers));
     }
@@ -67,6 +72,9 @@ impl DriveTimes {
         let ends_us = ends_us.take(classes.len() - 1).map(Some).chain([None]);
         let all: Vec<(Option<f64>, u32)> = ends_us.zip(classes.iter().copied()).collect();
         let is_some = |(_, count): &(Option<f64>, u32)| *count > 0;
+        if *count == 0 {
+            return None;
+        }
         let first = all.iter().position(is_some)?;
         let last = all.iter().rposition(is_some)?;
         Some(Self {

@@ -195,7 +195,8 @@ impl Followed {
         }
         let cycles = self.predicted_cycles.saturating_add(1);
         let allowed = PositionError(jump.0.saturating_mul_int(i32::from(cycles)));
-        (!off.is_beyond(allowed)).then(|| position.velocity_since(self.good, cycles))
+        // Both may be at the end of their range.
+        (off.magnitude() <= allowed).then(|| position.velocity_since(self.good, cycles))
     }
 
     const fn take(&mut self, position: Position, velocity: Velocity) {
@@ -394,5 +395,27 @@ mod tests {
             None,
             "a loop on the scale does not take it"
         );
+    }
+
+    /// A scale that slipped while the axis moved is taken up once what it may have gone since is
+    /// beyond every range, on either side.
+    #[test]
+    fn a_scale_that_slipped_far_is_taken_up_again_both_ways() {
+        let motor = encoding(PositionSource::Motor);
+        let cycles = [1, -1].map(|way| {
+            let mut encoders = Encoders::default();
+            for (counts, scale) in [(0, 0), (500, 500), (1000, 1000)] {
+                let moved = feedback(way * counts, i64::from(way * scale));
+                encoders.accept(moved, &motor).unwrap();
+            }
+            let slipped = feedback(way * 1000, i64::from(way) * (1000 - 5_000_000));
+            let refused = |encoders: &mut Encoders| {
+                let before = encoders.scale_warnings();
+                encoders.accept(slipped, &motor).unwrap();
+                encoders.scale_warnings() > before
+            };
+            (0..20_000).position(|_| !refused(&mut encoders))
+        });
+        assert_eq!(cycles, [Some(8388), Some(8388)]);
     }
 }

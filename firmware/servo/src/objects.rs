@@ -526,10 +526,10 @@ pub const STARTED_BY: Address = Address::new(0x2203, 1);
 pub const MISSED_DEADLINES: Address = Address::new(0x2203, 2);
 /// The latest that the leaf was, µs.
 pub const LATEST: Address = Address::new(0x2203, 3);
-/// What the leaf has timed from the interrupt that takes a frame to the end of the torque that it
-/// causes: [`protocol::leaf::Durations`], subindex 1 to 16.
+/// What the leaf has timed from the interrupt that takes a frame to the end of what it causes, where
+/// that is a torque: [`protocol::leaf::Durations`], subindex 1 to 16.
 pub const RECEIVE_TO_TORQUE_INDEX: u16 = 0x2204;
-/// The same from when the node begins with what closes a cycle to its torque.
+/// The same from when the node begins with what closes a cycle to when its torque is ready.
 pub const CONTROL_CYCLE_INDEX: u16 = 0x2205;
 
 /// What the leaf has timed at an index.
@@ -551,12 +551,10 @@ pub const fn cleared(address: Address) -> Option<Timed> {
     }
 }
 
-/// Whether an address is that of a class of a histogram.
+/// Whether an address is one of what the leaf has timed.
 #[must_use]
-pub fn is_class(address: Address) -> bool {
-    timed(address.index).is_some()
-        && usize::from(address.subindex) > 4
-        && usize::from(address.subindex) <= Durations::NUMBERS
+pub fn is_timed(address: Address) -> bool {
+    timed(address.index).is_some() && usize::from(address.subindex) <= Durations::NUMBERS
 }
 
 /// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
@@ -600,7 +598,7 @@ pub const READINGS: [(Address, &str); 40] = [
     (LATEST, "the latest that the board was, us"),
     (
         Address::new(RECEIVE_TO_TORQUE_INDEX, 1),
-        "torques that were timed from the interrupt of the last frame that they needed; a write of anything clears 2204h",
+        "frames that were timed from their interrupt to the end of what they caused, a torque with it; a write of anything clears 2204h",
     ),
     (
         Address::new(RECEIVE_TO_TORQUE_INDEX, 2),
@@ -620,7 +618,7 @@ pub const READINGS: [(Address, &str); 40] = [
     ),
     (
         Address::new(CONTROL_CYCLE_INDEX, 1),
-        "control cycles that were timed, from their last frame or deadline to their torque; a write of anything clears 2205h",
+        "control cycles that were timed, from when the node began with them until their torque was ready; a write of anything clears 2205h",
     ),
     (
         Address::new(CONTROL_CYCLE_INDEX, 2),

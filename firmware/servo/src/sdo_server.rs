@@ -202,7 +202,7 @@ impl SdoServer {
     fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
         let Some(entry) = objects::find(address) else {
             let is_known = objects::READINGS.iter().any(|(known, _)| *known == address)
-                || objects::is_class(address);
+                || objects::is_timed(address);
             return Err(if is_known {
                 AbortCode::ReadOnly
             } else {

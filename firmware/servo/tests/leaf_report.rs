@@ -61,6 +61,7 @@ fn what_a_leaf_has_timed_is_read_by_class_and_cleared_by_a_write() {
     for (address, is_written) in [
         (Address::new(index, 1), true),
         (Address::new(index, 7), false),
+        (Address::new(index, 0), false),
     ] {
         let asked = Message::SdoRequest(Request::Download(address, Expedited::u32(0))).encode(ids);
         let answer = message::decode(ids, &servo.on_frame(&asked, 0)[0]).unwrap();

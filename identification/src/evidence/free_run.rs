@@ -53,9 +53,11 @@ const MOTOR_SHARES: [f64; 2] = [0.2, 0.7];
 const LOAD_SHARE: f64 = 0.45;
 /// So many of the best gaps are fitted.
 const STARTS: usize = 3;
-/// The fit to all rows takes no more than this share off what a fit on the excerpt left there: a
-/// shape that would have to lose more to count is judged as it is.
+/// The fit to all rows takes no more than this share off a shape beyond what it takes off its
+/// rivals: a shape that would have to lose more to count is judged as it is.
 const TAKEN_OFF: f64 = 0.5;
+/// What a shape without a rival has to come down to.
+const ANYTHING: f64 = f64::INFINITY;
 /// Another start is fitted to the whole record where it leaves this share on the excerpt.
 const WORTH_A_FIT: f64 = 0.97;
 
@@ -70,6 +72,8 @@ pub(crate) struct Judged {
     pub all: f64,
     /// Whether the simulation left the travel of the axis: both rms say nothing then.
     pub ran_away: bool,
+    /// What the start of its fit left on the excerpt: near, but for what only the fit moves.
+    near: f64,
     /// Mean square on each block that was not fitted.
     blocks: Vec<f64>,
 }
@@ -116,18 +120,6 @@ pub(crate) struct Summary {
     pub something_left: bool,
 }
 
-/// When a shape counts: it leaves at most a share of what each of its rivals leaves.
-struct Counts<'a> {
-    ratio: f64,
-    rivals: &'a [&'a Judged],
-}
-
-/// A shape without a rival counts whatever it leaves.
-const ALONE: Counts<'static> = Counts {
-    ratio: 1.0,
-    rivals: &[],
-};
-
 struct Judge<'a> {
     drive: Drive,
     record: &'a Record,
@@ -172,7 +164,10 @@ impl<'a> Judge<'a> {
     fn fitted_from(&self, start: &Simulated) -> Judged {
         let model = fit(start, &self.drive, self.record, &|row| self.is_fitted(row));
         let run = simulate(&model, &self.drive, self.record);
-        self.judged(model, &run)
+        Judged {
+            near: self.excerpt.error(start, &self.drive),
+            ..self.judged(model, &run)
+        }
     }
 
     /// What a fitted model leaves, from its run along the record.
@@ -188,13 +183,14 @@ impl<'a> Judge<'a> {
             held_out,
             all,
             ran_away: strays(run, self.record, self.travel),
+            near: f64::NAN,
             blocks: judged.map(on_block).collect(),
         }
     }
 
     /// The best fit from the best of several starts, as the excerpt tells them; only judged where
-    /// it cannot come down to what counts beside its rivals.
-    fn best(&self, starts: &[Simulated], count: usize, counts: &Counts<'_>) -> Option<Judged> {
+    /// it cannot come down to what counts, by what its rivals left there before they were fitted.
+    fn best(&self, starts: &[Simulated], count: usize, counts: f64) -> Option<Judged> {
         let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
         let best = nearest(side_by_side(starts, error), starts, count);
         let near = best
@@ -203,11 +199,13 @@ impl<'a> Judge<'a> {
         let near: Vec<Simulated> = near.collect();
         let nearest = nearest(near.iter().map(error).collect(), &near, 1);
         let start = *nearest.first()?;
-        let rivals = counts.rivals.iter().map(|rival| error(&rival.model));
-        let wanted = counts.ratio * rivals.fold(f64::INFINITY, f64::min);
-        if (1.0 - TAKEN_OFF) * error(start) > wanted {
+        let near = error(start);
+        if (1.0 - TAKEN_OFF) * near > counts {
             let run = simulate(start, &self.drive, self.record);
-            return Some(self.judged(start.clone(), &run));
+            return Some(Judged {
+                near,
+                ..self.judged(start.clone(), &run)
+            });
         }
         Some(self.fitted_from(start))
     }
@@ -302,11 +300,8 @@ impl Judge<'_> {
         progress(&Step::Rigid);
         let rigid = self.fitted(&start(Shape::default())?);
         progress(&Step::Bristle);
-        let bristle = self.best(
-            &bristles(unit, rigid.model.mechanics.mass, start),
-            1,
-            &ALONE,
-        )?;
+        let starts = bristles(unit, rigid.model.mechanics.mass, start);
+        let bristle = self.best(&starts, 1, ANYTHING)?;
         let mut shapes = Shapes {
             rigid,
             bristle,
@@ -315,12 +310,13 @@ impl Judge<'_> {
         progress(&Step::Gap);
         let scene = shapes.scene(dataset.resolution);
         if scene.is_worth_a_gap(rounding(dataset.resolution)) {
-            // One that leaves more than that does not even make the bristle doubtful.
-            let counts = Counts {
-                ratio: 1.0 / RIVAL_RATIO,
-                rivals: &[&shapes.bristle],
+            // Beside a bristle that is seen it counts where it makes that doubtful.
+            let counts = if scene.is_bristle() {
+                shapes.bristle.near / RIVAL_RATIO
+            } else {
+                SHAPE_RATIO * shapes.rigid.near
             };
-            shapes.gap = self.best(&gaps(unit, start), STARTS, &counts);
+            shapes.gap = self.best(&gaps(unit, start), STARTS, counts);
         }
         Some(shapes)
     }
@@ -415,11 +411,8 @@ impl Judge<'_> {
         let alone = bristle.model.mechanics.shape.bristle?;
         let shapes = bristles_behind_gaps(alone, gap.width(), unit).into_iter();
         let starts: Vec<Simulated> = shapes.filter_map(start).collect();
-        let counts = Counts {
-            ratio: SHAPE_RATIO,
-            rivals: &[bristle, gap],
-        };
-        self.best(&starts, 1, &counts)
+        let counts = SHAPE_RATIO * bristle.near.min(gap.near);
+        self.best(&starts, 1, counts)
     }
 }
 
@@ -618,6 +611,7 @@ mod tests {
             held_out,
             all: 2.0 * held_out,
             ran_away: false,
+            near: 3.0 * held_out,
             blocks: Vec::new(),
         }
     }
@@ -918,21 +912,22 @@ mod tests {
     fn a_gap_that_cannot_come_down_to_what_its_rival_leaves_is_judged_and_not_fitted() {
         let (dataset, law, truth) = simulated();
         let judge = Judge::of(&dataset, Controller::Known(law));
-        let rival = judge.judged(truth.clone(), &simulate(&truth, &judge.drive, judge.record));
         let mut start = truth;
         start.mechanics.shape.gap = shape(0.0, 80.0e-6).gap;
         start.mechanics.mass *= 1.5;
         let near = judge.excerpt.near(&start, &judge.drive);
-        let best = |counts: &Counts<'_>| {
+        let best = |counts: f64| {
             let best = judge.best(std::slice::from_ref(&start), 1, counts);
-            best.unwrap().model.mechanics
+            best.unwrap()
         };
-        let beside = Counts {
-            ratio: 1.0,
-            rivals: &[&rival],
-        };
-        assert_eq!(best(&beside), near.mechanics);
-        assert_ne!(best(&ALONE), near.mechanics);
+        let left = judge.excerpt.error(&near, &judge.drive);
+        let judged = best(0.49 * left);
+        assert_eq!(
+            (judged.model.mechanics, judged.near),
+            (near.mechanics, left)
+        );
+        assert_ne!(best(0.51 * left).model.mechanics, near.mechanics);
+        assert_ne!(best(f64::NAN).model.mechanics, near.mechanics);
     }
 
     #[test]

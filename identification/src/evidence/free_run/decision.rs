@@ -70,6 +70,12 @@ impl Scene {
             || bristle.held_out.min(bristle.all) < HELPS_RATIO * rigid.held_out.max(rigid.all)
     }
 
+    /// Whether a bristle is seen.
+    #[must_use]
+    pub(crate) fn is_bristle(&self) -> bool {
+        self.is_seen(&self.bristle)
+    }
+
     fn is_seen(&self, tried: &Tried) -> bool {
         tried.size >= self.smallest && tried.left.is_below(&self.rigid, SHAPE_RATIO)
     }
@@ -79,7 +85,7 @@ impl Scene {
     pub(crate) fn decide(&self) -> Accepted {
         let wins = |one: &Tried, other: &Tried| one.left.is_below(&other.left, RIVAL_RATIO);
         let bristle = &self.bristle;
-        let is_bristle = self.is_seen(bristle);
+        let is_bristle = self.is_bristle();
         let gap = self.gap.as_ref().filter(|gap| self.is_seen(gap));
         let presliding = is_bristle && self.gap.as_ref().is_none_or(|gap| wins(bristle, gap));
         // A gap shows at every reversal: one that shows in few blocks stands for something else.
