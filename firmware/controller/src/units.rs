@@ -8,10 +8,10 @@
 //! | [`Acceleration`] | 10 nm per cycle² | `I20F12` | ±5.2 km/s² at 1 kHz, 2.4 µm/s² |
 //! | [`Torque`] | µN·m | `I40F24` | ±550 kN·m |
 //!
-//! Every sum saturates, but for those that have room: of the law's torques, whose terms are bounded,
-//! and of positions, which have 2⁶³ of 39 pm to go (a way of a cycle is 2³¹ of them at most, so that
-//! takes 50 days at 84 m/s). Products of two 32-bit fixed-point numbers are taken in 64 bits, where they
-//! cannot overflow, and saturate only when they are brought back to 32 bits.
+//! Every sum saturates, but for those that have room: of the law's torques, whose terms are
+//! bounded, and of positions, which have 2⁶³ of 39 pm to go (a way of a cycle is 2³¹ of them at
+//! most, so that takes 50 days at 84 m/s). Products of two 32-bit fixed-point numbers are taken in
+//! 64 bits, where they cannot overflow, and saturate only when they are brought back to 32 bits.
 
 use fixed::types::{I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};
 

@@ -1,5 +1,5 @@
-//! At clock pace what the node does for a torque is timed. (A process has one executor, so each test
-//! of one has a file.)
+//! At clock pace what the node does for a torque is timed. (A process has one executor, so each
+//! test of one has a file.)
 
 use std::os::unix::net::UnixStream;
 use std::sync::mpsc::{Sender, channel};

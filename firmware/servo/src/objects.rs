@@ -526,8 +526,8 @@ pub const STARTED_BY: Address = Address::new(0x2203, 1);
 pub const MISSED_DEADLINES: Address = Address::new(0x2203, 2);
 /// The latest that the leaf was, µs.
 pub const LATEST: Address = Address::new(0x2203, 3);
-/// What the leaf has timed from the interrupt that takes a frame to the end of what it causes, where
-/// that is a torque: [`protocol::leaf::Durations`], subindex 1 to 16.
+/// What the leaf has timed from the interrupt that takes a frame to the end of what it causes,
+/// where that is a torque: [`protocol::leaf::Durations`], subindex 1 to 16.
 pub const RECEIVE_TO_TORQUE_INDEX: u16 = 0x2204;
 /// The same from when the node begins with what closes a cycle to when its torque is ready.
 pub const CONTROL_CYCLE_INDEX: u16 = 0x2205;
