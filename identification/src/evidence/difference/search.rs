@@ -1,6 +1,5 @@
 //! Searches for a gap and for a pitch error.
 
-use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::columns::{Apart, FittedWays, Way};
@@ -10,7 +9,8 @@ use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
 use crate::fit::blocks::Gain;
 use crate::fit::plain::Plain;
 use crate::fit::search::{descend, smallest};
-use crate::model::effects::{geometric, polynomial, wave};
+use crate::model::effects::wave::{self, Weight};
+use crate::model::effects::{geometric, polynomial};
 use crate::simulate::load::Behind;
 
 /// Widths that are tried, between the smallest that counts and a hundred times that, or a
@@ -197,7 +197,7 @@ fn half_periods(travel: f64) -> Range<usize> {
 fn strongest(samples: &[(f64, f64)], wave_numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let amplitude = |k: f64| {
         let (re, im) = samples.iter().fold((0.0, 0.0), |(re, im), (x, left)| {
-            let (sin, cos) = (TAU * k * x).sin_cos();
+            let [cos, sin] = Weight::PLAIN.at(k, *x);
             (re + cos * left, im + sin * left)
         });
         re.hypot(im)
@@ -208,6 +208,8 @@ fn strongest(samples: &[(f64, f64)], wave_numbers: impl Iterator<Item = f64>) ->
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::evidence::difference::Path;
     use crate::fit::made::{Axis, axis, usual};
