@@ -133,7 +133,16 @@ pub struct LeafTimes {
 
 impl LeafTimes {
     /// Those of one kind.
-    pub const fn of(&mut self, timed: Timed) -> &mut Durations {
+    #[must_use]
+    pub const fn of(&self, timed: Timed) -> &Durations {
+        match timed {
+            Timed::ReceiveToTorque => &self.receive_to_torque,
+            Timed::ControlCycle => &self.control_cycle,
+        }
+    }
+
+    /// The same, to add to or to clear.
+    pub const fn of_mut(&mut self, timed: Timed) -> &mut Durations {
         match timed {
             Timed::ReceiveToTorque => &mut self.receive_to_torque,
             Timed::ControlCycle => &mut self.control_cycle,

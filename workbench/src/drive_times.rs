@@ -33,6 +33,9 @@ const TIMED: [(u16, &str); 2] = [
     (CONTROL_CYCLE_INDEX, "control cycle"),
 ];
 
+/// Their last subindex.
+const LAST: u8 = Durations::NUMBERS as u8;
+
 /// Lets a drive begin anew.
 ///
 /// # Errors
@@ -50,14 +53,11 @@ pub fn clear<L: Link>(master: &mut Master<L>, axis: usize) -> Outcome<()> {
 pub fn read<L: Link>(master: &mut Master<L>, axis: usize) -> Outcome<Vec<DriveTimes>> {
     let mut list = Vec::new();
     for (index, of) in TIMED {
-        let mut read = |subindex| master.upload(axis, Address::new(index, subindex));
         let mut numbers = [0; Durations::NUMBERS];
         // Cycles go on meanwhile: the sum next to the count that it is of.
-        for subindex in [1, 4, 2, 3].into_iter().chain(5..) {
-            let Some(number) = numbers.get_mut(usize::from(subindex) - 1) else {
-                break;
-            };
-            *number = read(subindex)?.to_u32();
+        for subindex in [1, 4, 2, 3].into_iter().chain(5..=LAST) {
+            let value = master.upload(axis, Address::new(index, subindex))?;
+            numbers[usize::from(subindex) - 1] = value.to_u32();
         }
         list.extend(DriveTimes::of(of, &numbers));
     }

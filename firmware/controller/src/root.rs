@@ -6,6 +6,8 @@
 //! 2.4 %, then a step of Newton's method for the root itself and the last bit by comparison.
 //! 91 instructions with the call, where 32 digits took 450.
 
+use crate::units::{lower, upper};
+
 /// The whole part of the root.
 pub(crate) fn root(square: u64) -> u32 {
     if square == 0 {
@@ -22,7 +24,7 @@ const THREE: u32 = 3 << 28;
 
 /// The root of what has one of its two upper bits.
 fn normal_root(square: u64) -> u32 {
-    let x = upper(square);
+    let x = upper_word(square);
     let y = newton(newton(newton(start(x), x), x), x);
     // √x = x y, two bits short of the root.
     let short = upper_product(x, y).min((1 << 30) - 1);
@@ -30,12 +32,12 @@ fn normal_root(square: u64) -> u32 {
     // What is left of the square is below 2⁴¹; times y over two roots, which is y 2⁻³³.
     let left = square.wrapping_sub(product(near, near)).cast_signed();
     let step = product_signed(
-        narrow(left.wrapping_shr(10)),
+        lower(left.wrapping_shr(10)),
         y.wrapping_shr(1).cast_signed(),
     );
     exact(
         square,
-        near.saturating_add_signed(narrow(step.wrapping_shr(52))),
+        near.saturating_add_signed(lower(step.wrapping_shr(52))),
     )
 }
 
@@ -74,21 +76,11 @@ fn product_signed(one: i32, other: i32) -> i64 {
 
 /// The upper word of a product.
 fn upper_product(one: u32, other: u32) -> u32 {
-    upper(product(one, other))
+    upper_word(product(one, other))
 }
 
-#[expect(clippy::as_conversions, reason = "the upper word of two")]
-const fn upper(wide: u64) -> u32 {
-    (wide >> 32) as u32
-}
-
-#[expect(
-    clippy::as_conversions,
-    clippy::cast_possible_truncation,
-    reason = "what is narrowed here has 32 bits"
-)]
-const fn narrow(wide: i64) -> i32 {
-    wide as i32
+fn upper_word(wide: u64) -> u32 {
+    upper(wide.cast_signed()).cast_unsigned()
 }
 
 #[cfg(test)]

@@ -227,10 +227,8 @@ impl Torque {
     /// To whole µN·m, rounded to nearest and saturated.
     #[must_use]
     pub fn to_micro_nm_lossy(self) -> i32 {
-        // Half of 2⁻²⁴; what is amid two goes away from zero.
         let bits = self.0.to_bits();
-        let half = (1_i64 << 23).wrapping_add(bits.wrapping_shr(63));
-        narrowed::<24>(bits.saturating_add(half))
+        narrowed::<24>(bits.saturating_add(half(bits)))
     }
 
     /// To whole µN·m, rounded down and saturated: in fewer instructions, for torques that are
@@ -304,9 +302,8 @@ impl TorqueLimit {
     /// The same in whole µN·m, to nearest; what is amid two goes away from zero.
     pub(crate) fn cut_to_micro_nm(self, torque: Torque) -> i32 {
         let bits = self.cut(torque).0.to_bits();
-        let half = (1_i64 << 23).wrapping_add(bits.wrapping_shr(63));
         // Below 2⁵² of the last bits, and the limit is whole: nothing is lost, and it stays within.
-        lower(bits.wrapping_add(half).wrapping_shr(24))
+        lower(bits.wrapping_add(half(bits)).wrapping_shr(24))
     }
 
     /// Whole µN·m brought within it.
@@ -424,8 +421,14 @@ pub(crate) const fn sixteenfold(value: i32) -> i32 {
     eightfold.saturating_add(eightfold)
 }
 
+/// Half of what 24 bits make: rounding down with it is to nearest, and what is amid two goes away
+/// from zero.
+const fn half(bits: i64) -> i64 {
+    (1_i64 << 23).wrapping_add(bits.wrapping_shr(63))
+}
+
 #[expect(clippy::as_conversions, reason = "the upper word of two")]
-const fn upper(wide: i64) -> i32 {
+pub(crate) const fn upper(wide: i64) -> i32 {
     (wide >> 32) as i32
 }
 
@@ -434,7 +437,7 @@ const fn upper(wide: i64) -> i32 {
     clippy::cast_possible_truncation,
     reason = "the lower word of two"
 )]
-const fn lower(wide: i64) -> i32 {
+pub(crate) const fn lower(wide: i64) -> i32 {
     wide as i32
 }
 

@@ -201,10 +201,9 @@ impl Leaf {
 
     /// Of a torque that is due to the frame the node is told how long it took.
     fn take(&mut self, frame: &CanFrame) -> io::Result<()> {
-        let received = std::time::Instant::now();
-        if self.act(|station, time, send| station.take(frame, time.now_us(), send))? {
-            self.station
-                .took(Timed::ReceiveToTorque, ns_since(received));
+        let begun = self.act(|station, time, send| station.take(frame, time.now_us(), send))?;
+        if let Some(begun) = begun {
+            self.station.took(Timed::ReceiveToTorque, ns_since(begun));
         }
         Ok(())
     }
@@ -215,19 +214,19 @@ impl Leaf {
             .map(|_| ())
     }
 
-    /// Lets the station act and sends what it says; tells whether that was a torque. At the pace of
-    /// the clock the station is told how long that took it: in lock-step nobody waits for it, and
-    /// a clock is slow to read where the kernel is a process.
+    /// Lets the station act and sends what it says. At the pace of the clock the station is told how
+    /// long a torque took it, and it is told when it began with it: in lock-step nobody waits for
+    /// it, and a clock is slow to read where the kernel is a process.
     fn act(
         &mut self,
         act: impl FnOnce(&mut dyn Station, &mut LockstepTime, &mut dyn FnMut(CanFrame)),
-    ) -> io::Result<bool> {
+    ) -> io::Result<Option<std::time::Instant>> {
         let begun = self.is_timed.then(std::time::Instant::now);
-        let (mut outcome, mut is_torque, mut took_ns) = (Ok(()), false, None);
+        let (mut outcome, mut took_ns) = (Ok(()), None);
         let (port, torque) = (&self.port, self.torque);
         let mut send = |frame: CanFrame| {
             if frame.id() == torque {
-                (is_torque, took_ns) = (true, begun.map(ns_since));
+                took_ns = begun.map(ns_since);
             }
             if outcome.is_ok() {
                 outcome = port.send(&frame);
@@ -237,7 +236,7 @@ impl Leaf {
         if let Some(ns) = took_ns {
             self.station.took(Timed::ControlCycle, ns);
         }
-        outcome.map(|()| is_torque)
+        outcome.map(|()| begun.filter(|_| took_ns.is_some()))
     }
 
     fn is_of_workbench(&self, frame: &CanFrame) -> bool {

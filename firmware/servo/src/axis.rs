@@ -432,6 +432,7 @@ impl Axis {
     }
 
     fn advance(&mut self, settings: &Settings, standing: bool, notices: &mut Notices) {
+        // Nothing comes of that by itself, and it is almost every cycle.
         if self.drive == Drive::OperationEnabled && self.stage.is_enabled() {
             return;
         }

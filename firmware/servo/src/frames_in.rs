@@ -177,7 +177,7 @@ impl Servo {
         let (response, effect) = self.server.handle(request, &readings, has_torque);
         match effect {
             Effect::None => {}
-            Effect::Clear(timed) => *self.times.of(timed) = Durations::default(),
+            Effect::Clear(timed) => *self.times.of_mut(timed) = Durations::default(),
             // At rest at once; in motion with the next cycle, as a whole.
             Effect::Commit(settings) => {
                 self.committed = Some(settings);

@@ -6,7 +6,7 @@ use protocol::message::{self, EmergencyMessage, Status};
 use protocol::states::StatusWord;
 use protocol::table::{HEARTBEAT_EVERY_CYCLES, STATUS_EVERY_CYCLES};
 use protocol::weight::{FollowingError24, TorqueMicroNm, TorquePerMille};
-use protocol::{Fault, Message, SyncCounter};
+use protocol::{CanFrame, Fault, Message, SyncCounter};
 
 use crate::axis::{Notice, Notices};
 use crate::drive::Drive;
@@ -61,9 +61,13 @@ impl Periodic {
 
 impl Servo {
     pub(crate) fn send(&mut self, message: Message) {
+        self.put(message.encode(self.ids));
+    }
+
+    fn put(&mut self, frame: CanFrame) {
         // The outbox holds more frames than one event can cause (see `Outbox`); a full one drops
         // the newest.
-        let _ = self.outbox.push(message.encode(self.ids));
+        let _ = self.outbox.push(frame);
     }
 
     pub(crate) fn send_torque(&mut self, stage: StageOutput) {
@@ -76,8 +80,7 @@ impl Servo {
             control: stage.control,
             counter,
         };
-        // As in `send`.
-        let _ = self.outbox.push(torque.encode(self.ids));
+        self.put(torque.encode(self.ids));
     }
 
     pub(crate) fn send_periodic(&mut self) {

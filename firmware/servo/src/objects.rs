@@ -560,6 +560,13 @@ pub fn is_timed(address: Address) -> bool {
 /// Counts since reset: [`crate::watchdog::Counts`], subindex 1 to 9.
 pub const DIAGNOSTICS_INDEX: u16 = 0x2200;
 
+/// What subindices 2 to 5 of what the leaf has timed say.
+const LEAST: &str = "least of these times, ns";
+const GREATEST: &str = "greatest of these times, ns";
+const SUM: &str = "sum of these times, us; stops at its end";
+const CLASSES: &str =
+    "those below 1 us; subindices 6 to 15 below 2, 4, 8 to 1024 us, 16 from there on";
+
 /// Objects beside the parameters that can be read, with what they say.
 pub const READINGS: [(Address, &str); 40] = [
     (DEVICE_TYPE, "device type"),
@@ -600,42 +607,18 @@ pub const READINGS: [(Address, &str); 40] = [
         Address::new(RECEIVE_TO_TORQUE_INDEX, 1),
         "frames that were timed from their interrupt to the end of what they caused, a torque with it; a write of anything clears 2204h",
     ),
-    (
-        Address::new(RECEIVE_TO_TORQUE_INDEX, 2),
-        "least of these times, ns",
-    ),
-    (
-        Address::new(RECEIVE_TO_TORQUE_INDEX, 3),
-        "greatest of these times, ns",
-    ),
-    (
-        Address::new(RECEIVE_TO_TORQUE_INDEX, 4),
-        "sum of these times, us; stops at its end",
-    ),
-    (
-        Address::new(RECEIVE_TO_TORQUE_INDEX, 5),
-        "those below 1 us; subindices 6 to 15 below 2, 4, 8 to 1024 us, 16 from there on",
-    ),
+    (Address::new(RECEIVE_TO_TORQUE_INDEX, 2), LEAST),
+    (Address::new(RECEIVE_TO_TORQUE_INDEX, 3), GREATEST),
+    (Address::new(RECEIVE_TO_TORQUE_INDEX, 4), SUM),
+    (Address::new(RECEIVE_TO_TORQUE_INDEX, 5), CLASSES),
     (
         Address::new(CONTROL_CYCLE_INDEX, 1),
         "control cycles that were timed, from when the node began with them until their torque was ready; a write of anything clears 2205h",
     ),
-    (
-        Address::new(CONTROL_CYCLE_INDEX, 2),
-        "least of these times, ns",
-    ),
-    (
-        Address::new(CONTROL_CYCLE_INDEX, 3),
-        "greatest of these times, ns",
-    ),
-    (
-        Address::new(CONTROL_CYCLE_INDEX, 4),
-        "sum of these times, us; stops at its end",
-    ),
-    (
-        Address::new(CONTROL_CYCLE_INDEX, 5),
-        "those below 1 us; subindices 6 to 15 below 2, 4, 8 to 1024 us, 16 from there on",
-    ),
+    (Address::new(CONTROL_CYCLE_INDEX, 2), LEAST),
+    (Address::new(CONTROL_CYCLE_INDEX, 3), GREATEST),
+    (Address::new(CONTROL_CYCLE_INDEX, 4), SUM),
+    (Address::new(CONTROL_CYCLE_INDEX, 5), CLASSES),
     (
         REFINED_LEVEL,
         "factor on the friction levels that turns have refined, 1e-6; another model sets it to one",

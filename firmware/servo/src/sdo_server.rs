@@ -113,11 +113,10 @@ impl SdoServer {
         match request {
             Request::Upload(address) => (Some(self.upload(address, readings)), Effect::None),
             Request::Download(objects::COMMIT, data) => self.commit(data, has_torque),
-            Request::Download(address, _) if objects::cleared(address).is_some() => (
-                Some(Response::Downloaded(address)),
-                objects::cleared(address).map_or(Effect::None, Effect::Clear),
-            ),
-            Request::Download(address, data) => (Some(self.download(address, data)), Effect::None),
+            Request::Download(address, data) => match objects::cleared(address) {
+                Some(timed) => (Some(Response::Downloaded(address)), Effect::Clear(timed)),
+                None => (Some(self.download(address, data)), Effect::None),
+            },
             Request::Unsupported(address) => (
                 Some(aborted(address, AbortCode::CommandUnknown)),
                 Effect::None,
@@ -263,12 +262,10 @@ fn reading(address: Address, readings: &Readings) -> Option<Expedited> {
             index: objects::DIAGNOSTICS_INDEX,
             subindex,
         } => return number(&readings.counts.in_order(), subindex),
-        Address { index, subindex } if objects::timed(index).is_some() => {
-            let mut times = readings.times;
-            let numbers = times.of(objects::timed(index)?).in_order();
+        Address { index, subindex } => {
+            let numbers = readings.times.of(objects::timed(index)?).in_order();
             return number(&numbers, subindex);
         }
-        _ => return None,
     })
 }
 

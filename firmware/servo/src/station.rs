@@ -36,6 +36,6 @@ impl Station for Servo {
     }
 
     fn took(&mut self, timed: Timed, ns: u32) {
-        self.times.of(timed).took(ns);
+        self.times.of_mut(timed).took(ns);
     }
 }

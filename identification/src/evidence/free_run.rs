@@ -120,6 +120,13 @@ pub(crate) struct Summary {
     pub something_left: bool,
 }
 
+/// Where a fit begins.
+struct Start {
+    model: Simulated,
+    /// What it leaves on the excerpt.
+    near: f64,
+}
+
 struct Judge<'a> {
     drive: Drive,
     record: &'a Record,
@@ -157,21 +164,30 @@ impl<'a> Judge<'a> {
         };
         let near = self.excerpt.near(start, &self.drive);
         let is_nearer = error(&near) <= error(start);
-        self.fitted_from(if is_nearer { &near } else { start })
+        self.fitted_from(&self.start(if is_nearer { near } else { start.clone() }))
+    }
+
+    /// A start with what it leaves on the excerpt.
+    fn start(&self, model: Simulated) -> Start {
+        let near = self.excerpt.error(&model, &self.drive);
+        Start { model, near }
     }
 
     /// The fit to all of the record.
-    fn fitted_from(&self, start: &Simulated) -> Judged {
-        let model = fit(start, &self.drive, self.record, &|row| self.is_fitted(row));
-        let run = simulate(&model, &self.drive, self.record);
-        Judged {
-            near: self.excerpt.error(start, &self.drive),
-            ..self.judged(model, &run)
-        }
+    fn fitted_from(&self, start: &Start) -> Judged {
+        let is_fitted = |row| self.is_fitted(row);
+        let model = fit(&start.model, &self.drive, self.record, &is_fitted);
+        self.judged(model, start.near)
     }
 
-    /// What a fitted model leaves, from its run along the record.
-    fn judged(&self, model: Simulated, run: &Run) -> Judged {
+    /// What a model leaves, whose start left so much on the excerpt.
+    fn judged(&self, model: Simulated, near: f64) -> Judged {
+        let run = simulate(&model, &self.drive, self.record);
+        self.judged_by(model, near, &run)
+    }
+
+    /// The same from its run along the record.
+    fn judged_by(&self, model: Simulated, near: f64, run: &Run) -> Judged {
         let held_out = position_rms(run, self.record, &|row| !self.is_fitted(row));
         let all = position_rms(run, self.record, &|_| true);
         let judged = (1..self.record.len() / self.block_rows).step_by(2);
@@ -183,7 +199,7 @@ impl<'a> Judge<'a> {
             held_out,
             all,
             ran_away: strays(run, self.record, self.travel),
-            near: f64::NAN,
+            near,
             blocks: judged.map(on_block).collect(),
         }
     }
@@ -194,35 +210,30 @@ impl<'a> Judge<'a> {
         let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
         let best = nearest(side_by_side(starts, error), starts, count);
         let near = best
-            .iter()
+            .into_iter()
             .map(|start| self.excerpt.near(start, &self.drive));
-        let near: Vec<Simulated> = near.collect();
-        let nearest = nearest(near.iter().map(error).collect(), &near, 1);
-        let start = *nearest.first()?;
-        let near = error(start);
-        if (1.0 - TAKEN_OFF) * near > counts {
-            let run = simulate(start, &self.drive, self.record);
-            return Some(Judged {
-                near,
-                ..self.judged(start.clone(), &run)
-            });
-        }
-        Some(self.fitted_from(start))
+        let near: Vec<Start> = near.map(|model| self.start(model)).collect();
+        let errors = near.iter().map(|start| start.near).collect();
+        let start = *nearest(errors, &near, 1).first()?;
+        Some(if (1.0 - TAKEN_OFF) * start.near > counts {
+            self.judged(start.model.clone(), start.near)
+        } else {
+            self.fitted_from(start)
+        })
     }
 
     /// A shape, started once more from the masses and forces of other fits, as far as the excerpt
     /// tells that this leaves less; the best is kept.
     fn restarted(&self, judged: Judged, others: &[&Judged]) -> Judged {
         let shape = judged.model.mechanics.shape;
-        let error = |model: &Simulated| self.excerpt.error(model, &self.drive);
-        let worth = WORTH_A_FIT * error(&judged.model);
+        let worth = WORTH_A_FIT * self.excerpt.error(&judged.model, &self.drive);
         let near = others.iter().map(|other| {
             let mut start = other.model.clone();
             start.mechanics.shape = shape;
-            self.excerpt.near(&start, &self.drive)
+            self.start(self.excerpt.near(&start, &self.drive))
         });
-        let nearer = near.filter(|near| error(near) <= worth);
-        let fitted = nearer.map(|near| self.fitted_from(&near));
+        let nearer = near.filter(|start| start.near <= worth);
+        let fitted = nearer.map(|start| self.fitted_from(&start));
         fitted.fold(judged, Judged::better)
     }
 }
@@ -682,7 +693,7 @@ mod tests {
         let run = Run {
             motor: (0..2500).map(|row| off[row / 400]).collect(),
         };
-        let left = judge.judged(model(Shape::default()), &run);
+        let left = judge.judged_by(model(Shape::default()), 0.0, &run);
         let near = |value: f64, wanted: f64| assert!((value - wanted).abs() < 1.0e-12, "{value}");
         near(left.held_out, (35.0_f64 / 3.0).sqrt());
         near(left.all, ((3600.0 + 400.0 * 55.0) / 2200.0_f64).sqrt());
@@ -893,10 +904,7 @@ mod tests {
     fn rigid_friction_starts_once_more_where_a_gap_ended_with_the_gap_at_zero() {
         let (dataset, law, truth) = simulated();
         let judge = Judge::of(&dataset, Controller::Known(law));
-        let of = |model: Simulated| {
-            let run = simulate(&model, &judge.drive, judge.record);
-            judge.judged(model, &run)
-        };
+        let of = |model: Simulated| judge.judged(model, 0.0);
         let mut heavy = truth.clone();
         heavy.mechanics.mass *= 20.0;
         let lost = of(heavy);
