@@ -214,9 +214,9 @@ impl Leaf {
             .map(|_| ())
     }
 
-    /// Lets the station act and sends what it says. At the pace of the clock the station is told how
-    /// long a torque took it, and it is told when it began with it: in lock-step nobody waits for
-    /// it, and a clock is slow to read where the kernel is a process.
+    /// Lets the station act and sends what it says. At the pace of the clock the station is told
+    /// how long a torque took it, and the caller when that began: in lock-step nobody waits for it,
+    /// and a clock is slow to read where the kernel is a process.
     fn act(
         &mut self,
         act: impl FnOnce(&mut dyn Station, &mut LockstepTime, &mut dyn FnMut(CanFrame)),
