@@ -43,7 +43,9 @@ const OBJECTS_HEAD: &str = "# Objects of the drive\n\n\
     the staged set into machine units of its own cycle time (1006h) and makes it active as a whole. A commit is refused with 0604 0043h where \
     the values do not go together or do not fit the machine units at that cycle time. 2F02h:1 then gives the row of the parameter to look at \
     first, 2F02h:2 the reason. With torque on the axis, cycle time (1006h), position source (2100h:1), feed constant (6092h), encoder resolution \
-    (608Fh) and the scale's offset (2103h:1) have to stay: 0800 0022h. 2F01h chooses which set uploads read.\n\n\
+    (608Fh) and the scale's offset (2103h:1) have to stay: 0800 0022h. A board converts a set beside its cycles, for about a millisecond, and \
+    answers then; meanwhile the staged set stays as it is, and parameters and commits are refused with 0800 0022h. \
+    2F01h chooses which set uploads read.\n\n\
     A row with \"choice\" takes the codes that its name lists, and no others. Torque is that of the motor, ways and velocities are those of \
     the table, inertia is motor torque per acceleration at the table: mass · lead / 2 pi.\n\n\
     The setpoint period (60C2h) is value · 10^exponent seconds, and 1 to 20 whole cycles. Q29 coefficients of the torque filter \
@@ -59,10 +61,10 @@ fn parameter_rows() -> String {
             "| {} | {index:04X}h:{subindex} | {} | {} | {} | {} | {} |\n",
             place + 1,
             entry.name(),
-            entry.unit.text,
+            entry.unit().text,
             entry.min,
             entry.max,
-            entry.default
+            entry.default()
         );
     }
     text

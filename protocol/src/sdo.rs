@@ -137,6 +137,17 @@ pub enum Request {
 }
 
 impl Request {
+    /// The object that it is about.
+    #[must_use]
+    pub const fn address(self) -> Address {
+        match self {
+            Self::Upload(address)
+            | Self::Download(address, _)
+            | Self::Unsupported(address)
+            | Self::Abort(address) => address,
+        }
+    }
+
     /// Decodes the 8 bytes of a request; total.
     #[must_use]
     pub const fn decode(payload: [u8; 8]) -> Self {
@@ -180,6 +191,17 @@ pub enum Response {
 }
 
 impl Response {
+    /// Whether it answers a request about an object, as far as it says.
+    #[must_use]
+    pub fn is_about(self, object: Address) -> bool {
+        match self {
+            Self::Uploaded(address, _) | Self::Downloaded(address) | Self::Aborted(address, _) => {
+                address == object
+            }
+            Self::Unknown => true,
+        }
+    }
+
     /// Decodes the 8 bytes of a response; total.
     #[must_use]
     pub const fn decode(payload: [u8; 8]) -> Self {

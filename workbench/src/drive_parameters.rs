@@ -60,12 +60,12 @@ impl Set {
         let entry = TABLE.iter().find(|entry| entry.parameter == parameter);
         let entry =
             entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
-        let rounded = (si * entry.unit.per_si as f64).round();
+        let rounded = (si * entry.unit().per_si as f64).round();
         if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
             return Err(Failure::new(format!(
                 "{key}: the drive cannot hold this value ({} [{}] takes {} to {}, wanted {rounded}); choose another one",
                 entry.name(),
-                entry.unit.text,
+                entry.unit().text,
                 entry.min,
                 entry.max
             )));

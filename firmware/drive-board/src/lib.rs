@@ -5,13 +5,14 @@
 //! FDCAN interrupt ─▶ queue of 32 ─▶ control executor ─▶ torque ────────▶ mailbox
 //!   (priority 1)                    (priority 2)    └─▶ others, in line ─▶ two of three mailboxes
 //! hardware timer (priority 0) ──────────┘           └─▶ watchdog, while the contract is kept
-//! thread: log
+//! thread: commits of parameters, log
 //! ```
 //!
 //! **Contract** ([`board_timing::contract`]). The node runs in an interrupt executor of its own, so
 //! that nothing but the interrupts of CAN and of the timer comes before it. Frames wait in a queue
-//! that the interrupt fills, however long a commit of parameters takes. Nothing in the control path
-//! awaits a transmission: all other frames leave one of the three mailboxes to the torque, an older
+//! that the interrupt fills. What takes longer than a cycle may, the conversion of parameters at a
+//! commit, is done in thread mode, from where everything else interrupts it. Nothing in the control
+//! path awaits a transmission: all other frames leave one of the three mailboxes to the torque, an older
 //! torque that is still there is cancelled, and the mailboxes go by identifier. What is due is
 //! looked at before the queue, so that a busy bus does not put it off. What is late is counted;
 //! beyond contract the watchdog is not fed any more.
@@ -40,7 +41,7 @@ use board_timing::{BitTiming, ONE_MEGABIT};
 use defmt::{error, info, unwrap, warn};
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
-use embassy_futures::select::{Either, select};
+use embassy_futures::select::{Either3, select3};
 use embassy_stm32::can::config::{
     FrameTransmissionConfig, GlobalFilter, NominalBitTiming, TxBufferMode,
 };
@@ -54,6 +55,8 @@ use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Peri, pac};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_can::{Frame as _, StandardId};
 use heapless::{Deque, Vec};
@@ -61,6 +64,7 @@ use protocol::cob::{AxisIds, FrameKind, HEARD_BY_SERVO, NodeId};
 use protocol::leaf::{LeafReport, StartedBy, Timed};
 use protocol::{CanFrame, Station};
 use servo::Servo;
+use servo::commit::Commit;
 use static_cell::StaticCell;
 
 /// Pins that a board has to keep as they are.
@@ -80,6 +84,18 @@ unsafe fn USART3() {
 
 /// Frames other than torque that wait for a mailbox: those of one event, doubled.
 type Line = Deque<CanFrame, 16>;
+
+/// A commit on its way to thread mode, and back: there is one, and who has it may write to it.
+static TO_CONVERT: Signal<CriticalSectionRawMutex, &'static mut Commit> = Signal::new();
+static CONVERTED: Signal<CriticalSectionRawMutex, &'static mut Commit> = Signal::new();
+static COMMIT: StaticCell<Commit> = StaticCell::new();
+static SERVO: StaticCell<Servo> = StaticCell::new();
+
+/// Apart, so that its 3 KB are on the stack before the node runs and never again.
+#[inline(never)]
+fn servo(ids: AxisIds) -> &'static mut Servo {
+    SERVO.init_with(|| Servo::new(ids))
+}
 
 /// Received frames that wait for the control executor: those of ten cycles.
 const HEARD: usize = 32;
@@ -177,7 +193,12 @@ pub fn start(
     let can = can.start(OperatingMode::NormalOperationMode);
     let can = can.buffered(SENT.init(TxBuf::new()), RECEIVED.init(RxBuf::new()));
     interrupt::USART3.set_priority(Priority::P2);
-    let control = unwrap!(control(can.writer(), can.reader(), dog, ids, started_by));
+    let leaf = Leaf {
+        servo: servo(ids),
+        commit: COMMIT.init_with(Commit::default),
+        started_by,
+    };
+    let control = unwrap!(control(can.writer(), can.reader(), dog, leaf));
     CONTROL.start(interrupt::USART3).spawn(control);
     info!(
         "servo {} for plant {} on FDCAN1, started by {}",
@@ -186,6 +207,17 @@ pub fn start(
         started_by.code()
     );
     spawner.spawn(unwrap!(log(can, pins)));
+    spawner.spawn(unwrap!(convert()));
+}
+
+/// Converts what the node wants converted, while nothing else wants the processor.
+#[embassy_executor::task]
+async fn convert() {
+    loop {
+        let commit = TO_CONVERT.wait().await;
+        commit.convert();
+        CONVERTED.signal(commit);
+    }
 }
 
 /// Says now and then how the bus is. It keeps peripheral and pins, which end with their values.
@@ -203,28 +235,41 @@ async fn log(can: BufferedCan<'static, SENDING, HEARD>, pins: Pins) {
     }
 }
 
+/// What the control executor has to know of its leaf.
+struct Leaf {
+    servo: &'static mut Servo,
+    commit: &'static mut Commit,
+    started_by: StartedBy,
+}
+
 #[embassy_executor::task]
 async fn control(
     transmit: BufferedCanSender,
     receive: BufferedCanReceiver,
     mut dog: IndependentWatchdog<'static, IWDG>,
-    ids: AxisIds,
-    started_by: StartedBy,
+    leaf: Leaf,
 ) {
+    let Leaf {
+        servo,
+        commit,
+        started_by,
+    } = leaf;
     let mut node = Node {
-        servo: Servo::new(ids),
+        servo,
         contract: Contract::default(),
         transmit,
         line: Line::new(),
         torques: 0,
+        commit: Some(commit),
     };
     let mut due = Due::default();
-    Station::boot(&mut node.servo, &mut |frame| wait(&mut node.line, frame));
+    Station::boot(node.servo, &mut |frame| wait(&mut node.line, frame));
     // Heartbeats begin with the first event.
     let now_us = Instant::now().as_micros();
     node.time(now_us, now_us);
     loop {
         node.send_others();
+        node.send_commit();
         node.servo.report(LeafReport {
             started_by,
             missed_deadlines: node.contract.missed(),
@@ -246,28 +291,51 @@ async fn control(
             LONGEST_WAIT_US
         };
         let wake = Timer::at(Instant::from_micros(due.until_us(now_us, longest_us)));
-        match select(receive.receive(), wake).await {
-            Either::First(Ok(envelope)) => node.take(&envelope.frame, envelope.ts),
-            Either::First(Err(bus)) => warn!("bus: {}", bus),
-            Either::Second(()) => {}
+        match select3(receive.receive(), wake, CONVERTED.wait()).await {
+            Either3::First(Ok(envelope)) => node.take(&envelope.frame, envelope.ts),
+            Either3::First(Err(bus)) => warn!("bus: {}", bus),
+            Either3::Second(()) => {}
+            Either3::Third(commit) => node.converted(commit),
         }
     }
 }
 
 /// The drive node, its contract, and what it has to say.
 struct Node {
-    servo: Servo,
+    servo: &'static mut Servo,
     contract: Contract,
     transmit: BufferedCanSender,
     line: Line,
     /// Mailboxes that the last torque took, a bit each.
     torques: u32,
+    /// Where thread mode does not have it.
+    commit: Option<&'static mut Commit>,
 }
 
 impl Node {
     /// Something has been due since a time.
     fn time(&mut self, since_us: u64, now_us: u64) {
         let _is_no_frame = self.happens([since_us, now_us], |servo, send| servo.time(now_us, send));
+    }
+
+    /// A commit comes back from thread mode.
+    fn converted(&mut self, commit: &'static mut Commit) {
+        let now_us = Instant::now().as_micros();
+        let _is_no_frame = self.happens([now_us, now_us], |servo, send| {
+            servo.end_commit(commit).iter().copied().for_each(send);
+        });
+        self.commit = Some(commit);
+    }
+
+    /// A commit that somebody asked for goes to thread mode, once it is back from there.
+    fn send_commit(&mut self) {
+        if let Some(commit) = self.commit.take() {
+            if self.servo.begin_commit(commit) {
+                TO_CONVERT.signal(commit);
+            } else {
+                self.commit = Some(commit);
+            }
+        }
     }
 
     /// A frame came; `at` is when the interrupt took it.
@@ -278,7 +346,7 @@ impl Node {
         let now_us = Instant::now().as_micros();
         let at_us = at.as_micros();
         if self.happens([at_us, now_us], |servo, send| {
-            servo.take(&frame, now_us, send);
+            servo.hear(&frame, now_us).iter().copied().for_each(send);
         }) {
             self.servo.took(Timed::ReceiveToTorque, ns_since(at_us));
         }
@@ -297,6 +365,7 @@ impl Node {
             transmit,
             line,
             torques,
+            commit: _,
         } = self;
         let has_torque = servo.drive().is_energised();
         let torque = embedded_can::Id::from(servo.ids().identifier(FrameKind::Torque));

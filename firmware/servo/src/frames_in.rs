@@ -5,11 +5,12 @@ use protocol::leaf::Durations;
 use protocol::message::{
     self, DecodeError, EmergencyMessage, Feedback, NmtCommand, NmtState, PlantStatus, Setpoint,
 };
-use protocol::sdo::Request;
+use protocol::sdo::{Request, Response};
 use protocol::{CanFrame, Fault, Message, SyncCounter, SyncEvent};
 
 use crate::Servo;
 use crate::axis::Notices;
+use crate::commit::Commit;
 use crate::inbox::Taken;
 use crate::sdo_server::Effect;
 use crate::stage::StageInput;
@@ -23,10 +24,70 @@ impl Servo {
         &self.outbox
     }
 
-    /// Takes a frame from the bus. What was due before it happens first.
+    /// Takes a frame from the bus. What was due before it happens first. A commit is converted at
+    /// once, which takes longer than a control cycle may on a board: [`Self::hear`].
     #[must_use = "the frames have to go on the bus"]
     pub fn on_frame(&mut self, frame: &CanFrame, now_us: u64) -> &[CanFrame] {
         self.outbox.clear();
+        self.take_frame(frame, now_us);
+        if self.commits.is_wanted() {
+            self.commit_at_once();
+        }
+        &self.outbox
+    }
+
+    /// The same where somebody else converts: a commit is handed out with [`Self::begin_commit`]
+    /// and answered with [`Self::end_commit`].
+    #[must_use = "the frames have to go on the bus"]
+    pub fn hear(&mut self, frame: &CanFrame, now_us: u64) -> &[CanFrame] {
+        self.outbox.clear();
+        self.take_frame(frame, now_us);
+        &self.outbox
+    }
+
+    /// Hands out a set that is to be converted, once; tells whether there is one.
+    #[must_use = "it has to be converted"]
+    pub fn begin_commit(&mut self, commit: &mut Commit) -> bool {
+        self.commits.hand_out(self.server.staged(), commit)
+    }
+
+    /// A set was converted. Nothing comes of it where the node was reset meanwhile.
+    #[must_use = "the frames have to go on the bus"]
+    pub fn end_commit(&mut self, commit: &Commit) -> &[CanFrame] {
+        self.outbox.clear();
+        self.take_over(commit);
+        &self.outbox
+    }
+
+    #[cold]
+    fn commit_at_once(&mut self) {
+        let mut commit = Commit::default();
+        if self.begin_commit(&mut commit) {
+            commit.convert();
+            self.take_over(&commit);
+        }
+    }
+
+    #[cold]
+    fn take_over(&mut self, commit: &Commit) {
+        let (Some(settings), true) = (commit.settings(), self.commits.take_back(commit)) else {
+            return;
+        };
+        let has_torque = self.axis.drive.is_energised();
+        let fit = settings.as_ref().map(|_| ()).map_err(|error| *error);
+        let response = self.server.end_commit(fit, has_torque);
+        if let (Ok(settings), Response::Downloaded(_)) = (settings, response) {
+            // At rest at once; in motion with the next cycle, as a whole.
+            self.committed = Some(settings.clone());
+            if !has_torque {
+                self.activate();
+                self.close_if_complete();
+            }
+        }
+        self.send(Message::SdoResponse(response));
+    }
+
+    fn take_frame(&mut self, frame: &CanFrame, now_us: u64) {
         self.start_clock(now_us);
         self.catch_up(now_us);
         if let Some(kind) = message::kind_of(self.ids, frame)
@@ -35,7 +96,6 @@ impl Servo {
             self.on_malformed(error.kind);
         }
         self.close_if_complete();
-        &self.outbox
     }
 
     /// What comes in every cycle is taken as it is, and not as one of thirteen messages.
@@ -178,13 +238,7 @@ impl Servo {
         match effect {
             Effect::None => {}
             Effect::Clear(timed) => *self.times.of_mut(timed) = Durations::default(),
-            // At rest at once; in motion with the next cycle, as a whole.
-            Effect::Commit(settings) => {
-                self.committed = Some(settings);
-                if !has_torque {
-                    self.activate();
-                }
-            }
+            Effect::Convert => self.commits.ask(),
         }
         if let Some(response) = response {
             self.send(Message::SdoResponse(response));
@@ -217,13 +271,7 @@ impl Servo {
                 self.leave_operational(NmtState::PreOperational);
             }
             Some(NmtCommand::ResetNode | NmtCommand::ResetCommunication) => {
-                let said = core::mem::take(&mut self.outbox);
-                *self = Self {
-                    outbox: said,
-                    leaf: self.leaf,
-                    times: self.times,
-                    ..Self::new(self.ids)
-                };
+                self.reset();
                 self.send(BOOT_UP);
             }
         }

@@ -14,7 +14,7 @@
 //!
 //! Where to look: the states of the drive in [`drive`], the power stage in [`stage`], one control
 //! cycle in [`axis`], what makes a cycle begin and close in `cycle`, its times in [`timing`],
-//! parameters in [`objects`], [`parameters`], [`conversion`] and [`settings`].
+//! parameters in [`objects`], [`parameters`], [`commit`], [`conversion`] and [`settings`].
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(
@@ -38,6 +38,7 @@
 )]
 
 pub mod axis;
+pub mod commit;
 pub mod conversion;
 mod cycle;
 pub mod drive;
@@ -64,6 +65,7 @@ use protocol::message::{EmergencyMessage, NmtCommand, NmtState};
 use protocol::{CanFrame, Fault, SyncTracker};
 
 use axis::Axis;
+use commit::Commits;
 use drive::Drive;
 use frames_out::Periodic;
 use inbox::Inbox;
@@ -95,6 +97,7 @@ pub struct Servo {
     emergency: (u16, u8),
     periodic: Periodic,
     server: SdoServer,
+    commits: Commits,
     active: Option<Settings>,
     committed: Option<Settings>,
     /// What the leaf reports of itself.
@@ -108,26 +111,65 @@ pub struct Servo {
 impl Servo {
     /// A node in its reset state; [`Self::boot`] announces it.
     #[must_use]
+    #[inline(never)]
     pub fn new(ids: AxisIds) -> Self {
-        let active = ParameterSet::default().settings().ok();
+        let active = defaults();
         Self {
             ids,
             nmt: NmtState::PreOperational,
             pending_nmt: None,
             sync: SyncTracker::default(),
-            timing: Timing::new(active.as_ref().map_or(0, |settings| settings.period_us)),
+            timing: Timing::new(period_us(active.as_ref())),
             inbox: Inbox::default(),
             in_sync: false,
             axis: Axis::default(),
             emergency: (0, 0),
             periodic: Periodic::default(),
             server: SdoServer::default(),
+            commits: Commits::default(),
             active,
             committed: None,
             leaf: LeafReport::default(),
             times: LeafTimes::default(),
             outbox: Outbox::new(),
         }
+    }
+
+    /// As new, but for what the leaf reports and what has to be said. In its place: a second node
+    /// beside it would take 3 KB of a board's stack.
+    pub(crate) fn reset(&mut self) {
+        let Self {
+            ids: _,
+            nmt,
+            pending_nmt,
+            sync,
+            timing,
+            inbox,
+            in_sync,
+            axis,
+            emergency,
+            periodic,
+            server,
+            commits,
+            active,
+            committed,
+            leaf: _,
+            times: _,
+            outbox: _,
+        } = self;
+        *nmt = NmtState::PreOperational;
+        *pending_nmt = None;
+        renew(sync);
+        renew(inbox);
+        *in_sync = false;
+        renew(axis);
+        *emergency = (0, 0);
+        renew(periodic);
+        renew(server);
+        commits.forget();
+        *committed = None;
+        renew_settings(active);
+        *timing = Timing::new(period_us(active.as_ref()));
     }
 
     /// The node ids of the axis.
@@ -186,6 +228,26 @@ impl Servo {
     pub const fn settings(&self) -> Option<&Settings> {
         self.active.as_ref()
     }
+}
+
+/// Apart, so that what is made is not on the stack beside what was made before.
+#[inline(never)]
+fn renew<T: Default>(place: &mut T) {
+    *place = T::default();
+}
+
+/// The settings of a set that nobody has written to.
+fn defaults() -> Option<Settings> {
+    ParameterSet::default().settings().ok()
+}
+
+#[inline(never)]
+fn renew_settings(active: &mut Option<Settings>) {
+    *active = defaults();
+}
+
+fn period_us(settings: Option<&Settings>) -> u32 {
+    settings.map_or(0, |settings| settings.period_us)
 }
 
 const fn emergency(fault: Fault, counter: u8) -> EmergencyMessage {

@@ -57,14 +57,10 @@ pub struct Entry {
     pub address: Address,
     /// Which parameter.
     pub parameter: Parameter,
-    /// Step of the raw number.
-    pub unit: Unit,
     /// Smallest raw value.
     pub min: i32,
     /// Largest raw value.
     pub max: i32,
-    /// Raw value after reset.
-    pub default: i32,
 }
 
 /// Why a value does not fit its row.
@@ -84,6 +80,22 @@ impl Entry {
     #[expect(clippy::as_conversions, reason = "a discriminant is its place")]
     pub fn name(&self) -> &'static str {
         NAMES
+            .get(self.parameter as usize)
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// Step of the raw number.
+    #[must_use]
+    pub const fn unit(&self) -> Unit {
+        self.parameter.unit()
+    }
+
+    /// Raw value after reset.
+    #[must_use]
+    #[expect(clippy::as_conversions, reason = "a discriminant is its place")]
+    pub fn default(&self) -> i32 {
+        DEFAULTS
             .get(self.parameter as usize)
             .copied()
             .unwrap_or_default()
@@ -268,16 +280,14 @@ macro_rules! parameters {
         /// asked for is not in its flash.
         static NAMES: [&str; PARAMETERS] = [$($text,)*];
 
-        /// All parameters, in their order. The defaults move nothing: torque limit and gains are
-        /// zero until a set is committed.
+        /// All parameters, in their order; what no drive needs to look up is not in it. The defaults
+        /// move nothing: torque limit and gains are zero until a set is committed.
         pub static TABLE: [Entry; PARAMETERS] = [
             $(Entry {
                 address: Address::new($index, $subindex),
                 parameter: Parameter::$name,
-                unit: $unit,
                 min: $range.0,
                 max: $range.1,
-                default: $default,
             },)*
         ];
     };
@@ -686,7 +696,7 @@ mod tests {
     fn every_default_fits_its_row_and_every_row_is_at_the_place_of_its_parameter() {
         for (place, entry) in TABLE.iter().enumerate() {
             assert_eq!(entry.parameter as usize, place, "{}", entry.name());
-            assert_eq!(entry.check(entry.default), Ok(()), "{}", entry.name());
+            assert_eq!(entry.check(entry.default()), Ok(()), "{}", entry.name());
         }
     }
 

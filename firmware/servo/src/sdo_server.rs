@@ -1,9 +1,9 @@
 //! The SDO server: expedited transfers, range checks before acknowledgement, an atomic commit.
 //!
-//! It keeps two parameter sets. Downloads go into the *staged* one; a commit turns it into
-//! [`Settings`] and makes it the *active* one. Uploads read the one that [`objects::SET_READ`]
-//! names. A commit that is refused leaves both as they are, and says in 2F02h which parameter to
-//! look at.
+//! It keeps two parameter sets. Downloads go into the *staged* one; a commit has it converted
+//! ([`crate::commit`]) and then makes it the *active* one. Uploads read the one that
+//! [`objects::SET_READ`] names. A commit that is refused leaves both as they are, and says in 2F02h
+//! which parameter to look at.
 
 use protocol::leaf::{LeafReport, LeafTimes, Timed};
 use protocol::sdo::{AbortCode, Address, Expedited, Request, Response};
@@ -11,7 +11,6 @@ use protocol::table::HEARTBEAT_EVERY_CYCLES;
 
 use crate::objects::{self, Entry, Misfit, Parameter};
 use crate::parameters::{ParameterSet, SetError};
-use crate::settings::Settings;
 use crate::watchdog::Counts;
 
 /// A count by its subindex; subindex 0 tells how many there are.
@@ -68,29 +67,26 @@ pub struct SdoServer {
     commits: u32,
     refused: Option<SetError>,
     declared_period_us: u32,
+    /// A commit waits for the conversion of the staged set, which stays as it is meanwhile.
+    is_committing: bool,
 }
 
 /// What a request did, apart from the answer.
-#[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no heap to put the settings on"
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Nothing that the drive has to know.
     None,
     /// What the leaf timed begins anew.
     Clear(Timed),
-    /// A new set becomes active at the next cycle. For uploads it is the active one from now on.
-    Commit(Settings),
+    /// The staged set is to be converted; the answer waits for it ([`SdoServer::end_commit`]).
+    Convert,
 }
 
 impl SdoServer {
-    /// Makes the staged set the active one; where it does not go together the active one stays.
-    fn activate(&mut self) -> Result<Settings, SetError> {
-        let settings = self.staged.settings()?;
-        self.active = self.staged.clone();
-        Ok(settings)
+    /// The set that is written.
+    #[must_use]
+    pub const fn staged(&self) -> &ParameterSet {
+        &self.staged
     }
 
     /// The SYNC period that the master declares (object 2102h); `None` where it does not.
@@ -199,6 +195,9 @@ impl SdoServer {
     }
 
     fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
+        if self.is_committing {
+            return Err(AbortCode::DeviceState);
+        }
         let Some(entry) = objects::find(address) else {
             let is_known = objects::READINGS.iter().any(|(known, _)| *known == address)
                 || objects::is_timed(address);
@@ -213,31 +212,46 @@ impl SdoServer {
     }
 
     fn commit(&mut self, data: Expedited, has_torque: bool) -> (Option<Response>, Effect) {
-        let address = objects::COMMIT;
-        match self.committed(data, has_torque) {
-            Ok(settings) => (
-                Some(Response::Downloaded(address)),
-                Effect::Commit(settings),
-            ),
-            Err(code) => (Some(aborted(address, code)), Effect::None),
+        match self.may_commit(data, has_torque) {
+            Ok(()) => {
+                self.is_committing = true;
+                (None, Effect::Convert)
+            }
+            Err(code) => (Some(aborted(objects::COMMIT, code)), Effect::None),
         }
     }
 
-    fn committed(&mut self, data: Expedited, has_torque: bool) -> Result<Settings, AbortCode> {
+    fn may_commit(&self, data: Expedited, has_torque: bool) -> Result<(), AbortCode> {
         if data.len() < 4 {
             return Err(AbortCode::LengthTooLow);
         }
         if data.to_u32() != objects::COMMIT_KEY {
             return Err(AbortCode::ValueInvalid);
         }
-        if has_torque && !self.staged.measures_like(&self.active) {
+        if self.is_committing || !self.may_become_active(has_torque) {
             return Err(AbortCode::DeviceState);
         }
-        let settings = self.activate();
-        self.refused = settings.as_ref().err().copied();
-        let settings = settings.map_err(|_| AbortCode::ParameterIncompatible)?;
+        Ok(())
+    }
+
+    fn may_become_active(&self, has_torque: bool) -> bool {
+        !has_torque || self.staged.measures_like(&self.active)
+    }
+
+    /// The staged set was converted, or does not go together: makes it the active one for uploads,
+    /// or refuses. Torque may have come meanwhile.
+    pub fn end_commit(&mut self, fit: Result<(), SetError>, has_torque: bool) -> Response {
+        self.is_committing = false;
+        if !self.may_become_active(has_torque) {
+            return aborted(objects::COMMIT, AbortCode::DeviceState);
+        }
+        self.refused = fit.err();
+        if fit.is_err() {
+            return aborted(objects::COMMIT, AbortCode::ParameterIncompatible);
+        }
+        self.active = self.staged.clone();
         self.commits = self.commits.wrapping_add(1);
-        Ok(settings)
+        Response::Downloaded(objects::COMMIT)
     }
 }
 
@@ -326,9 +340,26 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn ask(server: &mut SdoServer, request: Request) -> (Option<Response>, Effect) {
-        server.handle(request, &Readings::default(), false)
+    /// A request, and the conversion that it may ask for.
+    fn asked(
+        server: &mut SdoServer,
+        request: Request,
+        has_torque: bool,
+    ) -> (Option<Response>, Effect) {
+        let (answer, effect) = server.handle(request, &Readings::default(), has_torque);
+        if effect != Effect::Convert {
+            return (answer, effect);
+        }
+        let fit = server.staged.settings().map(|_| ());
+        (Some(server.end_commit(fit, has_torque)), Effect::None)
     }
+
+    fn ask(server: &mut SdoServer, request: Request) -> (Option<Response>, Effect) {
+        asked(server, request, false)
+    }
+
+    const COMMITTED: (Option<Response>, Effect) =
+        (Some(Response::Downloaded(objects::COMMIT)), Effect::None);
 
     fn write(index: u16, subindex: u8, value: i32) -> Request {
         Request::Download(Address::new(index, subindex), Expedited::i32(value))
@@ -411,10 +442,7 @@ mod tests {
         assert_eq!(read(&mut server, delay), 7000, "staged");
         ask(&mut server, choose(1));
         assert_eq!(read(&mut server, delay), 0, "active");
-        let (_, Effect::Commit(settings)) = ask(&mut server, COMMIT) else {
-            panic!("no commit")
-        };
-        assert_eq!(settings.config.pulse.shape.start_delay_cycles, 7);
+        assert_eq!(ask(&mut server, COMMIT), COMMITTED);
         assert_eq!(
             (read(&mut server, delay), read(&mut server, objects::COMMIT)),
             (7000, 1)
@@ -447,7 +475,7 @@ mod tests {
             AbortCode::ValueInvalid.value()
         );
         ask(&mut server, write(0x2111, 0, 0));
-        assert!(matches!(ask(&mut server, COMMIT), (_, Effect::Commit(_))));
+        assert_eq!(ask(&mut server, COMMIT), COMMITTED);
         assert_eq!(read(&mut server, objects::REFUSED_ROW), 0);
     }
 
@@ -459,25 +487,54 @@ mod tests {
                 .iter()
                 .find(|entry| entry.parameter == parameter)
                 .unwrap();
-            let other = if entry.default == entry.max {
+            let other = if entry.default() == entry.max {
                 entry.min
             } else {
-                entry.default + 1
+                entry.default() + 1
             };
             server.staged.set(parameter, other);
-            let refused = server.handle(COMMIT, &Readings::default(), true);
             assert_eq!(
-                code(refused),
+                code(asked(&mut server, COMMIT, true)),
                 AbortCode::DeviceState.value(),
                 "{parameter:?}"
             );
         }
         let mut server = SdoServer::default();
         server.staged.set(Parameter::PulseStartDelay, 7000);
-        assert!(matches!(
-            server.handle(COMMIT, &Readings::default(), true),
-            (_, Effect::Commit(_))
-        ));
+        assert_eq!(asked(&mut server, COMMIT, true), COMMITTED);
+    }
+
+    #[test]
+    fn a_set_that_is_converted_stays_as_it_is_until_the_answer() {
+        let (mut server, readings) = (SdoServer::default(), Readings::default());
+        ask(&mut server, write(0x2110, 3, 7000));
+        let begun = server.handle(COMMIT, &readings, false);
+        assert_eq!(begun, (None, Effect::Convert), "the answer comes later");
+        for request in [write(0x2110, 3, 8000), COMMIT] {
+            let refused = server.handle(request, &readings, false);
+            assert_eq!(code(refused), AbortCode::DeviceState.value());
+        }
+        assert_eq!(read(&mut server, Address::new(0x2110, 3)), 7000);
+        assert_eq!(read(&mut server, objects::COMMIT), 0);
+        let answer = server.end_commit(Ok(()), false);
+        assert_eq!(answer, Response::Downloaded(objects::COMMIT));
+        assert_eq!(server.active.get(Parameter::PulseStartDelay), 7000);
+        assert_eq!(
+            ask(&mut server, write(0x2110, 3, 8000)).0,
+            Some(Response::Downloaded(Address::new(0x2110, 3)))
+        );
+    }
+
+    #[test]
+    fn torque_that_comes_while_a_set_is_converted_refuses_other_encoders() {
+        let mut server = SdoServer::default();
+        server.staged.set(Parameter::CyclePeriod, 2000);
+        let (_, effect) = server.handle(COMMIT, &Readings::default(), false);
+        assert_eq!(effect, Effect::Convert);
+        let refused = server.end_commit(Ok(()), true);
+        let code = AbortCode::DeviceState.value();
+        assert_eq!(refused, Response::Aborted(objects::COMMIT, code));
+        assert_eq!(server.active, ParameterSet::default());
     }
 
     #[test]

@@ -17,6 +17,7 @@ use protocol::states::{BrakeState, Command, ControlWord, DriveState, StatusWord}
 use protocol::weight::{LoadIncrements24, MotorIncrements, SetpointFine, TorqueMicroNm};
 use protocol::{CanFrame, Fault, Message, SyncCounter};
 use servo::Servo;
+use servo::commit::Commit;
 use servo::objects::{COMMIT, COMMIT_KEY, DECLARED_PERIOD, Parameter, TABLE};
 
 const PERIOD_US: u64 = 1000;
@@ -167,6 +168,34 @@ impl Bench {
 
     fn commit(&mut self) -> Response {
         self.download(COMMIT, Expedited::u32(COMMIT_KEY))
+    }
+
+    /// A commit that somebody else converts: what is to be converted.
+    fn commit_beside(&mut self) -> Commit {
+        let commit = Request::Download(COMMIT, Expedited::u32(COMMIT_KEY));
+        let commit = Message::SdoRequest(commit).encode(self.ids);
+        let frames = self.servo.hear(&commit, self.now_us);
+        assert!(frames.is_empty(), "the answer comes later");
+        let mut handed_out = Commit::default();
+        assert!(self.servo.begin_commit(&mut handed_out));
+        assert!(!self.servo.begin_commit(&mut Commit::default()), "once");
+        handed_out
+    }
+
+    /// What the node says to a set that was converted.
+    fn converted(&mut self, commit: &Commit) -> Option<Response> {
+        let mut commit = commit.clone();
+        commit.convert();
+        let frames = self.servo.end_commit(&commit).to_vec();
+        self.keep(frames);
+        match self.sent.pop() {
+            Some((_, Message::SdoResponse(response))) => Some(response),
+            Some(other) => {
+                self.sent.push(other);
+                None
+            }
+            None => None,
+        }
     }
 
     fn download(&mut self, address: Address, data: Expedited) -> Response {
@@ -787,6 +816,86 @@ fn a_set_that_is_committed_while_moving_acts_as_a_whole_in_the_next_cycle() {
         500.0,
         "and down with the acceleration of the axis"
     );
+}
+
+#[test]
+fn while_a_set_is_converted_cycles_go_on_with_the_one_before() {
+    let mut bench = Bench::moving();
+    bench.write(Parameter::VelocityLimit, 50_000);
+    let commit = bench.commit_beside();
+    bench.take_sent();
+    bench.cycles(20);
+    let torques = bench.take_sent();
+    let torques = torques
+        .iter()
+        .filter(|(_, message)| matches!(message, Message::Torque(_)));
+    assert_eq!(torques.count(), 20);
+    assert_eq!(bench.state(), DriveState::OperationEnabled);
+    let refused = bench.write(Parameter::VelocityLimit, 60_000);
+    assert!(matches!(refused, Response::Aborted(_, code) if code == AbortCode::DeviceState as u32));
+    assert_eq!(bench.converted(&commit), Some(Response::Downloaded(COMMIT)));
+    assert_eq!(
+        bench.servo.drive().fault(),
+        None,
+        "not before the next cycle"
+    );
+    bench.cycles(3);
+    assert_eq!(bench.servo.drive().fault(), Some(Fault::LimitOverrun));
+    let answer = bench.converted(&commit);
+    assert_eq!(answer, None, "nobody asked for it a second time");
+}
+
+#[test]
+fn a_node_that_was_reset_is_as_a_new_one() {
+    let mut bench = Bench::moving();
+    bench.download(DECLARED_PERIOD, Expedited::u32(1000));
+    bench.write(Parameter::VelocityLimit, 60_000);
+    let _never_converted = bench.commit_beside();
+    bench.control = ControlWord::DISABLE_VOLTAGE;
+    bench.cycles(3);
+    bench.nmt(NmtCommand::ResetNode);
+    let without_counts = |servo: &Servo| {
+        let mut servo = servo.clone();
+        let _ = servo.boot();
+        let text = format!("{servo:?}");
+        let (before, after) = text.split_once("commits: ").unwrap();
+        (
+            before.to_owned(),
+            after.split_once("active: ").unwrap().1.to_owned(),
+        )
+    };
+    assert_eq!(
+        without_counts(&bench.servo),
+        without_counts(&Servo::new(bench.ids))
+    );
+}
+
+#[test]
+fn what_was_converted_for_a_node_that_is_reset_meanwhile_is_not_taken() {
+    let mut bench = Bench::new(&[]);
+    bench.write(Parameter::PulseStartDelay, 7000);
+    let before = bench.commit_beside();
+    bench.nmt(NmtCommand::ResetNode);
+    bench.set(&AXIS);
+    let set = bench.servo.settings().cloned();
+    assert_eq!(bench.converted(&before), None);
+    let after = bench.commit_beside();
+    assert_eq!(bench.converted(&before), None, "it is not the one awaited");
+    assert_eq!(bench.servo.settings(), set.as_ref());
+    assert_eq!(bench.converted(&after), Some(Response::Downloaded(COMMIT)));
+}
+
+#[test]
+fn other_encoders_are_refused_where_torque_came_while_they_were_converted() {
+    let mut bench = Bench::new(&[]);
+    bench.write(Parameter::EncoderIncrements, 500_000);
+    let commit = bench.commit_beside();
+    bench.way_up();
+    assert_eq!(bench.state(), DriveState::OperationEnabled);
+    let refused = Response::Aborted(COMMIT, AbortCode::DeviceState as u32);
+    assert_eq!(bench.converted(&commit), Some(refused));
+    bench.cycles(5);
+    assert_eq!(bench.state(), DriveState::OperationEnabled);
 }
 
 #[test]

@@ -124,7 +124,7 @@ mod tests {
         let mut entries = TABLE.iter();
         let entry = entries.find(|entry| entry.parameter == Parameter::PulseTime);
         let entry = entry.unwrap();
-        let most_s = f64::from(entry.max) / entry.unit.per_si as f64;
+        let most_s = f64::from(entry.max) / entry.unit().per_si as f64;
         let tried = |time_constant_s: f64| {
             makes_sense(&Pulse {
                 height_m_per_s: 1.0e-3,

@@ -15,9 +15,13 @@
 //! same state and the same frame, so every one of them runs the same instructions. Instructions are
 //! not cycles: memory and pipeline cost nothing here.
 //!
+//! A commit is converted beside the cycle on a board, so its frame is measured without that, and
+//! the conversion and the taking over of what comes of it apart.
+//!
 //! Report, a line each: `delay I T` (`I` instructions took `T` ticks), `empty N T` (`N` empty
-//! events), `C T` for each measured event (class as in the recording), `wrong E` for an event whose
-//! answer differs, `end E F` (events and answers compared). The exit code says whether the image
+//! events), `C T` for each measured event (class as in the recording), `commit T U` (a conversion took `T`,
+//! taking it over `U`), `wrong E` for an event whose
+//! answer differs, `stack S` (bytes that one of them took at most), `end E F` (events and answers compared). The exit code says whether the image
 //! came to its end.
 #![no_std]
 #![no_main]
@@ -25,6 +29,7 @@
 #[path = "../host.rs"]
 mod host;
 mod recording;
+mod stack;
 
 use core::hint::black_box;
 
@@ -35,7 +40,8 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::debug::EXIT_SUCCESS;
 use protocol::CanFrame;
 use protocol::cob::AxisIds;
-use servo::Servo;
+use servo::commit::Commit;
+use servo::{Outbox, Servo};
 
 use host::{exit, report};
 use recording::{Class, Event, Events, FRAME};
@@ -55,7 +61,7 @@ fn main() -> ! {
     let ids = AxisIds::of_axis(0).expect("an axis 0");
     let mut servo = Servo::new(ids);
     report_clock(&servo);
-    let (mut events, mut answers) = (0_u32, 0_usize);
+    let (mut events, mut answers, mut stack) = (0_u32, 0_usize, 0_usize);
     for event in Events(recorded()) {
         if event.is_measured {
             report(format_args!(
@@ -63,14 +69,17 @@ fn main() -> ! {
                 event.class as u8,
                 measured(&servo, &event)
             ));
+            report_commit(&servo, &event);
+            stack = stack.max(stack_of(&servo, &event));
         }
         let out = happens(&mut servo, &event);
-        if !is_as_recorded(out, event.answers) {
+        if !is_as_recorded(&out, event.answers) {
             report(format_args!("wrong {events}"));
         }
         events += 1;
         answers += out.len();
     }
+    report(format_args!("stack {stack}"));
     report(format_args!("end {events} {answers}"));
     exit(EXIT_SUCCESS)
 }
@@ -105,7 +114,7 @@ fn report_clock(servo: &Servo) {
     let frame = recording::from_bytes([0; FRAME]).expect("zeros are a frame");
     report(format_args!(
         "empty {REPEATS} {}",
-        ticks(servo, |servo| nothing(servo, &frame, 0))
+        ticks_of(servo, nothing, &frame, 0)
     ));
 }
 
@@ -116,10 +125,50 @@ fn ticks_since(begin: u32) -> u32 {
 fn measured(servo: &Servo, event: &Event<'_>) -> u32 {
     let now_us = event.now_us;
     let frame = frame_of(event);
-    match event.class {
-        Class::Time => ticks(servo, |servo| time(servo, now_us)),
-        _ => ticks(servo, |servo| takes(servo, &frame, now_us)),
+    ticks_of(servo, happening(event.class), &frame, now_us)
+}
+
+const fn happening(class: Class) -> Happens {
+    match class {
+        Class::Time => passes,
+        _ => takes,
     }
+}
+
+/// Bytes of stack that an event takes.
+fn stack_of(servo: &Servo, event: &Event<'_>) -> usize {
+    let (mut copy, frame, now_us) = (servo.clone(), frame_of(event), event.now_us);
+    let event = happening(event.class);
+    stack::taken_by(|| {
+        black_box(event(&mut copy, &frame, now_us));
+    })
+}
+
+/// Where an event asks for a conversion.
+fn report_commit(servo: &Servo, event: &Event<'_>) {
+    let mut asking = servo.clone();
+    if event.class != Class::Other {
+        return;
+    }
+    let _its_answer_comes_later = takes(&mut asking, &frame_of(event), event.now_us);
+    let mut commit = Commit::default();
+    if !asking.begin_commit(&mut commit) {
+        return;
+    }
+    let conversion = ticks(&asking, |_| converts(&commit));
+    commit.convert();
+    let taking_over = ticks(&asking, |servo| servo.end_commit(&commit));
+    report(format_args!("commit {conversion} {taking_over}"));
+}
+
+/// What a servo does about a frame at a time.
+type Happens = for<'a> fn(&'a mut Servo, &CanFrame, u64) -> &'a [CanFrame];
+
+/// Ticks of an event; one loop for all of them and for the empty one, so that what it takes itself
+/// is the same.
+#[inline(never)]
+fn ticks_of(servo: &Servo, event: Happens, frame: &CanFrame, now_us: u64) -> u32 {
+    ticks(servo, |servo| event(servo, frame, now_us))
 }
 
 /// Ticks in which an event happens to [`REPEATS`] copies of a servo.
@@ -141,22 +190,38 @@ fn nothing<'a>(_: &'a mut Servo, _: &CanFrame, _: u64) -> &'a [CanFrame] {
 
 #[inline(never)]
 fn takes<'a>(servo: &'a mut Servo, frame: &CanFrame, now_us: u64) -> &'a [CanFrame] {
-    servo.on_frame(frame, now_us)
+    servo.hear(frame, now_us)
 }
 
 #[inline(never)]
-fn time(servo: &mut Servo, now_us: u64) -> &[CanFrame] {
+fn converts(commit: &Commit) -> &'static [CanFrame] {
+    black_box(commit.clone()).convert();
+    &[]
+}
+
+#[inline(never)]
+fn passes<'a>(servo: &'a mut Servo, _: &CanFrame, now_us: u64) -> &'a [CanFrame] {
     servo.on_time(now_us)
 }
 
-fn happens<'a>(servo: &'a mut Servo, event: &Event<'_>) -> &'a [CanFrame] {
-    match event.class {
+/// What a servo says to an event, and to the conversion that it asks for: as where both are done at
+/// once.
+fn happens(servo: &mut Servo, event: &Event<'_>) -> Outbox {
+    let said = match event.class {
         Class::Boot => servo.boot(),
-        Class::Time => time(servo, event.now_us),
+        Class::Time => servo.on_time(event.now_us),
         Class::Sync | Class::Setpoint | Class::Feedback | Class::Other => {
             takes(servo, &frame_of(event), event.now_us)
         }
+    };
+    let mut out = Outbox::new();
+    out.extend(said.iter().copied());
+    let mut commit = Commit::default();
+    if servo.begin_commit(&mut commit) {
+        commit.convert();
+        out.extend(servo.end_commit(&commit).iter().copied());
     }
+    out
 }
 
 fn frame_of(event: &Event<'_>) -> CanFrame {

@@ -80,6 +80,7 @@ impl<L: Link> Master<L> {
         }
     }
 
+    /// An answer about another object is a late one, to a request that was given up.
     fn ask(&mut self, index: usize, request: Request) -> Outcome<Response> {
         self.keep_pace()?;
         self.send(index, Message::SdoRequest(request))?;
@@ -89,7 +90,9 @@ impl<L: Link> Master<L> {
             let Some(frame) = self.link.receive(bus, ANSWER)? else {
                 break;
             };
-            if let Ok(Decoded::Message(Message::SdoResponse(response))) = decode(ids, &frame) {
+            if let Ok(Decoded::Message(Message::SdoResponse(response))) = decode(ids, &frame)
+                && response.is_about(request.address())
+            {
                 return Ok(response);
             }
         }
