@@ -25,6 +25,7 @@ pub mod pictures;
 pub mod program;
 pub mod records;
 pub mod rig;
+pub mod stack;
 pub mod targets;
 pub mod unlike;
 

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hil_tests::stack::{Chain, Functions, Rule};
 use hil_tests::targets;
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, elf};
 use serde::Deserialize;
@@ -59,6 +60,8 @@ struct Budget {
 struct Image {
     flash: Budget,
     static_ram: Budget,
+    stack: Budget,
+    ram: Budget,
 }
 
 #[derive(Deserialize)]
@@ -114,6 +117,9 @@ fn links(board: &str, budget: &Image) {
     }
     check("flash", flash, &budget.flash);
     check("static RAM", ram, &budget.static_ram);
+    let stack = worst_stack(&bytes);
+    check("stack at worst", stack, &budget.stack);
+    check("RAM with it", ram + stack, &budget.ram);
 
     let table = file.section_by_name(".vector_table").unwrap();
     assert_eq!(table.address(), 0x0800_0000);
@@ -146,6 +152,88 @@ fn links(board: &str, budget: &Image) {
         assert_eq!(u64::from(words[16 + number]) | 1, handler | 1, "{name}");
         assert_ne!(handler | 1, default_handler(&file) | 1, "{name}");
     }
+    let known = PRIORITIES.iter().flat_map(|(_, roots)| *roots);
+    let known: Vec<u64> = known.map(|name| address_of(&file, name)).collect();
+    for handler in words.iter().skip(16).filter(|word| **word != 0) {
+        let handler = u64::from(*handler) & !1;
+        let is_known = handler == default_handler(&file) & !1 || known.contains(&handler);
+        assert!(is_known, "{handler:#x} has no priority in {PRIORITIES:?}");
+    }
+}
+
+fn address_of(file: &object::File<'_>, name: &str) -> u64 {
+    let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
+    found.unwrap_or_else(|| panic!("no {name}")).address() & !1
+}
+
+/// Who runs: thread mode, and an interrupt of each priority on top of it.
+const PRIORITIES: [(&str, &[&str]); 4] = [
+    ("thread", &["Reset"]),
+    ("node", &["USART3"]),
+    ("CAN", &["FDCAN1_IT0"]),
+    (
+        "time and supply, and what nobody has given a priority",
+        &["TIM1_BRK_TIM15", "PVD_PVM", "FDCAN1_IT1"],
+    ),
+];
+/// Makes the node, once, before it runs.
+const MAKES: &[&str] = &["drive_board::servo"];
+/// What an interrupt puts onto the stack: registers, those of the FPU, and a word to align them
+/// (Armv7-M Architecture Reference Manual, B1.5.7).
+const INTERRUPT: u64 = 4 * (8 + 18 + 1);
+/// What the node's task calls, and none of thread mode.
+const NODE: &[&str] = &["servo::frames_in"];
+/// What embassy calls by a pointer: tasks by an executor, wakers by everybody, and a channel whose
+/// size is not known by whoever receives of it.
+const POINTERS: [Rule; 4] = [
+    Rule {
+        of: &["thread::Executor::run"],
+        calls: &["TaskStorage<F>::poll"],
+        but_for_callers_of: NODE,
+    },
+    Rule {
+        of: &["USART3"],
+        calls: &["TaskStorage<F>::poll"],
+        but_for_callers_of: MAKES,
+    },
+    Rule {
+        of: &[
+            "DynamicChannel",
+            "drop_in_place<embassy_sync::channel",
+            "RawMutex>::lock",
+            "_embassy_time_schedule_wake",
+            "Queue::next_expiration",
+        ],
+        calls: &["raw::waker::"],
+        but_for_callers_of: &[],
+    },
+    Rule {
+        of: &[
+            "FDCAN1_IT0",
+            "RxMode::on_interrupt",
+            "TaskStorage<F>::poll",
+            "drive_board::transmit",
+        ],
+        calls: &["raw::waker::", "DynamicChannel"],
+        but_for_callers_of: &[],
+    },
+];
+
+/// Stack of thread mode and of an interrupt of each priority, one on the other: while the node runs,
+/// or while it is made.
+fn worst_stack(image: &[u8]) -> u64 {
+    let functions = Functions::of(image).unwrap();
+    let own = |(what, roots): (&str, &[&str]), ends| {
+        let Chain { bytes, frames } = functions.deepest(roots, &POINTERS, ends).unwrap();
+        println!("  {what}: {bytes} bytes");
+        for (name, frame) in frames.iter().filter(|(_, frame)| *frame >= 64) {
+            println!("    {frame:5} {name}");
+        }
+        u64::from(bytes)
+    };
+    let [thread, node, can, time] = PRIORITIES.map(|priority| own(priority, MAKES));
+    let boot = own(("thread, while the node is made", PRIORITIES[0].1), &[]);
+    (thread + INTERRUPT + node).max(boot) + 2 * INTERRUPT + can + time
 }
 
 fn default_handler(file: &object::File<'_>) -> u64 {
