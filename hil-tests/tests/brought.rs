@@ -30,7 +30,7 @@ enum End {
     Creeps(f64),
 }
 
-const BROUGHT: [Brought; 9] = [
+const BROUGHT: [Brought; 11] = [
     Brought {
         name: "desktop stage",
         change: |machine| machine.axes.iter_mut().for_each(desktop),
@@ -95,6 +95,22 @@ const BROUGHT: [Brought; 9] = [
         change: |machine| machine.axes.iter_mut().for_each(creeping),
         ends: End::Creeps(0.2),
     },
+    Brought {
+        name: "drag with the square of the velocity and no fall",
+        change: |machine| {
+            for axis in &mut machine.axes {
+                let sliding = &mut axis.actual.sliding;
+                sliding.static_n = sliding.coulomb_n;
+                sliding.quadratic_drag_n_s2_per_m2 = 4000.0;
+            }
+        },
+        ends: End::Left(0.03),
+    },
+    Brought {
+        name: "heavy table behind a gap, which shakes when it moves fast",
+        change: |machine| machine.axes.iter_mut().for_each(shaking),
+        ends: End::Unfit("the loop oscillates on its records"),
+    },
 ];
 
 /// 8 kg on the motor's side and a table of 2 kg, lead 2 mm, 4096 counts, 200 N.
@@ -127,6 +143,15 @@ fn creeping(axis: &mut MachineAxis) {
         stiffness_n_per_m: vec![3.0e7, 1.2e7, 6.0e6, 3.0e6],
         share: vec![0.25; 4],
     };
+}
+
+/// 1.2 t with 1.5 kN of friction behind a gap of 3 µm within the loop: 50 Hz on its screw.
+fn shaking(axis: &mut MachineAxis) {
+    let actual = &mut axis.actual;
+    actual.mechanics.table_mass_kg = 1200.0;
+    actual.mechanics.backlash_m = 3.0e-6;
+    (actual.sliding.coulomb_n, actual.sliding.static_n) = (1500.0, 1500.0);
+    actual.sliding.viscous_n_s_per_m = 5000.0;
 }
 
 fn of_machine(brought: &Brought) -> Vec<Measured> {

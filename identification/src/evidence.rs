@@ -20,6 +20,7 @@ pub(crate) mod amount;
 pub(crate) mod another_day;
 pub(crate) mod at_reversals;
 pub(crate) mod causes;
+pub(crate) mod counted_mass;
 pub(crate) mod difference;
 pub(crate) mod effort;
 pub(crate) mod fast_motion;

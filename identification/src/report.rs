@@ -16,7 +16,8 @@ use crate::record::dataset::Dataset;
 use crate::record::excerpt::note;
 use crate::report::effects::Travel;
 use crate::report::forms::{
-    Curves, ForceNoise, Identification, Report, ResidualReport, RippleOrder, SlowRipple,
+    Curves, ForceNoise, Identification, LoopOscillation, Report, ResidualReport, RippleOrder,
+    SlowRipple,
 };
 
 pub(crate) mod curves;
@@ -102,6 +103,7 @@ fn report(findings: &Findings<'_>) -> Report {
         slow_ripple: findings.stages.ripple.as_ref().map(slow_ripple),
         presliding,
         force_noise: force_noise(findings),
+        loop_oscillation: loop_oscillation(findings),
         cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
         verdict: findings.verdict.word().into(),
@@ -110,6 +112,14 @@ fn report(findings: &Findings<'_>) -> Report {
         parameters_from: parameters.from,
         found: words(found.names()),
     }
+}
+
+fn loop_oscillation(findings: &Findings<'_>) -> Option<LoopOscillation> {
+    let own = findings.oscillation.as_ref();
+    own.filter(|own| !own.is_asked).map(|own| LoopOscillation {
+        frequency_hz: own.hz,
+        rms: own.rms,
+    })
 }
 
 fn force_noise(findings: &Findings<'_>) -> Option<ForceNoise> {

@@ -17,6 +17,7 @@ mod between_rows;
 mod by_the_load;
 mod carried;
 mod columns;
+mod drag;
 mod edges;
 mod elsewhere;
 mod fall;

@@ -14,7 +14,7 @@ use crate::evidence::causes;
 use crate::evidence::difference::Difference;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics, Judgement};
 use crate::evidence::mains;
-use crate::evidence::oscillation;
+use crate::evidence::oscillation::{self, Oscillation};
 use crate::evidence::rank;
 use crate::evidence::residual::ResidualStructure;
 use crate::evidence::reversal_stage::ReversalStage;
@@ -128,6 +128,8 @@ pub(crate) struct Findings<'a> {
     pub found: Found,
     /// Structure in the residual of the training record.
     pub residual: ResidualStructure,
+    /// A wave that drives the axis, on the first record that has one.
+    pub oscillation: Option<Oscillation>,
     /// Explained or not.
     pub verdict: Verdict,
 }
@@ -155,11 +157,10 @@ impl<'a> Findings<'a> {
             ("training", motion, &dataset.train),
             ("validation", validation, &dataset.validate),
         ];
-        reasons.extend(
-            records.into_iter().find_map(|(what, motion, record)| {
-                oscillation::reason(dataset, what, motion, record)
-            }),
-        );
+        let oscillation = records
+            .into_iter()
+            .find_map(|(what, motion, record)| oscillation::seen(dataset, what, motion, record));
+        reasons.extend(oscillation.as_ref().map(Oscillation::reason));
         reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
@@ -185,6 +186,7 @@ impl<'a> Findings<'a> {
             on_both,
             found,
             residual,
+            oscillation,
             verdict,
         }
     }

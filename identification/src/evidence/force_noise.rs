@@ -120,7 +120,7 @@ fn white(filter: &LowPass) -> f64 {
 }
 
 /// The same of the acceleration from positions that are white noise of one.
-fn second_differences(dataset: &Dataset, filter: &LowPass) -> f64 {
+pub(crate) fn second_differences(dataset: &Dataset, filter: &LowPass) -> f64 {
     let plain = Derivatives::new(&impulse(), dataset.train.period_s, dataset.hold);
     let derivatives = if dataset.is_sharpened {
         plain.sharpened(dataset.hold)

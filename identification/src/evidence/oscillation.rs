@@ -172,30 +172,56 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// What is said of a record on which a wave drives the axis; `what` is the record.
-pub(crate) fn reason(
+/// A wave that drives the axis on a record.
+#[derive(Clone, Debug)]
+pub(crate) struct Oscillation {
+    /// Frequency, Hz.
+    pub hz: f64,
+    /// Rms of the position.
+    pub rms: f64,
+    /// The setpoint has it too: it is no loop's.
+    pub is_asked: bool,
+    words: String,
+}
+
+impl Oscillation {
+    /// What is said of it.
+    pub(crate) fn reason(&self) -> Reason {
+        Reason::unexplained(self.words.clone())
+    }
+}
+
+/// Whether a wave drives the axis on a record; `what` is the record.
+pub(crate) fn seen(
     dataset: &Dataset,
     what: &str,
     motion: &Kinematics,
     record: &Record,
-) -> Option<Reason> {
+) -> Option<Oscillation> {
     let record = Seen::new(dataset, motion, record);
     let ringing = record.ringing()?;
-    let (seen, remedy) = if record.is_asked(&ringing) {
+    let is_asked = record.is_asked(&ringing);
+    let (seen, remedy) = if is_asked {
         ("the setpoint swings", "move slower")
     } else {
         ("the loop oscillates", "lower its gains")
     };
-    Some(Reason::unexplained(format!(
-        "{seen} on the {what} record{}: {:.0} Hz, {:.2} {} rms, with {:.1} times the acceleration \
+    let Wave { hz, rms, .. } = ringing.wave;
+    let words = format!(
+        "{seen} on the {what} record{}: {hz:.0} Hz, {:.2} {} rms, with {:.1} times the acceleration \
          of all motion below the {:.0} Hz up to which is fitted; {remedy} and record again",
         record.when(&ringing),
-        ringing.wave.hz,
-        1.0e6 * ringing.wave.rms,
+        1.0e6 * rms,
         dataset.kind.millionths(),
         ringing.over,
         motion.filter.cutoff_hz
-    )))
+    );
+    Some(Oscillation {
+        hz,
+        rms,
+        is_asked,
+        words,
+    })
 }
 
 #[cfg(test)]
@@ -214,8 +240,10 @@ mod tests {
         let mut made = record(1.0e-3, with(&more));
         made.reference = Some(with(&asked));
         let axis = on(made);
-        let reason = reason(&axis.dataset, "training", &axis.motion, &axis.dataset.train)?;
+        let seen = seen(&axis.dataset, "training", &axis.motion, &axis.dataset.train)?;
+        let reason = seen.reason();
         assert!(reason.counts);
+        assert_eq!(seen.is_asked, reason.words.contains("the setpoint swings"));
         Some(reason.words)
     }
 

@@ -238,6 +238,15 @@ pub struct ForceNoise {
     pub acting: f64,
 }
 
+/// What a loop does by itself on a record, beside what its setpoint asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct LoopOscillation {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Rms of the position, m or rad.
+    pub rms: f64,
+}
+
 /// A parameter that the record does not know.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct UnknownParameter {
@@ -327,6 +336,9 @@ pub struct Report {
     /// which acts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_noise: Option<ForceNoise>,
+    /// An oscillation of the loop that drives the axis: nothing that is fitted on such records holds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_oscillation: Option<LoopOscillation>,
     /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of
     /// the sample rate, but 20 Hz where the clock jittered and that spoils the acceleration.
     pub cutoff_hz: f64,

@@ -11,6 +11,7 @@ use axis_model::EffectName::{self, TorqueRipple};
 use axis_model::vocabulary::{Backlash, Compliance, PitchError, Presliding};
 use axis_model::{Effect, Estimate};
 
+use crate::evidence::counted_mass;
 use crate::evidence::difference::{ByTheLoad, Difference, Known, More};
 use crate::evidence::findings::Findings;
 use crate::evidence::reversal::bristle::Bristle;
@@ -58,6 +59,7 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
         ),
     ];
     let mut parameters = table(of_outputs);
+    parameters.count_the_mass_of_the_load(findings);
     let difference = stages.difference.as_ref();
     if let Some(told) = difference.and_then(|difference| difference.by_the_load.as_ref()) {
         parameters.without_shape_of_fall(told);
@@ -86,6 +88,20 @@ impl Parameters {
             );
         }
         self
+    }
+
+    /// What the effort says of the mass of the load is off by what rounding of the positions makes.
+    fn count_the_mass_of_the_load(&mut self, findings: &Findings<'_>) {
+        let whole = self.estimates.get("inertia").map(|whole| whole.value);
+        let (Some(whole), Some(load)) = (whole, self.estimates.get_mut("load_inertia")) else {
+            return;
+        };
+        let off = counted_mass::off(findings.dataset, findings.motion, whole - load.value);
+        *load = about(
+            load.value,
+            load.half_width().hypot(off),
+            std::mem::take(&mut load.unit),
+        );
     }
 
     /// Takes exponent and lag of a fall away where the load's motion tells its excess and velocity:
@@ -244,6 +260,7 @@ fn is_told(model: &Model, more: More) -> bool {
     let is_usual = |part: &Part| match part.called() {
         Called::Effect(EffectName::ViscousAsymmetry) => more.by_direction,
         Called::Effect(EffectName::PositionDependentFriction) => more.over_position,
+        Called::Effect(EffectName::QuadraticDrag) => more.squared,
         Called::Effect(name) => BESIDE_USUAL.contains(&name),
         Called::Structure(_) => part.effect.is_mass(),
     };

@@ -11,6 +11,7 @@
 //! Units: m or rad, s, unit of the effort.
 
 use super::columns::{Apart, Way};
+use super::drag;
 use super::flanks::Balance;
 use super::is_clear;
 use super::load::{Carried, LoadMotion, More};
@@ -138,6 +139,7 @@ pub(super) fn instead(apart: &Apart<'_>, ways: &[Way], unit: f64, enough: f64) -
     } else {
         changed
     };
+    let changed = drag::for_a_wide_fall(apart, changed, place);
     let gain = Gain::of(&apart.cross_validate(ways), &apart.cross_validate(&changed));
     (is_clear(&gain) && is_in_effort(apart, &changed, place)).then_some(changed)
 }
@@ -207,7 +209,26 @@ pub(super) mod tests {
     pub(in crate::evidence::difference) fn rubbed_on_both(
         friction: LoadFriction,
         by_direction: [f64; 2],
-        (motor_coulomb, motor): (f64, LoadFriction),
+        motor: (f64, LoadFriction),
+        more: impl Fn(f64) -> f64,
+    ) -> Axis {
+        let [of_load, of_motor] = by_direction;
+        let viscous = |v: f64| 200.0 * v + 0.5 * of_load * v.abs();
+        made(friction, &viscous, (motor, 0.5 * of_motor), more)
+    }
+
+    /// The same with a drag of the load, N s²/m².
+    pub(in crate::evidence::difference) fn dragged(friction: LoadFriction, drag: f64) -> Axis {
+        let of_velocity = |v: f64| 200.0 * v + drag * v * v.abs();
+        made(friction, &of_velocity, ((0.0, friction), 0.0), |_| 0.0)
+    }
+
+    /// A load with such a friction over its velocity and such a one over displacement; the motor's
+    /// own Coulomb friction, and what comes with the size of its velocity.
+    fn made(
+        friction: LoadFriction,
+        of_velocity: &dyn Fn(f64) -> f64,
+        ((motor_coulomb, motor), of_size): ((f64, LoadFriction), f64),
         more: impl Fn(f64) -> f64,
     ) -> Axis {
         let load = two_sines(6000);
@@ -215,9 +236,8 @@ pub(super) mod tests {
         let moved = of(&load);
         let bend = friction.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
         let force = |row: usize| {
-            let v = moved.velocity[row];
-            let viscous = 200.0 * v + 0.5 * by_direction[0] * v.abs();
-            60.0 * moved.acceleration[row] + viscous + 25.0 * bend[row]
+            let rubs = of_velocity(moved.velocity[row]) + 25.0 * bend[row];
+            60.0 * moved.acceleration[row] + rubs
         };
         let force: Vec<f64> = (0..6000).map(force).collect();
         let wound = force.iter().map(|force| force / STIFFNESS);
@@ -227,8 +247,7 @@ pub(super) mod tests {
         let own = motor.bend(&Steps::of(&at, &pushed.velocity, 1.0e-3));
         let noise = |row: usize| 4.0 * (1.7 * (row * row % 1013) as f64).sin();
         let effort = force.iter().enumerate().map(|(row, force)| {
-            let viscous = 0.5 * by_direction[1] * pushed.velocity[row].abs();
-            let own = motor_coulomb * own[row] + viscous;
+            let own = motor_coulomb * own[row] + of_size * pushed.velocity[row].abs();
             force + 30.0 * pushed.acceleration[row] + own + noise(row)
         });
         let effort = effort.collect();

@@ -169,6 +169,8 @@ pub(crate) struct More {
     pub by_direction: bool,
     /// The level changes along the travel.
     pub over_position: bool,
+    /// A drag goes with the square of the velocity.
+    pub squared: bool,
 }
 
 impl Carried {
@@ -177,8 +179,10 @@ impl Carried {
         let More {
             by_direction,
             over_position,
+            squared,
         } = self.more;
-        Self::BENDING + 1 + by_direction as usize + 2 * over_position as usize
+        let more = by_direction as usize + 2 * over_position as usize + squared as usize;
+        Self::BENDING + 1 + more
     }
 
     /// Place of the coefficient of the load's acceleration in those of [`Self::columns`].
@@ -197,7 +201,8 @@ impl Carried {
 
     /// Its columns on a record, low-passed: acceleration and velocity of the load, rate of the
     /// wind-up, bend, rate of the bend; then what else its friction goes with: the size of the
-    /// velocity, the bend times the way from the middle of the travel and times the square of that.
+    /// velocity, the bend times the way from the middle of the travel and times the square of that,
+    /// the square of the velocity with its sign.
     pub(super) fn columns(
         self,
         motion: &Kinematics,
@@ -301,7 +306,11 @@ impl More {
             over_position: true,
             ..self
         };
-        let mut others = vec![by_direction, over_position];
+        let squared = Self {
+            squared: true,
+            ..self
+        };
+        let mut others = vec![by_direction, over_position, squared];
         others.retain(|other| *other != self);
         others
     }
@@ -319,6 +328,9 @@ impl More {
                 rows.map(|(bend, x)| bend * place(x).powi(power)).collect()
             };
             columns.extend([along(1), along(2)]);
+        }
+        if self.squared {
+            columns.push(load.velocity.iter().map(|v| v * v.abs()).collect());
         }
         columns
     }

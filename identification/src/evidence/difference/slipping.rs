@@ -145,7 +145,7 @@ pub(super) fn gain(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> Gain {
     Gain::of(&apart.cross_validate(before), &apart.cross_validate(after))
 }
 
-fn is_better(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> bool {
+pub(super) fn is_better(apart: &Apart<'_>, before: &[Way], after: &[Way]) -> bool {
     is_clear(&gain(apart, before, after))
 }
 
@@ -169,7 +169,7 @@ fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Wa
     changed.find(|changed| is_better(apart, ways, changed))
 }
 
-fn carried(ways: &[Way], place: usize) -> Option<Carried> {
+pub(super) fn carried(ways: &[Way], place: usize) -> Option<Carried> {
     match ways.get(place)? {
         Way::Carried(carried) => Some(*carried),
         _ => None,
