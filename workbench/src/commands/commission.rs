@@ -133,9 +133,7 @@ pub fn commission(
     identified_axes::record(&stand, out)?;
     let kept =
         |failure: Failure| Failure::new(format!("{failure}; the records are in {}", out.display()));
-    after_recording(&stand, &circle, &oscillations, wanted).map_err(kept)?;
-    say!("report: {}", out.join("report.html").display());
-    Ok(())
+    after_recording(&stand, &circle, &oscillations, wanted).map_err(kept)
 }
 
 /// What an earlier run may have left that would lie beside new records.
@@ -179,6 +177,13 @@ fn after_recording(
     let out = wanted.out;
     write(&out.join("quadrant.dbc"), &dbc(stand.machine)?)?;
     let results = identify(stand, out)?;
+    let ringing = fitness::on_records(stand.machine, &results);
+    if !ringing.is_empty() {
+        ringing.iter().for_each(|own| say!("{}", own.sentence()));
+        return end_unfit(stand, &ringing, wanted);
+    }
+    let model = identified_axes::model(stand.machine, &results);
+    write(&out.join("model.toml"), &model)?;
     let before = circle_before(stand, circle, wanted)?;
     let trials = try_out(stand, circle, &results, out)?;
     let after = circle_after(stand, circle, &trials.taken, wanted)?;
@@ -205,7 +210,9 @@ fn after_recording(
     if let Some(verdict) = commissioned.verdict() {
         say!("{verdict}");
     }
-    commissioned.write(out)
+    commissioned.write(out)?;
+    say!("report: {}", out.join("report.html").display());
+    Ok(())
 }
 
 fn print_machine(machine: &Machine) {
@@ -225,8 +232,6 @@ fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
         say!("axis {}:", axis.name);
         console::print_identification(result);
     }
-    let model = identified_axes::model(stand.machine, &results);
-    write(&out.join("model.toml"), &model)?;
     Ok(results)
 }
 

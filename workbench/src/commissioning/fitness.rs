@@ -9,6 +9,8 @@
 mod creeping;
 
 use creeping::Sweep;
+use identification::Identification;
+use plant_sim::Machine;
 use plant_sim::machine::{MachineAxis, PositionSensor};
 use serde::Serialize;
 
@@ -64,6 +66,10 @@ pub struct Oscillation {
     /// Speed at which it oscillates while it creeps, m/s; elsewhere it does not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub creeping_m_per_s: Option<f64>,
+    /// It was seen on the records only: what moves as a record does wakes it, and gentle motion does
+    /// not.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub on_record: bool,
     /// The force comes to its limit.
     pub at_force_limit: bool,
 }
@@ -106,6 +112,27 @@ pub fn oscillations(stand: &Stand<'_>) -> Outcome<Vec<Oscillation>> {
         Err(failure) if !found.iter().any(Oscillation::is_unfit) => Err(failure),
         _ => Ok(found),
     }
+}
+
+/// Oscillations that only the records show, as their identification says: of a load that shakes
+/// between the flanks of a gap, or of a loop that is stable until it moves fast.
+#[must_use]
+pub fn on_records(machine: &Machine, results: &[Identification]) -> Vec<Oscillation> {
+    let axes = machine.axes.iter().zip(results);
+    let seen = |(axis, result): (&MachineAxis, &Identification)| {
+        let own = result.report.loop_oscillation?;
+        Some(Oscillation {
+            axis: axis.name.clone(),
+            frequency_hz: own.frequency_hz,
+            amplitude_um: 1.0e6 * std::f64::consts::SQRT_2 * own.rms,
+            at_standstill: false,
+            creeping_m_per_s: None,
+            on_record: true,
+            at_force_limit: false,
+        })
+    };
+    let seen = axes.filter_map(seen);
+    seen.filter(Oscillation::is_unfit).collect()
 }
 
 /// What one axis does by itself, and whether at standstill; the last run may have broken off.
@@ -211,6 +238,7 @@ fn while_creeping(stand: &Stand<'_>, axis: &MachineAxis, run: &Run) -> Option<Os
         amplitude_um: seen.amplitude_um,
         at_standstill: false,
         creeping_m_per_s: Some(seen.speed_m_per_s),
+        on_record: false,
         at_force_limit: false,
     })
 }
@@ -313,6 +341,7 @@ impl Seen {
             amplitude_um: self.amplitude_um,
             at_standstill,
             creeping_m_per_s: None,
+            on_record: false,
             at_force_limit: self.at_limit,
         }
     }
@@ -356,6 +385,17 @@ impl Oscillation {
         self.amplitude_um >= UNFIT_UM && self.creeping_m_per_s.is_none()
     }
 
+    /// Where it was seen.
+    #[must_use]
+    pub fn place(&self) -> String {
+        match self.creeping_m_per_s {
+            Some(speed) => format!("at {:.1} mm/s", 1.0e3 * speed),
+            None if self.at_standstill => "at standstill".to_owned(),
+            None if self.on_record => "on its records".to_owned(),
+            None => "in motion".to_owned(),
+        }
+    }
+
     /// One sentence: what, how much, what to do.
     #[must_use]
     pub fn sentence(&self) -> String {
@@ -370,11 +410,7 @@ impl Oscillation {
                 self.amplitude_um
             );
         }
-        let place = if self.at_standstill {
-            "at standstill"
-        } else {
-            "in motion"
-        };
+        let place = self.place();
         let limit = if self.at_force_limit {
             ", its force at the limit"
         } else {

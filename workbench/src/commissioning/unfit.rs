@@ -59,11 +59,15 @@ fn page(machine: &Machine, oscillations: &[Oscillation], is_simulation: bool) ->
         page.key(&oscillation.sentence());
     }
     page.table(&table(oscillations));
-    page.paragraph(
+    page.paragraph(if oscillations.iter().any(|own| own.on_record) {
+        "The loops are stable at standstill, at two speeds through the middle of their travel and from rest to slow ones. What moves as the records do wakes the oscillation: a load that shakes between the \
+         flanks of a gap does so, and a loop near the edge of its stability. The records and what they say lie beside this page. Nothing was tuned or downloaded: friction that is \
+         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
+    } else {
         "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds, and from rest to slow ones. An oscillation that lasts is the loop's \
          own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded: friction that is \
-         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse.",
-    );
+         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
+    });
     page.finish()
 }
 
@@ -76,17 +80,12 @@ fn table(oscillations: &[Oscillation]) -> TextTable {
         "force at its limit",
     ])];
     rows.extend(oscillations.iter().map(|own| {
-        let seen = match own.creeping_m_per_s {
-            Some(speed) => format!("at {:.1} mm/s", 1.0e3 * speed),
-            None if own.at_standstill => "at standstill".to_owned(),
-            None => "in motion".to_owned(),
-        };
         let limit = if own.at_force_limit { "yes" } else { "no" };
         vec![
             own.axis.clone(),
             format!("{:.1}", own.frequency_hz),
             format!("{:.1}", own.amplitude_um),
-            seen,
+            own.place(),
             limit.to_owned(),
         ]
     }));
