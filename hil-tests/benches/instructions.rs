@@ -82,8 +82,8 @@ fn one(folder: &Path, image: &Path, name: &str, drive: Drive, budget: &Budget) -
     Run::of(&report).print(name, budget)
 }
 
-/// Instructions outside of a cycle: of the frame that takes longest from boot-up on, and of a commit
-/// of the model.
+/// Instructions outside of a cycle: of the frame that takes longest from boot-up on, and of a
+/// commit of the model.
 struct Outside {
     longest: f64,
     conversion: f64,

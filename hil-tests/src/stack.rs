@@ -3,8 +3,9 @@
 //!
 //! Read from the linked image, so that it is the stack of the program that runs. A function takes
 //! what its instructions take from the stack pointer, all of them together: at least as much as it
-//! has at any time. Where a register is called, the rules say which functions that can be
-//! ([`Rule`]); a caller without a rule, and a circle of calls, are errors.
+//! has at any time. Where a register is called, the rules say which functions that can be for all
+//! such calls of a function ([`Rule`]); a caller without a rule, a rule without a function, a call
+//! to where none begins and a circle of calls are errors.
 //!
 //! Blind to: what begins at a panic ([`ENDS`]; the node is silent then, and the board resets), and
 //! a debugger.
@@ -74,6 +75,12 @@ impl Function {
         let holds = |name: &String| parts.iter().any(|part| name.contains(part));
         self.names.iter().any(holds)
     }
+
+    /// Functions of equal code are one: it ends there only where all of them do.
+    fn is_end(&self, ends: &[&str]) -> bool {
+        let ends = |name: &String| ends.iter().any(|end| name.contains(end));
+        self.names.iter().all(ends)
+    }
 }
 
 /// Bit 0 of an address says Thumb.
@@ -100,7 +107,7 @@ impl Functions {
                     bytes.get(from..from.checked_add(range.length)?)
                 });
                 if let Some(code) = within {
-                    let function = read(*at, code, range);
+                    let function = read(*at, code, range, &ranges)?;
                     found.by_address.insert(*at, function);
                 }
             }
@@ -108,20 +115,7 @@ impl Functions {
         if found.by_address.is_empty() {
             return Err("no code".into());
         }
-        found.keep_what_leaves();
         Ok(found)
-    }
-
-    /// A branch within a function is no call.
-    fn keep_what_leaves(&mut self) {
-        let begins: Vec<u64> = self.by_address.keys().copied().collect();
-        for (at, function) in &mut self.by_address {
-            function
-                .calls
-                .retain(|to| to != at && begins.binary_search(to).is_ok());
-            function.calls.sort_unstable();
-            function.calls.dedup();
-        }
     }
 
     fn named<'a>(&'a self, parts: &'a [&str]) -> impl Iterator<Item = u64> + 'a {
@@ -137,8 +131,8 @@ impl Functions {
             .any(|to| self.by_address[to].holds(parts))
     }
 
-    /// The deepest chain that begins with a function of one of these names. What holds one of `ends`
-    /// in its name is left out with all that it calls, as panics are.
+    /// The deepest chain that begins with a function of one of these names. What holds one of
+    /// `ends` in its name is left out with all that it calls, as panics are.
     ///
     /// # Errors
     /// Where there is none of that name, calls go in a circle, or a register is called without a
@@ -179,7 +173,7 @@ impl Walk<'_> {
             Some(None) => return Err(format!("calls in a circle: {}", function.name())),
             None => {}
         }
-        if function.holds(&ENDS) || function.holds(self.ends) {
+        if function.is_end(&ENDS) || function.is_end(self.ends) {
             return Ok(Chain::default());
         }
         if function.sets_stack {
@@ -209,7 +203,11 @@ impl Walk<'_> {
                 return Err(format!("no rule for what {} calls", function.name()));
             };
             let is_meant = |at: &u64| !self.functions.calls(*at, rule.but_for_callers_of);
-            calls.extend(self.functions.named(rule.calls).filter(is_meant));
+            let meant: Vec<u64> = self.functions.named(rule.calls).filter(is_meant).collect();
+            if meant.is_empty() {
+                return Err(format!("no function for {rule:?}"));
+            }
+            calls.extend(meant);
         }
         Ok(calls)
     }
@@ -221,6 +219,13 @@ struct Range {
     length: usize,
     /// Where data begins within it, and where code goes on.
     marks: Vec<(u64, bool)>,
+}
+
+impl Range {
+    fn is_code(&self, address: u64) -> bool {
+        let before = self.marks.iter().rfind(|(mark, _)| *mark <= address);
+        before.is_none_or(|(_, is_code)| *is_code)
+    }
 }
 
 /// The functions by their symbols, with the mapping symbols of the ABI ($t code, $d data: ELF for
@@ -252,7 +257,12 @@ fn ranges(file: &object::File<'_>) -> BTreeMap<u64, Range> {
     found
 }
 
-fn read(at: u64, code: &[u8], range: &Range) -> Function {
+fn read(
+    at: u64,
+    code: &[u8],
+    range: &Range,
+    functions: &BTreeMap<u64, Range>,
+) -> Result<Function, String> {
     let mut function = Function {
         names: range.names.clone(),
         ..Function::default()
@@ -261,26 +271,115 @@ fn read(at: u64, code: &[u8], range: &Range) -> Function {
         let bytes = code.get(place..place + 2);
         bytes.map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
     };
-    let is_code = |address: u64| {
-        let before = range.marks.iter().rfind(|(mark, _)| *mark <= address);
-        before.is_none_or(|(_, is_code)| *is_code)
-    };
+    let own = at..at.saturating_add(code.len() as u64);
     let mut place = 0;
     while place < code.len() {
         let address = at + place as u64;
-        if !is_code(address) {
+        if !range.is_code(address) {
             place += 2;
             continue;
         }
         let (first, second) = (half(place), half(place + 2));
         match thumb::decode(address, first, second) {
             Does::Takes(bytes) => function.bytes += bytes,
-            Does::Goes(to) => function.calls.push(to),
+            Does::Goes(to) if own.contains(&to) => {}
+            Does::Calls(to) | Does::Goes(to) if functions.contains_key(&to) => {
+                function.calls.push(to);
+            }
+            Does::Calls(to) | Does::Goes(to) => {
+                let name = function.name();
+                return Err(format!("{name} goes to {to:#x}, where no function begins"));
+            }
             Does::GoesAnywhere => function.calls_a_register = true,
             Does::SetsStack => function.sets_stack = true,
             Does::Else => {}
         }
         place += if thumb::length(first) == 4 { 4 } else { 2 };
     }
-    function
+    function.calls.sort_unstable();
+    function.calls.dedup();
+    Ok(function)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Functions by their frames, what they call, and whether they call a register.
+    fn functions(of: &[(&str, u32, &[u64], bool)]) -> Functions {
+        let function = |(place, (name, bytes, calls, calls_a_register)): (
+            usize,
+            &(&str, u32, &[u64], bool),
+        )| {
+            let function = Function {
+                names: vec![(*name).to_owned()],
+                bytes: *bytes,
+                calls: calls.to_vec(),
+                calls_a_register: *calls_a_register,
+                sets_stack: false,
+            };
+            (place as u64, function)
+        };
+        Functions {
+            by_address: of.iter().enumerate().map(function).collect(),
+        }
+    }
+
+    const RULE: [Rule; 1] = [Rule {
+        of: &["executor"],
+        calls: &["task"],
+        but_for_callers_of: &["secret"],
+    }];
+
+    #[test]
+    fn the_deepest_chain_is_summed_and_a_panic_is_not() {
+        let of = functions(&[
+            ("main", 8, &[1, 2, 3], false),
+            ("low", 40, &[], false),
+            ("high", 16, &[4], false),
+            ("core::panicking::panic", 900, &[], false),
+            ("deep", 32, &[], false),
+        ]);
+        let chain = of.deepest(&["main"], &[], &[]).unwrap();
+        assert_eq!(chain.bytes, 56);
+        let names: Vec<&str> = chain.frames.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["main", "high", "deep"]);
+        assert_eq!(of.deepest(&["main"], &[], &["high"]).unwrap().bytes, 48);
+        assert!(of.deepest(&["other"], &[], &[]).is_err());
+    }
+
+    #[test]
+    fn a_pointer_is_what_its_rule_says_and_without_one_an_error() {
+        let of = functions(&[
+            ("executor", 8, &[], true),
+            ("task one", 40, &[], false),
+            ("task two", 80, &[3], false),
+            ("secret", 0, &[], false),
+        ]);
+        assert_eq!(of.deepest(&["executor"], &RULE, &[]).unwrap().bytes, 48);
+        assert!(
+            of.deepest(&["executor"], &[], &[])
+                .unwrap_err()
+                .contains("no rule")
+        );
+        let none = functions(&[("executor", 8, &[], true)]);
+        let error = none.deepest(&["executor"], &RULE, &[]).unwrap_err();
+        assert!(error.contains("no function for"), "{error}");
+    }
+
+    #[test]
+    fn a_circle_and_a_function_that_calls_itself_have_no_bound() {
+        let of = functions(&[("main", 8, &[1], false), ("again", 8, &[1], false)]);
+        assert!(
+            of.deepest(&["main"], &[], &[])
+                .unwrap_err()
+                .contains("circle")
+        );
+        let of = functions(&[("main", 8, &[1], false), ("back", 8, &[0], false)]);
+        assert!(
+            of.deepest(&["main"], &[], &[])
+                .unwrap_err()
+                .contains("circle")
+        );
+    }
 }

@@ -219,8 +219,8 @@ const POINTERS: [Rule; 4] = [
     },
 ];
 
-/// Stack of thread mode and of an interrupt of each priority, one on the other: while the node runs,
-/// or while it is made.
+/// Stack of thread mode and of an interrupt of each priority, one on the other: while the node
+/// runs, or while it is made.
 fn worst_stack(image: &[u8]) -> u64 {
     let functions = Functions::of(image).unwrap();
     let own = |(what, roots): (&str, &[&str]), ends| {

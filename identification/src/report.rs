@@ -115,8 +115,9 @@ fn report(findings: &Findings<'_>) -> Report {
 }
 
 fn loop_oscillation(findings: &Findings<'_>) -> Option<LoopOscillation> {
-    let own = findings.oscillation.as_ref();
-    own.filter(|own| !own.is_asked).map(|own| LoopOscillation {
+    let own = findings.oscillations.iter().filter(|own| !own.is_asked);
+    let largest = own.max_by(|a, b| a.rms.total_cmp(&b.rms));
+    largest.map(|own| LoopOscillation {
         frequency_hz: own.hz,
         rms: own.rms,
     })

@@ -12,9 +12,9 @@
 //! that nothing but the interrupts of CAN and of the timer comes before it. Frames wait in a queue
 //! that the interrupt fills. What takes longer than a cycle may, the conversion of parameters at a
 //! commit, is done in thread mode, from where everything else interrupts it. Nothing in the control
-//! path awaits a transmission: all other frames leave one of the three mailboxes to the torque, an older
-//! torque that is still there is cancelled, and the mailboxes go by identifier. What is due is
-//! looked at before the queue, so that a busy bus does not put it off. What is late is counted;
+//! path awaits a transmission: all other frames leave one of the three mailboxes to the torque, an
+//! older torque that is still there is cancelled, and the mailboxes go by identifier. What is due
+//! is looked at before the queue, so that a busy bus does not put it off. What is late is counted;
 //! beyond contract the watchdog is not fed any more.
 //!
 //! **Bus-off**: the interrupt begins the recovery (128 times 11 recessive bits) at once and for

@@ -70,9 +70,12 @@ impl Servo {
 
     #[cold]
     fn take_over(&mut self, commit: &Commit) {
-        let (Some(settings), true) = (commit.settings(), self.commits.take_back(commit)) else {
+        let Some(settings) = commit.settings() else {
             return;
         };
+        if !self.commits.take_back(commit) {
+            return;
+        }
         let has_torque = self.axis.drive.is_energised();
         let fit = settings.as_ref().map(|_| ()).map_err(|error| *error);
         let response = self.server.end_commit(fit, has_torque);

@@ -280,8 +280,8 @@ macro_rules! parameters {
         /// asked for is not in its flash.
         static NAMES: [&str; PARAMETERS] = [$($text,)*];
 
-        /// All parameters, in their order; what no drive needs to look up is not in it. The defaults
-        /// move nothing: torque limit and gains are zero until a set is committed.
+        /// All parameters, in their order; what no drive needs to look up is not in it. The
+        /// defaults move nothing: torque limit and gains are zero until a set is committed.
         pub static TABLE: [Entry; PARAMETERS] = [
             $(Entry {
                 address: Address::new($index, $subindex),

@@ -195,9 +195,6 @@ impl SdoServer {
     }
 
     fn download_parameter(&mut self, address: Address, data: Expedited) -> Result<(), AbortCode> {
-        if self.is_committing {
-            return Err(AbortCode::DeviceState);
-        }
         let Some(entry) = objects::find(address) else {
             let is_known = objects::READINGS.iter().any(|(known, _)| *known == address)
                 || objects::is_timed(address);
@@ -207,7 +204,11 @@ impl SdoServer {
                 missing(address)
             });
         };
-        self.staged.set(entry.parameter, checked(entry, data)?);
+        let value = checked(entry, data)?;
+        if self.is_committing {
+            return Err(AbortCode::DeviceState);
+        }
+        self.staged.set(entry.parameter, value);
         Ok(())
     }
 

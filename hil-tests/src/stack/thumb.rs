@@ -6,9 +6,11 @@
 pub(super) enum Does {
     /// Takes so many bytes of stack.
     Takes(u32),
-    /// Calls a function, or jumps to an address and may leave the function by it.
+    /// Calls a function.
+    Calls(u64),
+    /// Jumps to an address, and may leave the function by it.
     Goes(u64),
-    /// Calls what a register holds, or goes there for good.
+    /// Calls what a register or a word of memory holds, or goes there for good.
     GoesAnywhere,
     /// Sets the stack pointer to what nobody knows here.
     SetsStack,
@@ -46,17 +48,17 @@ fn narrow(address: u64, code: u16) -> Does {
         // BLX (register) T1; BX T1 but for the link register
         _ if code & 0xFF87 == 0x4780 => Does::GoesAnywhere,
         _ if code & 0xFF87 == 0x4700 && code != 0x4770 => Does::GoesAnywhere,
-        // MOV (register) T1 and ADD (register) T2 into the stack pointer
+        // MOV (register) T1 and ADD (register) T2 into the program counter and the stack pointer
+        _ if code & 0xFF87 == 0x4687 || code & 0xFF87 == 0x4487 => Does::GoesAnywhere,
         _ if code & 0xFF87 == 0x4685 || code & 0xFF87 == 0x4485 => Does::SetsStack,
         _ => Does::Else,
     }
 }
 
 fn wide(address: u64, first: u16, second: u16) -> Does {
-    let (low, branches) = (
-        u32::from(second),
-        first & 0xF800 == 0xF000 && second >> 15 == 1,
-    );
+    let low = u32::from(second);
+    let branches = first & 0xF800 == 0xF000 && second >> 15 == 1;
+    let loads = first & 0xFF70 == 0xF850;
     match first {
         // STMDB with write-back, PUSH T2; STR and STRD with write-back, PUSH T3
         0xE92D => Does::Takes(low.count_ones() * 4),
@@ -72,7 +74,13 @@ fn wide(address: u64, first: u16, second: u16) -> Does {
             Does::Takes(immediate(first, second))
         }
         0xEBAD if second & 0x0F00 == 0x0D00 => Does::SetsStack,
-        // BL T1 and B T4; B T3
+        // MSR into MSP or PSP; LDR (immediate, literal, register) into the stack pointer
+        _ if first & 0xFFF0 == 0xF380 && matches!(second, 0x8808 | 0x8809) => Does::SetsStack,
+        _ if loads && second >> 12 == 13 => Does::SetsStack,
+        // The same into the program counter, but for a return by the stack
+        _ if loads && second >> 12 == 15 && first & 0xF != 13 => Does::GoesAnywhere,
+        // BL T1; B T4 and T3
+        _ if branches && second & 0x5000 == 0x5000 => Does::Calls(long(address, first, second)),
         _ if branches && second & 0x1000 != 0 => Does::Goes(long(address, first, second)),
         _ if branches && second & 0x5000 == 0 && first >> 7 & 7 != 7 => {
             Does::Goes(conditional(address, first, second))
@@ -149,12 +157,31 @@ mod tests {
     fn branches_and_calls_say_where_they_go() {
         // bl, b.w, beq.w and b.n to 0x0800_0100 and back to 0x0800_0000
         let at = 0x0800_0000;
-        assert_eq!(decode(at, 0xF000, 0xF87E), Does::Goes(at + 0x100));
+        assert_eq!(decode(at, 0xF000, 0xF87E), Does::Calls(at + 0x100));
         assert_eq!(decode(at, 0xF000, 0xB87E), Does::Goes(at + 0x100));
         assert_eq!(decode(at, 0xF000, 0x807E), Does::Goes(at + 0x100));
         assert_eq!(decode(at, 0xE07E, 0), Does::Goes(at + 0x100));
-        assert_eq!(decode(at + 0x100, 0xF7FF, 0xFF7E), Does::Goes(at));
+        assert_eq!(decode(at + 0x100, 0xF7FF, 0xFF7E), Does::Calls(at));
         assert_eq!(decode(at, 0x4798, 0), Does::GoesAnywhere, "blx r3");
         assert_eq!(decode(at, 0x4770, 0), Does::Else, "bx lr");
+        assert_eq!(
+            decode(at, 0xF8D0, 0xF000),
+            Does::GoesAnywhere,
+            "ldr.w pc, [r0]"
+        );
+        assert_eq!(decode(at, 0xF85D, 0xFB04), Does::Else, "ldr.w pc, [sp], #4");
+    }
+
+    #[test]
+    fn a_stack_pointer_from_elsewhere_is_told() {
+        // mov sp, r4; msr msp, r0; sub.w sp, sp, r4; ldr.w sp, [r0]
+        for (first, second) in [
+            (0x46A5, 0),
+            (0xF380, 0x8808),
+            (0xEBAD, 0x0D04),
+            (0xF8D0, 0xD000),
+        ] {
+            assert_eq!(decode(0, first, second), Does::SetsStack, "{first:04x}");
+        }
     }
 }

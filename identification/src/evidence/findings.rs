@@ -128,8 +128,8 @@ pub(crate) struct Findings<'a> {
     pub found: Found,
     /// Structure in the residual of the training record.
     pub residual: ResidualStructure,
-    /// A wave that drives the axis, on the first record that has one.
-    pub oscillation: Option<Oscillation>,
+    /// Waves that drive the axis, one of a record at most.
+    pub oscillations: Vec<Oscillation>,
     /// Explained or not.
     pub verdict: Verdict,
 }
@@ -157,10 +157,11 @@ impl<'a> Findings<'a> {
             ("training", motion, &dataset.train),
             ("validation", validation, &dataset.validate),
         ];
-        let oscillation = records
+        let oscillations: Vec<Oscillation> = records
             .into_iter()
-            .find_map(|(what, motion, record)| oscillation::seen(dataset, what, motion, record));
-        reasons.extend(oscillation.as_ref().map(Oscillation::reason));
+            .filter_map(|(what, motion, record)| oscillation::seen(dataset, what, motion, record))
+            .collect();
+        reasons.extend(oscillations.first().map(Oscillation::reason));
         reasons.extend(stages.reasons(dataset.kind.millionths()));
         let vetoed = stages.effort.vetoed.iter();
         reasons.extend(vetoed.map(|vetoed| residual.of_a_veto(vetoed)));
@@ -186,7 +187,7 @@ impl<'a> Findings<'a> {
             on_both,
             found,
             residual,
-            oscillation,
+            oscillations,
             verdict,
         }
     }

@@ -336,7 +336,8 @@ pub struct Report {
     /// which acts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_noise: Option<ForceNoise>,
-    /// An oscillation of the loop that drives the axis: nothing that is fitted on such records holds.
+    /// An oscillation of the loop that drives the axis: nothing that is fitted on such records
+    /// holds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_oscillation: Option<LoopOscillation>,
     /// Cut-off of the zero-phase low-pass of the fit and of the errors, Hz: 100 Hz or a tenth of

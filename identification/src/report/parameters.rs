@@ -96,7 +96,7 @@ impl Parameters {
         let (Some(whole), Some(load)) = (whole, self.estimates.get_mut("load_inertia")) else {
             return;
         };
-        let off = counted_mass::off(findings.dataset, findings.motion, whole - load.value);
+        let off = counted_mass::off(findings.dataset, findings.motion, [whole, load.value]);
         *load = about(
             load.value,
             load.half_width().hypot(off),
@@ -213,7 +213,8 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         let exponent = exponent.map(|exponent| ("stribeck_exponent", estimate(exponent, "")));
         own.extend(lag.into_iter().chain(exponent));
     }
-    if told.motor_side.is_some() || !is_told(fitted.model(), told.more) {
+    let is_level = fitted.of(EffectName::Stribeck).is_some() && told.excess.value <= 0.0;
+    if told.motor_side.is_some() || is_level || !is_told(fitted.model(), told.more) {
         return own;
     }
     if !told.more.over_position {
@@ -264,7 +265,9 @@ fn is_told(model: &Model, more: More) -> bool {
         Called::Effect(name) => BESIDE_USUAL.contains(&name),
         Called::Structure(_) => part.effect.is_mass(),
     };
-    model.has(EffectName::Coulomb)
+    let drags_alike = !more.squared || model.has(EffectName::QuadraticDrag);
+    drags_alike
+        && model.has(EffectName::Coulomb)
         && model.has(EffectName::Viscous)
         && model.parts.iter().all(is_usual)
 }

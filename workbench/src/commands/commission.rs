@@ -179,8 +179,10 @@ fn after_recording(
     let results = identify(stand, out)?;
     let ringing = fitness::on_records(stand.machine, &results);
     if !ringing.is_empty() {
-        ringing.iter().for_each(|own| say!("{}", own.sentence()));
-        return end_unfit(stand, &ringing, wanted);
+        for own in &ringing {
+            say!("{}", own.sentence());
+        }
+        return end_unfit(stand, &[oscillations, &ringing].concat(), wanted);
     }
     let model = identified_axes::model(stand.machine, &results);
     write(&out.join("model.toml"), &model)?;

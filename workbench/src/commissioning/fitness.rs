@@ -66,8 +66,8 @@ pub struct Oscillation {
     /// Speed at which it oscillates while it creeps, m/s; elsewhere it does not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub creeping_m_per_s: Option<f64>,
-    /// It was seen on the records only: what moves as a record does wakes it, and gentle motion does
-    /// not.
+    /// It was seen on the records only: what moves as a record does wakes it, and gentle motion
+    /// does not.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub on_record: bool,
     /// The force comes to its limit.

@@ -60,9 +60,9 @@ fn page(machine: &Machine, oscillations: &[Oscillation], is_simulation: bool) ->
     }
     page.table(&table(oscillations));
     page.paragraph(if oscillations.iter().any(|own| own.on_record) {
-        "The loops are stable at standstill, at two speeds through the middle of their travel and from rest to slow ones. What moves as the records do wakes the oscillation: a load that shakes between the \
-         flanks of a gap does so, and a loop near the edge of its stability. The records and what they say lie beside this page. Nothing was tuned or downloaded: friction that is \
-         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
+        "The axes were enabled without any compensation, stood for a second, ran through the middle of their travel at two speeds and crept, without an oscillation of 5 µm or more that lasts. Where they move \
+         as the records do, they have one: a load that shakes between the flanks of a gap does so, and a loop near the edge of its stability. The records lie beside this page. Nothing was tuned or downloaded: \
+         friction that is identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
     } else {
         "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds, and from rest to slow ones. An oscillation that lasts is the loop's \
          own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded: friction that is \
@@ -80,7 +80,11 @@ fn table(oscillations: &[Oscillation]) -> TextTable {
         "force at its limit",
     ])];
     rows.extend(oscillations.iter().map(|own| {
-        let limit = if own.at_force_limit { "yes" } else { "no" };
+        let limit = match own.at_force_limit {
+            _ if own.on_record => "–",
+            true => "yes",
+            false => "no",
+        };
         vec![
             own.axis.clone(),
             format!("{:.1}", own.frequency_hz),

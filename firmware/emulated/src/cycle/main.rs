@@ -19,10 +19,10 @@
 //! the conversion and the taking over of what comes of it apart.
 //!
 //! Report, a line each: `delay I T` (`I` instructions took `T` ticks), `empty N T` (`N` empty
-//! events), `C T` for each measured event (class as in the recording), `commit T U` (a conversion took `T`,
-//! taking it over `U`), `wrong E` for an event whose
-//! answer differs, `stack S` (bytes that one of them took at most), `end E F` (events and answers compared). The exit code says whether the image
-//! came to its end.
+//! events), `C T` for each measured event (class as in the recording), `commit T U` (a conversion
+//! took `T`, taking it over `U`), `wrong E` for an event whose answer differs, `stack S` (bytes
+//! that one of them took at most), `end E F` (events and answers compared). The exit code says
+//! whether the image came to its end.
 #![no_std]
 #![no_main]
 
@@ -193,6 +193,7 @@ fn takes<'a>(servo: &'a mut Servo, frame: &CanFrame, now_us: u64) -> &'a [CanFra
     servo.hear(frame, now_us)
 }
 
+/// A conversion of a copy: making that is some 400 instructions of it.
 #[inline(never)]
 fn converts(commit: &Commit) -> &'static [CanFrame] {
     black_box(commit.clone()).convert();

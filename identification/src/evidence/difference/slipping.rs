@@ -166,7 +166,16 @@ fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Wa
     });
     let falling = std::iter::once_with(|| with_another_level(apart, ways, place));
     let mut changed = changed.chain(falling.flatten());
-    changed.find(|changed| is_better(apart, ways, changed))
+    changed.find(|changed| holds_back(apart, changed, place) && is_better(apart, ways, changed))
+}
+
+/// Whether a drag, where there is one, is against the motion: a fall about the highest velocity is
+/// a drag that pushes.
+pub(super) fn holds_back(apart: &Apart<'_>, ways: &[Way], place: usize) -> bool {
+    let is_dragged = carried(ways, place).is_some_and(|own| own.more.squared);
+    let fitted = apart.fit(ways);
+    let drag = fitted.at(place).and_then(|(_, own)| own.last().copied());
+    !is_dragged || drag.is_some_and(|drag| drag > 0.0)
 }
 
 pub(super) fn carried(ways: &[Way], place: usize) -> Option<Carried> {
