@@ -32,6 +32,10 @@ const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 const LAGS: (f64, f64, u32) = (5.0e-4, 6.4e-2, 8);
 /// Exponents of its fall that are tried.
 const EXPONENTS: [f64; 5] = [0.5, 0.75, 1.0, 1.25, 1.5];
+/// A drag is followed up where it leaves less than this of the squares before anything else moves: a
+/// tenth has to go in the end.
+const PROMISING: f64 = 0.99;
+
 /// Levels forward that are tried, in those of both directions: steps go on from there.
 const FORWARD: [f32; 2] = [0.95, 1.05];
 
@@ -159,10 +163,20 @@ fn with_more(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
 
 fn with_one_more(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
     let carried = carried(ways, place)?;
+    let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
+    let before = std::cell::LazyCell::new(|| left(ways));
     let others = carried.more.others().into_iter();
-    let changed = others.map(|more| {
+    let changed = others.filter_map(|more| {
         let changed = instead(ways, place, Carried { more, ..carried });
-        stepped(apart, between_refined_flanks(apart, changed), place)
+        let is_drag = more.squared != carried.more.squared;
+        if is_drag && left(&changed) > PROMISING * *before {
+            return None;
+        }
+        Some(stepped(
+            apart,
+            between_refined_flanks(apart, changed),
+            place,
+        ))
     });
     let falling = std::iter::once_with(|| with_another_level(apart, ways, place));
     let mut changed = changed.chain(falling.flatten());
