@@ -152,6 +152,10 @@ fn shaking(axis: &mut MachineAxis) {
     actual.mechanics.backlash_m = 3.0e-6;
     (actual.sliding.coulomb_n, actual.sliding.static_n) = (1500.0, 1500.0);
     actual.sliding.viscous_n_s_per_m = 5000.0;
+    actual.law = Law::LuGre {
+        bristle_stiffness_n_per_m: 7.5e7,
+        bristle_damping_n_s_per_m: 1.0e3,
+    };
 }
 
 fn of_machine(brought: &Brought) -> Vec<Measured> {
