@@ -44,6 +44,7 @@ pub(crate) fn off(dataset: &Dataset, motion: &Kinematics, [whole, load]: [f64; 2
 mod tests {
     use super::*;
     use crate::evidence::findings::tests::Scene;
+    use crate::evidence::force_noise::tests::noise;
     use crate::motion::derivatives::Derivatives;
 
     /// A load a constant way behind: what its acceleration differs by from the motor's is rounding,
@@ -53,13 +54,7 @@ mod tests {
             mut dataset,
             mut motion,
         } = Scene::behind(0.0);
-        let mut state = 1_u64;
-        let mut dither = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 33) as f64 / f64::from(1 << 31) - 0.5
-        };
+        let mut dither = noise();
         (dataset.resolution, dataset.load_resolution) = (motor_m, load_m);
         let step = motor_m.hypot(load_m);
         let counted: Vec<f64> = (0..motion.len()).map(|_| times * step * dither()).collect();

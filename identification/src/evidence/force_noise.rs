@@ -131,8 +131,19 @@ pub(crate) fn second_differences(dataset: &Dataset, filter: &LowPass) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// Half a step to either side, the same every time (Knuth's MMIX generator).
+    pub(crate) fn noise() -> impl FnMut() -> f64 {
+        let mut state = 1_u64;
+        move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        }
+    }
 
     #[test]
     fn a_low_pass_of_a_tenth_of_the_rate_leaves_a_fifth_of_white_noise() {
@@ -145,13 +156,7 @@ mod tests {
     #[test]
     fn the_law_holds_in_the_seconds_in_which_it_leaves_noise() {
         // Ten seconds of noise, a slow error beside it in the last three.
-        let mut state = 1_u64;
-        let mut noise = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
+        let mut noise = noise();
         let slow = |row: usize| if row < 7000 { 0.0 } else { 0.5 };
         let left: Vec<f64> = (0..10_000).map(|row| noise() + slow(row)).collect();
         let mut mask = vec![true; left.len()];

@@ -59,15 +59,16 @@ fn page(machine: &Machine, oscillations: &[Oscillation], is_simulation: bool) ->
         page.key(&oscillation.sentence());
     }
     page.table(&table(oscillations));
-    page.paragraph(if oscillations.iter().any(|own| own.on_record) {
+    let seen = if oscillations.iter().any(|own| own.on_record) {
         "The axes were enabled without any compensation, stood for a second, ran through the middle of their travel at two speeds and crept, without an oscillation of 5 µm or more that lasts. Where they move \
-         as the records do, they have one: a load that shakes between the flanks of a gap does so, and a loop near the edge of its stability. The records lie beside this page. Nothing was tuned or downloaded: \
-         friction that is identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
+         as the records do, they have one: a load that shakes between the flanks of a gap does so, and a loop near the edge of its stability. The records lie beside this page. Nothing was tuned or downloaded"
     } else {
         "The axes were enabled without any compensation, stood for a second and ran through the middle of their travel at two speeds, and from rest to slow ones. An oscillation that lasts is the loop's \
-         own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded: friction that is \
-         identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
-    });
+         own where the axis stands, or where its frequency is the same at both speeds. Nothing was recorded, tuned or downloaded"
+    };
+    page.paragraph(&format!(
+        "{seen}: friction that is identified while a loop oscillates is wrong, and a compensation tuned on it makes circles worse."
+    ));
     page.finish()
 }
 

@@ -146,10 +146,10 @@ fn stack_of(servo: &Servo, event: &Event<'_>) -> usize {
 
 /// Where an event asks for a conversion.
 fn report_commit(servo: &Servo, event: &Event<'_>) {
-    let mut asking = servo.clone();
     if event.class != Class::Other {
         return;
     }
+    let mut asking = servo.clone();
     let _its_answer_comes_later = takes(&mut asking, &frame_of(event), event.now_us);
     let mut commit = Commit::default();
     if !asking.begin_commit(&mut commit) {

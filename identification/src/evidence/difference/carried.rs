@@ -185,6 +185,11 @@ pub(super) mod tests {
         forward: ALIKE,
         law: Law::Dahl,
     };
+    /// The same without a fall.
+    pub(in crate::evidence::difference) const LEVEL: LoadFriction = LoadFriction {
+        rise: 0.0,
+        ..FRICTION
+    };
     pub(in crate::evidence::difference) const UNIT: f64 = 1.0e-3;
     pub(in crate::evidence::difference) const STIFFNESS: f64 = 5.0e6;
 
@@ -255,6 +260,17 @@ pub(super) mod tests {
         made.effort = effort;
         made.load = Some(load);
         on(made)
+    }
+
+    /// A wind-up with such a friction, without flanks and nothing else.
+    pub(in crate::evidence::difference) fn rubbing_alone(friction: LoadFriction) -> Carried {
+        Carried {
+            friction,
+            flanks: None,
+            strike: UNIT * 1.0e-3,
+            smallest_turn: 0.0,
+            more: More::default(),
+        }
     }
 
     pub(in crate::evidence::difference) fn apart(axis: &Axis) -> Apart<'_> {

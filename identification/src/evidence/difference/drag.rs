@@ -33,13 +33,12 @@ pub(super) fn for_a_wide_fall(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -
             squared: true,
             ..own.more
         };
-        let mut changed = ways.clone();
-        changed[place] = Way::Carried(Carried {
+        let dragged = Carried {
             friction,
             more,
             ..own
-        });
-        let changed = stepped(apart, changed, place);
+        };
+        let changed = stepped(apart, slipping::instead(&ways, place, dragged), place);
         (apart.blocks(&changed).fit().sse, changed)
     };
     let tried = DEFLECTIONS.into_iter().map(dragged);
@@ -61,7 +60,7 @@ mod tests {
     use super::*;
     use crate::evidence::difference::carried::instead;
     use crate::evidence::difference::carried::tests::{
-        FRICTION, UNIT, WAYS, apart, dragged, rubbed,
+        FRICTION, LEVEL, UNIT, WAYS, apart, dragged, rubbed, rubbing_alone,
     };
 
     /// N s²/m².
@@ -69,11 +68,7 @@ mod tests {
 
     #[test]
     fn a_drag_is_no_fall_and_leaves_the_deflection_as_it_is() {
-        let level = LoadFriction {
-            rise: 0.0,
-            ..FRICTION
-        };
-        let axis = dragged(level, DRAG);
+        let axis = dragged(LEVEL, DRAG);
         let apart = apart(&axis);
         let passes_for_it = LoadFriction {
             deflection: 0.5 * FRICTION.deflection,
@@ -81,13 +76,7 @@ mod tests {
             exponent: 0.8,
             ..FRICTION
         };
-        let wide = Carried {
-            friction: passes_for_it,
-            flanks: None,
-            strike: UNIT * 1.0e-3,
-            smallest_turn: 0.0,
-            more: More::default(),
-        };
+        let wide = rubbing_alone(passes_for_it);
         let ways = stepped(&apart, vec![Way::Constant, Way::Carried(wide)], 1);
         let own = slipping::carried(&ways, 1).unwrap();
         assert!(own.friction.rise > 0.0 && !own.more.squared, "{own:?}");
@@ -118,13 +107,10 @@ mod tests {
             assert!(!own.more.squared && own.friction.rise > 0.2, "{own:?}");
         }
     }
+
     #[test]
     fn what_pushes_with_the_square_of_the_velocity_is_no_drag() {
-        let level = LoadFriction {
-            rise: 0.0,
-            ..FRICTION
-        };
-        let axis = dragged(level, -1000.0);
+        let axis = dragged(LEVEL, -1000.0);
         let apart = apart(&axis);
         let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let own = slipping::carried(&ways, 1).unwrap();

@@ -67,12 +67,9 @@ impl Difference {
 
 /// What the fall of a wind-up's friction is worth on held-out blocks; `None` where there is none.
 fn worth(apart: &Apart<'_>, ways: &[Way]) -> Option<Gain> {
-    let mut level = ways.to_vec();
     let is_carried = |way: &Way| matches!(way, Way::Carried(_));
     let place = ways.iter().position(is_carried)?;
-    let Way::Carried(own) = ways[place] else {
-        return None;
-    };
+    let own = slipping::carried(ways, place)?;
     if own.friction.rise <= 0.0 {
         return None;
     }
@@ -80,7 +77,7 @@ fn worth(apart: &Apart<'_>, ways: &[Way]) -> Option<Gain> {
         rise: 0.0,
         ..own.friction
     };
-    level[place] = Way::Carried(Carried { friction, ..own });
+    let level = slipping::instead(ways, place, Carried { friction, ..own });
     let level = stepped(apart, level, place);
     let gain = slipping::gain(apart, &level, ways);
     if !is_clear(&gain) {
@@ -94,7 +91,7 @@ fn worth(apart: &Apart<'_>, ways: &[Way]) -> Option<Gain> {
 mod tests {
     use super::*;
     use crate::evidence::difference::carried::instead;
-    use crate::evidence::difference::carried::tests::{FRICTION, UNIT, WAYS, apart, rubbed};
+    use crate::evidence::difference::carried::tests::{FRICTION, LEVEL, UNIT, WAYS, apart, rubbed};
 
     fn worth_of(friction: LoadFriction) -> Option<Gain> {
         let axis = rubbed(friction, 0.0, |_| 0.0);
@@ -111,13 +108,9 @@ mod tests {
 
     #[test]
     fn friction_without_a_fall_is_worth_none_whatever_its_presliding() {
-        let level = LoadFriction {
-            rise: 0.0,
-            ..FRICTION
-        };
         let at = [4.0e-6, 20.0e-6, 60.0e-6];
-        let slips = level.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
-        for friction in [level, slips] {
+        let slips = LEVEL.slipping(&at, &[0.3, 0.4, 0.3]).unwrap();
+        for friction in [LEVEL, slips] {
             let gain = worth_of(friction);
             assert!(!gain.is_some_and(|gain| is_clear(&gain)), "{gain:?}");
         }

@@ -339,7 +339,7 @@ impl More {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::difference::carried::tests::{FRICTION, UNIT, apart, axis};
+    use crate::evidence::difference::carried::tests::{FRICTION, apart, axis, rubbing_alone};
     use crate::simulate::made::two_sines;
 
     #[test]
@@ -385,13 +385,7 @@ mod tests {
     #[test]
     fn a_bend_is_known_once_the_bristle_has_given_way() {
         let axis = axis(|_| 0.0);
-        let carried = Carried {
-            friction: FRICTION,
-            flanks: None,
-            strike: UNIT * 1.0e-3,
-            smallest_turn: 0.0,
-            more: More::default(),
-        };
+        let carried = rubbing_alone(FRICTION);
         let apart = apart(&axis);
         let mask = vec![true; 6000];
         let position = &axis.dataset.train.position;

@@ -199,7 +199,7 @@ pub(super) fn carried(ways: &[Way], place: usize) -> Option<Carried> {
     }
 }
 
-fn instead(ways: &[Way], place: usize, carried: Carried) -> Vec<Way> {
+pub(super) fn instead(ways: &[Way], place: usize, carried: Carried) -> Vec<Way> {
     let mut changed = ways.to_vec();
     changed[place] = Way::Carried(carried);
     changed
