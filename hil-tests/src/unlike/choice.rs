@@ -1,7 +1,7 @@
 //! Which records of unlike make a scope runs.
 //!
-//! `certify` runs all of them, `test` the hidden record of every make with one of its other forms in
-//! turn (empty, declared, validation from another day) and some of the other tables, `quick` a
+//! `certify` runs all of them, `test` the hidden record of every make with one of its other forms
+//! in turn (empty, declared, validation from another day) and some of the other tables, `quick` a
 //! handful. Records that are held back are in none of these lists.
 
 use makes::Recipe;

@@ -32,8 +32,8 @@ const FINEST: f64 = RATIOS[RATIOS.len() - 1];
 const LAGS: (f64, f64, u32) = (5.0e-4, 6.4e-2, 8);
 /// Exponents of its fall that are tried.
 const EXPONENTS: [f64; 5] = [0.5, 0.75, 1.0, 1.25, 1.5];
-/// A drag is followed up where it leaves less than this of the squares before anything else moves: a
-/// tenth has to go in the end.
+/// A drag is followed up where it leaves less than this of the squares before anything else moves:
+/// a tenth has to go in the end.
 const PROMISING: f64 = 0.99;
 
 /// Levels forward that are tried, in those of both directions: steps go on from there.
