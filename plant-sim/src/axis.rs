@@ -133,6 +133,7 @@ pub struct Axis {
     brake: Option<Brake>,
     force_n: f64,
     delayed_n: f64,
+    lag: Lag,
     time_s: f64,
     noise: ChaCha8Rng,
     seed: u64,
@@ -157,6 +158,7 @@ impl Axis {
             brake,
             force_n: 0.0,
             delayed_n: 0.0,
+            lag: Lag::default(),
             time_s: 0.0,
             noise: ChaCha8Rng::seed_from_u64(seed),
             seed,
@@ -240,14 +242,20 @@ impl Axis {
         let disturbance = self.parameters.force_noise_n * noise;
         let steps = (cycle_s / self.sub_step_s).round().max(1.0);
         let dt_s = cycle_s / steps;
-        let lag = Lag::over(dt_s, self.parameters.current_loop_time_constant_s);
+        let time_constant_s = self.parameters.current_loop_time_constant_s;
+        let lag = self.lag.kept_over(dt_s, time_constant_s);
+        self.lag = lag;
         let before = std::mem::replace(&mut self.delayed_n, wanted);
         let delay_s = effects.delay_s().min(cycle_s);
         let mut elapsed = 0.0;
         while elapsed < cycle_s - 0.5 * dt_s {
-            // The share of this sub-step in which the old force still acts.
-            let old = ((delay_s - elapsed) / dt_s).clamp(0.0, 1.0);
-            let target = old * before + (1.0 - old) * wanted;
+            let target = if elapsed < delay_s {
+                // The share of this sub-step in which the old force still acts.
+                let old = ((delay_s - elapsed) / dt_s).min(1.0);
+                old * before + (1.0 - old) * wanted
+            } else {
+                wanted
+            };
             self.sub_step(target, disturbance, lag, dt_s);
             elapsed += dt_s;
         }

@@ -95,15 +95,15 @@ pub struct Friction {
     sliding: Sliding,
     law: Law,
     state: State,
+    kept: State,
 }
 
 /// Internal state of a friction law.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct State {
     deflection_m: Vec<f64>,
     fall: Fall,
     at: At,
-    decay: Decay,
 }
 
 impl State {
@@ -111,6 +111,21 @@ impl State {
     #[must_use]
     pub fn deflection_m(&self) -> &[f64] {
         &self.deflection_m
+    }
+}
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        Self {
+            deflection_m: self.deflection_m.clone(),
+            ..*self
+        }
+    }
+
+    /// Into the memory that is there: it happens in every sub-step of a gap in contact.
+    fn clone_from(&mut self, other: &Self) {
+        self.deflection_m.copy_from_slice(&other.deflection_m);
+        (self.fall, self.at) = (other.fall, other.at);
     }
 }
 
@@ -147,15 +162,16 @@ impl Friction {
             Law::LuGre { .. } => 1,
             Law::MaxwellSlip { share, .. } => share.len(),
         };
+        let state = State {
+            deflection_m: vec![0.0; states],
+            fall: Fall::default(),
+            at: At::default(),
+        };
         Self {
             sliding,
             law,
-            state: State {
-                deflection_m: vec![0.0; states],
-                fall: Fall::default(),
-                at: At::default(),
-                decay: Decay::default(),
-            },
+            kept: state.clone(),
+            state,
         }
     }
 
@@ -169,8 +185,8 @@ impl Friction {
                     deflection_m,
                     fall,
                     at,
-                    decay,
                 },
+            ..
         } = self;
         *fall = fall.after(sliding, body.velocity, body.dt_s);
         let curve = Curve {
@@ -187,7 +203,7 @@ impl Friction {
                     stiffness: *bristle_stiffness_n_per_m,
                     damping: *bristle_damping_n_s_per_m,
                 };
-                lugre(curve, bristle, (&mut deflection_m[0], at, decay), body)
+                lugre(curve, bristle, (&mut deflection_m[0], at), &body)
             }
             Law::MaxwellSlip {
                 stiffness_n_per_m,
@@ -196,15 +212,20 @@ impl Friction {
         }
     }
 
-    /// The internal state, to go back to with [`Self::restore`].
+    /// The internal state.
     #[must_use]
-    pub fn state(&self) -> State {
-        self.state.clone()
+    pub fn state(&self) -> &State {
+        &self.state
     }
 
-    /// Goes back to a state.
-    pub fn restore(&mut self, state: State) {
-        self.state = state;
+    /// Keeps the internal state, to go back to with [`Self::go_back`].
+    pub fn keep(&mut self) {
+        self.kept.clone_from(&self.state);
+    }
+
+    /// Goes back to the state that was kept last.
+    pub fn go_back(&mut self) {
+        self.state.clone_from(&self.kept);
     }
 
     /// Bristle deflection (or mean element deflection), m.
@@ -252,14 +273,20 @@ struct Bristle {
     damping: f64,
 }
 
-/// Sliding at a velocity. A sub-step ends with the velocity that the next one begins with: what
-/// was computed last is asked for first.
+/// A bristle that slides at a velocity: what does not depend on how far it is bent. A sub-step ends
+/// with the velocity that the next one begins with: what was computed last is asked for first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     velocity: f64,
+    dt_s: f64,
+    factor: f64,
+    beside_n: f64,
     sign: f64,
     level_n: f64,
     viscous_n_s_per_m: f64,
+    rate_per_s: f64,
+    /// Of its way to the end, in half a sub-step, over that rate.
+    share_s: f64,
 }
 
 impl Default for At {
@@ -267,69 +294,59 @@ impl Default for At {
     fn default() -> Self {
         Self {
             velocity: f64::NAN,
+            dt_s: 0.0,
+            factor: 1.0,
+            beside_n: 0.0,
             sign: 0.0,
             level_n: 0.0,
             viscous_n_s_per_m: 0.0,
-        }
-    }
-}
-
-impl At {
-    fn of(curve: Curve<'_>, velocity: f64) -> Self {
-        Self {
-            velocity,
-            sign: sign(velocity),
-            level_n: curve.level_n(velocity),
-            viscous_n_s_per_m: curve.viscous_n_s_per_m(velocity),
-        }
-    }
-
-    /// The same at a velocity, which it may be at already.
-    fn moved_to(self, curve: Curve<'_>, velocity: f64) -> Self {
-        if self.velocity == velocity && !curve.lags() {
-            self
-        } else {
-            Self::of(curve, velocity)
-        }
-    }
-
-    /// Rate at which a bristle of a stiffness goes towards its end there, with the friction level
-    /// of a body, 1/s.
-    fn rate_per_s(&self, stiffness: f64, level_n: f64) -> f64 {
-        stiffness * self.velocity.abs() / level_n
-    }
-}
-
-/// What a bristle goes towards its end in half a sub-step, by its rate; kept for the same reason.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Decay {
-    rate: f64,
-    half_s: f64,
-    share_s: f64,
-}
-
-impl Default for Decay {
-    /// Of no rate yet.
-    fn default() -> Self {
-        Self {
-            rate: f64::NAN,
-            half_s: 0.0,
+            rate_per_s: 0.0,
             share_s: 0.0,
         }
     }
 }
 
-impl Decay {
-    /// Solution of `ż = v − r z` after `dt` at constant `v` and `r`.
-    fn relaxed(&mut self, z: f64, v: f64, rate: f64, dt: f64) -> f64 {
-        if self.rate != rate || self.half_s != dt {
-            *self = Self {
-                rate,
-                half_s: dt,
-                share_s: decayed(rate, dt),
-            };
+impl At {
+    #[expect(
+        clippy::inline_always,
+        reason = "once a sub-step: a call passes a dozen numbers through memory, 40 of 480 instructions"
+    )]
+    #[inline(always)]
+    fn of(curve: Curve<'_>, stiffness: f64, body: &Body, velocity: f64) -> Self {
+        let level_n = body.friction_n(curve, velocity);
+        let rate_per_s = stiffness * velocity.abs() / level_n;
+        Self {
+            velocity,
+            dt_s: body.dt_s,
+            factor: body.factor,
+            beside_n: body.level_n,
+            sign: sign(velocity),
+            level_n,
+            viscous_n_s_per_m: curve.viscous_n_s_per_m(velocity),
+            rate_per_s,
+            share_s: decayed(rate_per_s, 0.5 * body.dt_s),
         }
-        z + (v - rate * z) * self.share_s
+    }
+
+    /// Whether it is where a body begins its sub-step.
+    fn is_begin_of(&self, curve: Curve<'_>, body: &Body) -> bool {
+        self.velocity == body.velocity
+            && self.factor == body.factor
+            && self.beside_n == body.level_n
+            && self.dt_s == body.dt_s
+            && !curve.lags()
+    }
+
+    /// Something else moved the body, or what rubs it has changed.
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self, curve: Curve<'_>, stiffness: f64, body: &Body) {
+        *self = Self::of(curve, stiffness, body, body.velocity);
+    }
+
+    /// Solution of `ż = v − r z` after half a sub-step.
+    fn relaxed(&self, z: f64) -> f64 {
+        z + (self.velocity - self.rate_per_s * z) * self.share_s
     }
 }
 
@@ -346,34 +363,27 @@ fn decayed(rate: f64, dt: f64) -> f64 {
 /// Strang splitting: half a sub-step of the bristle (exact for constant velocity), the body with
 /// the part of the bristle force that is linear in its velocity taken implicitly, the other half of
 /// the bristle.
-fn lugre(
-    curve: Curve<'_>,
-    bristle: Bristle,
-    (z, at, decay): (&mut f64, &mut At, &mut Decay),
-    body: Body,
-) -> f64 {
+fn lugre(curve: Curve<'_>, bristle: Bristle, (z, at): (&mut f64, &mut At), body: &Body) -> f64 {
     let Body {
         velocity,
         free_velocity,
         mass_kg,
         dt_s,
-        factor,
-        level_n,
-    } = body;
-    let now = at.moved_to(curve, velocity);
-    let level = now.level_n * factor + level_n;
-    let rate = now.rate_per_s(bristle.stiffness, level);
-    *z = decay.relaxed(*z, velocity, rate, 0.5 * dt_s);
+        ..
+    } = *body;
+    if !at.is_begin_of(curve, body) {
+        at.begin(curve, bristle.stiffness, body);
+    }
+    let bent = at.relaxed(*z);
     // Force σ0 z + σ1 v (1 − sign(v) σ0 z / g) + Fv v: all of it that is proportional to v taken
     // trapezoidal.
-    let constant = bristle.stiffness * *z;
-    let linear =
-        bristle.damping * (1.0 - now.sign * bristle.stiffness * *z / level) + now.viscous_n_s_per_m;
+    let constant = bristle.stiffness * bent;
+    let linear = bristle.damping * (1.0 - at.sign * bristle.stiffness * bent / at.level_n)
+        + at.viscous_n_s_per_m;
     let half = 0.5 * linear * dt_s / mass_kg;
     let next = (free_velocity - constant * dt_s / mass_kg - half * velocity) / (1.0 + half);
-    *at = now.moved_to(curve, next);
-    let rate = at.rate_per_s(bristle.stiffness, at.level_n * factor + level_n);
-    *z = decay.relaxed(*z, next, rate, 0.5 * dt_s);
+    *at = At::of(curve, bristle.stiffness, body, next);
+    *z = at.relaxed(bent);
     next
 }
 

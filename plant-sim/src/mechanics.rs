@@ -118,15 +118,17 @@ impl Mechanics {
         };
         let before = *motion;
         let can_separate = self.backlash_m > 0.0 && in_contact;
-        let bristles = can_separate.then(|| friction.state());
+        if can_separate {
+            friction.keep();
+        }
         self.solve(motion, friction, drive, deflection, damping, dt_s);
-        if let Some(bristles) = bristles {
+        if can_separate {
             let relative = mean(before.motor_m_per_s, motion.motor_m_per_s)
                 - mean(before.table_m_per_s, motion.table_m_per_s);
             let force = self.screw_stiffness_n_per_m * deflection + damping * relative;
             if force * deflection < 0.0 {
                 *motion = before;
-                friction.restore(bristles);
+                friction.go_back();
                 self.separate(motion, friction, drive, dt_s);
             }
         }
@@ -236,7 +238,7 @@ impl Kick {
     /// force; else it slips against that force. The motor's velocity grows with its momentum, so a
     /// slipping shaft keeps its direction. A shaft that is held bends no bristle of the motor.
     fn braked(self, motion: &mut Motion, friction: &mut Sides, brake_n: f64) {
-        let bristles = friction.state();
+        friction.keep();
         let mass = self.m2 + self.half;
         let held = self.table(motion.table_m_per_s, self.p2 / mass, mass);
         let held = friction.table.advance(held);
@@ -247,7 +249,7 @@ impl Kick {
             motion.motor_m_per_s = 0.0;
             return;
         }
-        friction.restore(bristles);
+        friction.go_back();
         let slipping = Self {
             p1: self.p1 - most * stopping.signum(),
             ..self

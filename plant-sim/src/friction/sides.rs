@@ -1,7 +1,7 @@
 //! Friction on both sides of the screw: of the guide that carries the table, and of what turns with
 //! the motor, as bearings and the nut do. Only the first winds the screw up.
 
-use super::{Body, Friction, State};
+use super::{Body, Friction};
 
 /// Friction of the table, and of the motor where it has some.
 #[derive(Clone, Debug)]
@@ -26,17 +26,15 @@ impl Sides {
         motor.mass_kg * (motor.free_velocity - velocity)
     }
 
-    /// The internal states, to go back to with [`Self::restore`].
-    #[must_use]
-    pub fn state(&self) -> (State, Option<State>) {
-        (self.table.state(), self.motor.as_ref().map(Friction::state))
+    /// Keeps the internal states, to go back to with [`Self::go_back`].
+    pub fn keep(&mut self) {
+        self.table.keep();
+        self.motor.iter_mut().for_each(Friction::keep);
     }
 
-    /// Goes back to states.
-    pub fn restore(&mut self, (table, motor): (State, Option<State>)) {
-        self.table.restore(table);
-        if let (Some(friction), Some(state)) = (&mut self.motor, motor) {
-            friction.restore(state);
-        }
+    /// Goes back to the states that were kept last.
+    pub fn go_back(&mut self) {
+        self.table.go_back();
+        self.motor.iter_mut().for_each(Friction::go_back);
     }
 }

@@ -39,6 +39,8 @@ ranged! {
 
 /// Of exp(−x) no number is left from 745.2 on, and getting there takes longest.
 const NOTHING_LEFT: f64 = 746.0;
+/// … and ten times it changes no digit of 1 from 39.8 on: half of the last one is 2⁻⁵⁴ at least.
+const FALLEN: f64 = 40.0;
 
 impl Sliding {
     /// Coulomb friction alone. The Stribeck velocity matters only where there is a fall.
@@ -60,7 +62,18 @@ impl Sliding {
     /// Friction at steady sliding without the viscous part, for a direction of `v`; never negative.
     #[must_use]
     pub fn level_n(&self, v: f64) -> f64 {
-        self.level_with_n(self.left(v), v)
+        let excess = self.static_n - self.coulomb_n;
+        let left = if excess == 0.0 {
+            0.0
+        } else {
+            let gone = if excess <= 10.0 * self.coulomb_n {
+                FALLEN
+            } else {
+                NOTHING_LEFT
+            };
+            left_of(self.power(v), gone)
+        };
+        self.level_with_n(left, v)
     }
 
     /// The same where a share of the excess is left.
@@ -72,13 +85,9 @@ impl Sliding {
     /// Share of the excess that is left in the end, at a velocity.
     fn left(&self, v: f64) -> f64 {
         if self.static_n == self.coulomb_n {
-            return 0.0;
-        }
-        let power = self.power(v);
-        if power > NOTHING_LEFT {
             0.0
         } else {
-            (-power).exp()
+            left_of(self.power(v), NOTHING_LEFT)
         }
     }
 
@@ -98,6 +107,11 @@ impl Sliding {
         self.viscous_n_s_per_m * (1.0 + self.viscous_asymmetry * sign(v))
             + self.quadratic_drag_n_s2_per_m2 * v.abs()
     }
+}
+
+/// exp(−power), none from a power on that takes everything.
+fn left_of(power: f64, gone: f64) -> f64 {
+    if power > gone { 0.0 } else { (-power).exp() }
 }
 
 /// Exponent of a fall of which none is stated.
