@@ -1,6 +1,6 @@
 //! Friction of a load that winds a screw up, of laws and sizes unlike the reference machine's, as
-//! `commission` records and identifies it: names, verdict, and every parameter in its interval. The
-//! last one has friction of the motor's side as well.
+//! `commission` records and identifies it: names, verdict, and every parameter in its interval. Two
+//! have friction of the motor's side as well.
 
 use hil_tests::Scope;
 use hil_tests::drawn::Drawn;
@@ -16,7 +16,7 @@ struct Case {
     parameters: &'static [(&'static str, f64)],
 }
 
-const CASES: [Case; 5] = [
+const CASES: [Case; 7] = [
     Case {
         machine: include_str!("../machines/slipping-stage.toml"),
         lacks: &["presliding"],
@@ -99,6 +99,29 @@ const CASES: [Case; 5] = [
             ("presliding_deflection", 1.2e-5),
             ("stribeck_excess", 87.5),
             ("stribeck_velocity", 2.0e-3),
+        ],
+    },
+    Case {
+        machine: include_str!("../machines/rubbing-nut.toml"),
+        lacks: &["presliding", "stribeck"],
+        parameters: &[
+            ("inertia", 800.0),
+            ("coulomb", 500.0),
+            ("stribeck_excess", 140.0),
+        ],
+    },
+    Case {
+        machine: include_str!("../machines/deep-bristle.toml"),
+        lacks: &["presliding", "stribeck"],
+        parameters: &[
+            ("inertia", 931.65),
+            ("load_inertia", 300.0),
+            ("coulomb", 1200.0),
+            ("viscous", 6000.0),
+            ("compliance_stiffness", 1.2e8),
+            ("presliding_deflection", 2.5e-5),
+            ("stribeck_excess", 500.0),
+            ("stribeck_velocity", 4.0e-3),
         ],
     },
 ];

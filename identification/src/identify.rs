@@ -267,9 +267,11 @@ fn beside_the_load(
         return Some(settled);
     };
     let mut settled = settled.beside(&elsewhere);
-    if search == Search::Whole && !effort.model.has(EffectName::Stribeck) {
-        let fall = settled.name_fall(&elsewhere, both);
-        effort.model.parts.extend(fall);
+    if search == Search::Whole
+        && !effort.model.has(EffectName::Stribeck)
+        && let Some(fall) = settled.name_fall(&elsewhere, both)
+    {
+        effort.take_in(fall);
     }
     Some(settled)
 }

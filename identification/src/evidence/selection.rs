@@ -93,6 +93,13 @@ impl Selection {
         found.filter_map(Called::name).collect()
     }
 
+    /// Takes in an effect that another output shows on both records. That the effort of one of them
+    /// contradicts it is answered.
+    pub(crate) fn take_in(&mut self, part: Part) {
+        self.vetoed.retain(|vetoed| vetoed.effect != part.called());
+        self.model.parts.push(part);
+    }
+
     /// Structures without a name that were found.
     pub(crate) fn nameless(&self) -> impl Iterator<Item = &Part> {
         let found = |part: &&Part| part.origin == Origin::Found;
@@ -167,6 +174,23 @@ mod tests {
             percent,
             t,
         }
+    }
+
+    #[test]
+    fn what_another_output_shows_on_both_records_is_contradicted_no_more() {
+        let vetoed = [EffectName::Stribeck, EffectName::Payload].map(|name| Vetoed {
+            effect: name.into(),
+            gain: gain(0.5, 1.0, 9.0),
+        });
+        let mut selection = Selection {
+            model: Model::default(),
+            vetoed: vetoed.to_vec(),
+            ..Selection::default()
+        };
+        let fall = crate::model::effects::find(EffectName::Stribeck).unwrap();
+        selection.take_in(Part::found(fall, 2.0e-3));
+        assert_eq!(selection.found(), [EffectName::Stribeck]);
+        assert_eq!(selection.vetoed, vetoed[1..]);
     }
 
     /// An output whose model is a list of numbers; a number is worth what it is, and taken from
