@@ -95,3 +95,20 @@ fn a_quarter_of_the_identification_is_tests() {
     let share = shape.test_percent();
     assert!((TESTS_PERCENT..60.0).contains(&share), "{share:.1} %");
 }
+
+/// A file that is run when it is asked for and stands in no program would be run by nobody.
+#[test]
+fn every_test_that_cargo_leaves_out_is_in_the_program_of_all() {
+    let read = |file: &str| std::fs::read_to_string(workspace().join("hil-tests").join(file));
+    let manifest: toml::Table = read("Cargo.toml").unwrap().parse().unwrap();
+    let of_all = read("tests/scenarios.rs").unwrap();
+    let targets = manifest["test"].as_array().unwrap();
+    let left_out = targets
+        .iter()
+        .filter(|target| target["test"].as_bool() == Some(false));
+    let names: Vec<&str> = left_out.map(|own| own["name"].as_str().unwrap()).collect();
+    assert!(names.len() > 20, "{}", names.len());
+    for name in names {
+        assert!(of_all.contains(&format!("\nmod {name};\n")), "{name}");
+    }
+}

@@ -1,12 +1,13 @@
 //! How much of a table a test runs, and the cores that run it.
 //!
-//! Three commands run the same tests over more or less of their tables (aliases in
+//! Commands run the same tests over more or less of their tables (aliases in
 //! `.cargo/config.toml`):
 //!
 //! | command | scope | what runs |
 //! |---|---|---|
 //! | `cargo quick` | [`Scope::Quick`] | one row, seed or record of each table: the everyday loop |
 //! | `cargo test` | [`Scope::Test`] | every claim, with at least one row, seed or machine of each |
+//! | with `QUADRANT_SCOPE=landing` | [`Scope::Landing`] | more of the longest tables, for CI |
 //! | `cargo certify` | [`Scope::Certify`] | everything: all rows, all seeds, millions of ticks |
 //!
 //! The alias sets `PROPTEST_CASES` (32 and 10 000 random cases; without it proptest takes its own
@@ -37,6 +38,8 @@ pub enum Scope {
     Quick,
     /// `cargo test`: every claim, with at least one row, seed or machine of each.
     Test,
+    /// As [`Self::Test`], but for the longest tables, which run more before a change lands.
+    Landing,
     /// `cargo certify`: the full tables.
     Certify,
 }
@@ -64,19 +67,20 @@ impl Scope {
         match value {
             Some("quick") => Ok(Self::Quick),
             None | Some("test") => Ok(Self::Test),
+            Some("landing") => Ok(Self::Landing),
             Some("certify") => Ok(Self::Certify),
             Some(wrong) => Err(format!(
-                "{} is `{wrong}`: wanted quick, test or certify",
+                "{} is `{wrong}`: wanted quick, test, landing or certify",
                 Self::VARIABLE
             )),
         }
     }
 
-    /// The value of this scope.
+    /// The value of this scope; that of `test` for [`Self::Landing`].
     pub fn pick<T>(self, quick: T, test: T, certify: T) -> T {
         match self {
             Self::Quick => quick,
-            Self::Test => test,
+            Self::Test | Self::Landing => test,
             Self::Certify => certify,
         }
     }
@@ -157,8 +161,8 @@ mod tests {
             )
         };
         assert_eq!(
-            [Scope::Quick, Scope::Test, Scope::Certify].map(count),
-            [(1, 1), (9, 9), (65, 65)]
+            [Scope::Quick, Scope::Test, Scope::Landing, Scope::Certify].map(count),
+            [(1, 1), (9, 9), (9, 9), (65, 65)]
         );
         assert_eq!(
             Scope::Certify.spread("rows", &rows, 1, 9),

@@ -1,8 +1,9 @@
 //! Which records of unlike make a scope runs.
 //!
-//! `certify` runs all of them, `test` the hidden record of every make with one of its other forms
-//! in turn (empty, declared, validation from another day) and some of the other tables, `quick` a
-//! handful. Records that are held back are in none of these lists.
+//! `certify` runs all of them, `landing` the hidden record of every make with one of its other
+//! forms in turn (empty, declared, validation from another day) and some of the other tables,
+//! `test` every fourth of these makes, `quick` a handful. Records that are held back are in none of
+//! these lists.
 
 use makes::Recipe;
 use makes::make::Form;
@@ -60,14 +61,16 @@ pub fn chosen_of(table: &str) -> Vec<Recipe> {
 
 /// Which of so many records of a table a scope runs: their places.
 fn places(table: &str, scope: Scope, all: usize) -> Vec<usize> {
-    if table == "makes" && scope == Scope::Test {
-        return (0..all).filter(|place| is_of_every_test(*place)).collect();
+    if table == "makes" && matches!(scope, Scope::Test | Scope::Landing) {
+        let every = if scope == Scope::Test { FOURTH } else { 1 };
+        let places = 0..all;
+        return places.filter(|place| is_run(*place, every)).collect();
     }
     let (quick, test) = match table {
         "makes" => (2, all),
         "clean" => (1, 2),
         "outside" => (1, 3),
-        once if ONCE_HELD_BACK.contains(&once) => (1, 2),
+        once if ONCE_HELD_BACK.contains(&once) => (1, if scope == Scope::Landing { 2 } else { 1 }),
         _ => (2, 6),
     };
     let count = scope.pick(quick, test, all);
@@ -75,12 +78,14 @@ fn places(table: &str, scope: Scope, all: usize) -> Vec<usize> {
 }
 
 /// The forms of a make stand together, the hidden one first: that, and each other one of every
-/// third make.
-const fn is_of_every_test(place: usize) -> bool {
+/// third make; of so many makes one.
+const fn is_run(place: usize, every: usize) -> bool {
     let (make, form) = (place / Form::ALL.len(), place % Form::ALL.len());
-    form == 0 || make % OTHERS == form % OTHERS
+    make.is_multiple_of(every) && (form == 0 || make % OTHERS == form % OTHERS)
 }
 
+/// Makes of which `test` runs one.
+const FOURTH: usize = 4;
 /// Forms beside the hidden one.
 const OTHERS: usize = Form::ALL.len() - 1;
 
@@ -90,9 +95,12 @@ mod tests {
     use makes::make;
 
     #[test]
-    fn a_test_runs_the_hidden_record_of_every_make_and_one_of_its_other_forms_in_turn() {
+    fn a_landing_runs_the_hidden_record_of_every_make_and_one_of_its_other_forms_in_turn() {
         let all = of_table("makes");
-        let chosen = places("makes", Scope::Test, all.len());
+        let chosen = places("makes", Scope::Landing, all.len());
+        let of_test = places("makes", Scope::Test, all.len());
+        assert!(of_test.iter().all(|place| chosen.contains(place)));
+        assert_eq!(of_test.len(), 2 * make::all().len().div_ceil(FOURTH));
         let chosen = chosen.into_iter().map(|place| all[place].name.clone());
         let others = [Form::AnotherDay, Form::Empty, Form::Declared];
         let makes = make::all().into_iter().zip(others.into_iter().cycle());

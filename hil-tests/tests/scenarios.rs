@@ -1,0 +1,71 @@
+//! Most scenarios in one program: its threads always have something to do, and nothing is linked
+//! thirty times. `cargo test -p hil-tests --test brought` still runs one file: `Cargo.toml` keeps
+//! each as a target that is run when it is asked for.
+//!
+//! `emulated`, `silence`, `vcan` and `report_layout` stand apart: they run their own program again,
+//! for what it ignores where there is no vcan or no browser.
+
+#[path = "adaptive.rs"]
+mod adaptive;
+#[path = "architecture.rs"]
+mod architecture;
+#[path = "board.rs"]
+mod board;
+#[path = "board_contract.rs"]
+mod board_contract;
+#[path = "brought.rs"]
+mod brought;
+#[path = "circle_causes.rs"]
+mod circle_causes;
+#[path = "coarse_setpoints.rs"]
+mod coarse_setpoints;
+#[path = "commission.rs"]
+mod commission;
+#[path = "compare.rs"]
+mod compare;
+#[path = "consistent_report.rs"]
+mod consistent_report;
+#[path = "dead_nodes.rs"]
+mod dead_nodes;
+#[path = "docs.rs"]
+mod docs;
+#[path = "drawn.rs"]
+mod drawn;
+#[path = "friction_model.rs"]
+mod friction_model;
+#[path = "gap_and_compliance.rs"]
+mod gap_and_compliance;
+#[path = "gap_from_the_motor.rs"]
+mod gap_from_the_motor;
+#[path = "identification.rs"]
+mod identification;
+#[path = "load_friction.rs"]
+mod load_friction;
+#[path = "makes.rs"]
+mod makes;
+#[path = "many_effects.rs"]
+mod many_effects;
+#[path = "mounting.rs"]
+mod mounting;
+#[path = "paper.rs"]
+mod paper;
+#[path = "passed_over.rs"]
+mod passed_over;
+#[path = "pointers.rs"]
+mod pointers;
+#[path = "properties.rs"]
+mod properties;
+#[path = "reference_machine.rs"]
+mod reference_machine;
+#[path = "reference_timing.rs"]
+mod reference_timing;
+#[path = "refusals.rs"]
+mod refusals;
+#[path = "standstill.rs"]
+mod standstill;
+#[path = "undeclared.rs"]
+mod undeclared;
+#[path = "vertical.rs"]
+mod vertical;
+#[path = "worked_example.rs"]
+mod worked_example;
