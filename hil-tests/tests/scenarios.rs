@@ -2,8 +2,9 @@
 //! thirty times. `cargo test -p hil-tests --test brought` still runs one file: `Cargo.toml` keeps
 //! each as a target that is run when it is asked for.
 //!
-//! `emulated`, `silence`, `vcan` and `report_layout` stand apart: they run their own program again,
-//! for what it ignores where there is no vcan or no browser.
+//! `emulated`, `silence` and `vcan` stand apart, because they run their own program again for what
+//! it ignores where there is no vcan; `report_layout`, because all of it needs a browser;
+//! `passed_over`, because a clock of 1 ms has to have a core.
 
 #[path = "adaptive.rs"]
 mod adaptive;
@@ -49,8 +50,6 @@ mod many_effects;
 mod mounting;
 #[path = "paper.rs"]
 mod paper;
-#[path = "passed_over.rs"]
-mod passed_over;
 #[path = "pointers.rs"]
 mod pointers;
 #[path = "properties.rs"]

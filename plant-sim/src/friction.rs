@@ -337,7 +337,7 @@ impl At {
             && !curve.lags()
     }
 
-    /// Something else moved the body, or what rubs it has changed.
+    /// What rubs the body has changed, or lags; or it was put there.
     #[cold]
     #[inline(never)]
     fn begin(&mut self, curve: Curve<'_>, stiffness: f64, body: &Body) {
@@ -420,4 +420,49 @@ fn maxwell(
     let next = (free_velocity - force * dt_s / mass_kg - half * velocity) / (1.0 + half);
     slide(deflection, next);
     next
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bristle that goes on from where it was, beside one that remembers nothing: what rubs it
+    /// and the length of the sub-step change one at a time, at a velocity that stays.
+    #[test]
+    fn what_a_bristle_remembers_is_what_it_would_compute() {
+        let sliding = Sliding {
+            static_n: 150.0,
+            viscous_n_s_per_m: 300.0,
+            ..Sliding::dry(100.0)
+        };
+        let law = Law::LuGre {
+            bristle_stiffness_n_per_m: 2.0e7,
+            bristle_damping_n_s_per_m: 5.0e3,
+        };
+        let mut remembers = Friction::new(sliding, law);
+        let mut forgets = remembers.clone();
+        let mut velocity = 1.0e-3;
+        for step in 0..400_u32 {
+            let changed = |every: u32| {
+                if (step / every).is_multiple_of(2) {
+                    1.0
+                } else {
+                    1.5
+                }
+            };
+            let body = Body {
+                velocity,
+                free_velocity: velocity + 1.0e-5 * (f64::from(step) * 0.05).cos(),
+                mass_kg: 300.0,
+                dt_s: 6.25e-5 * changed(7),
+                factor: changed(5),
+                level_n: 20.0 * changed(3),
+            };
+            forgets.state.at = At::default();
+            let next = remembers.advance(body);
+            assert_eq!(next, forgets.advance(body), "step {step}");
+            assert_eq!(remembers.deflection_m(), forgets.deflection_m());
+            velocity = next;
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! Which records of unlike make a scope runs.
 //!
-//! `certify` runs all of them, `landing` the hidden record of every make with one of its other
+//! `certify` runs all of them, `test` the hidden record of every fourth make with one of its other
 //! forms in turn (empty, declared, validation from another day) and some of the other tables,
-//! `test` every fourth of these makes, `quick` a handful. Records that are held back are in none of
-//! these lists.
+//! `landing` the same of the other makes, `quick` a handful. Records that are held back are in none
+//! of these lists.
 
 use makes::Recipe;
 use makes::make::Form;
@@ -61,31 +61,46 @@ pub fn chosen_of(table: &str) -> Vec<Recipe> {
 
 /// Which of so many records of a table a scope runs: their places.
 fn places(table: &str, scope: Scope, all: usize) -> Vec<usize> {
-    if table == "makes" && matches!(scope, Scope::Test | Scope::Landing) {
-        let every = if scope == Scope::Test { FOURTH } else { 1 };
-        let places = 0..all;
-        return places.filter(|place| is_run(*place, every)).collect();
+    let is_once = ONCE_HELD_BACK.contains(&table);
+    match (table, scope) {
+        ("makes", Scope::Test) => return (0..all).filter(|place| is_of_test(*place)).collect(),
+        ("makes", Scope::Landing) => {
+            let more = |place: &usize| is_run(*place) && !is_of_test(*place);
+            return (0..all).filter(more).collect();
+        }
+        // The second of two, and what `quick` runs.
+        (_, Scope::Landing) if is_once => return vec![all / 2],
+        (_, Scope::Landing) => return vec![0],
+        _ => {}
     }
     let (quick, test) = match table {
         "makes" => (2, all),
         "clean" => (1, 2),
         "outside" => (1, 3),
-        once if ONCE_HELD_BACK.contains(&once) => (1, if scope == Scope::Landing { 2 } else { 1 }),
+        _ if is_once => (1, 1),
         _ => (2, 6),
     };
     let count = scope.pick(quick, test, all);
     (0..count).map(|row| row * all / count).collect()
 }
 
-/// The forms of a make stand together, the hidden one first: that, and each other one of every
-/// third make; of so many makes one.
-const fn is_run(place: usize, every: usize) -> bool {
-    let (make, form) = (place / Form::ALL.len(), place % Form::ALL.len());
-    make.is_multiple_of(every) && (form == 0 || make % OTHERS == form % OTHERS)
+/// Where a record of a make stands: its make and its form. The forms of a make stand together, the
+/// hidden one first.
+const fn at(place: usize) -> (usize, usize) {
+    (place / Form::ALL.len(), place % Form::ALL.len())
 }
 
-/// Makes of which `test` runs one.
-const FOURTH: usize = 4;
+/// The hidden one of every make, and each other form of every third make.
+const fn is_run(place: usize) -> bool {
+    let (make, form) = at(place);
+    form == 0 || make % OTHERS == form % OTHERS
+}
+
+/// Of every fourth make.
+const fn is_of_test(place: usize) -> bool {
+    is_run(place) && at(place).0.is_multiple_of(4)
+}
+
 /// Forms beside the hidden one.
 const OTHERS: usize = Form::ALL.len() - 1;
 
@@ -95,12 +110,13 @@ mod tests {
     use makes::make;
 
     #[test]
-    fn a_landing_runs_the_hidden_record_of_every_make_and_one_of_its_other_forms_in_turn() {
+    fn test_and_landing_run_the_hidden_record_of_every_make_and_one_of_its_other_forms_in_turn() {
         let all = of_table("makes");
-        let chosen = places("makes", Scope::Landing, all.len());
-        let of_test = places("makes", Scope::Test, all.len());
-        assert!(of_test.iter().all(|place| chosen.contains(place)));
-        assert_eq!(of_test.len(), 2 * make::all().len().div_ceil(FOURTH));
+        let of = |scope| places("makes", scope, all.len());
+        let (of_test, more) = (of(Scope::Test), of(Scope::Landing));
+        assert!(of_test.len() == 20 && more.len() == 58);
+        let mut chosen = [of_test, more].concat();
+        chosen.sort_unstable();
         let chosen = chosen.into_iter().map(|place| all[place].name.clone());
         let others = [Form::AnotherDay, Form::Empty, Form::Declared];
         let makes = make::all().into_iter().zip(others.into_iter().cycle());

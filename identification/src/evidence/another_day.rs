@@ -67,18 +67,27 @@ impl OnBoth {
         Self { first, other }
     }
 
-    /// Those that differ by more than their intervals. A load that became heavier makes the axis
-    /// heavier: where its part of a mass that stayed differs, the motion of a record tells the two
-    /// apart less well than it seems.
+    /// Those that differ by more than their intervals. A load that became heavier makes the axis as
+    /// much heavier: where it does not, the motion of a record tells its part of the mass less well
+    /// than it seems.
     pub(crate) fn changes(&self) -> Vec<Change> {
         let pairs = self.first.iter().zip(&self.other);
-        let mut changes: Vec<Change> = pairs
-            .filter_map(|(first, other)| change(first, other))
-            .collect();
-        if !changes.iter().any(|one| one.effect == EffectName::Inertia) {
-            changes.retain(|one| one.effect != LoadInertia.called());
-        }
-        changes
+        let changes = pairs.filter_map(|(first, other)| change(first, other));
+        let is_real = |one: &Change| one.effect != LoadInertia.called() || self.axis_follows();
+        changes.filter(is_real).collect()
+    }
+
+    /// Whether the mass of the axis has changed as that of its load did, by both intervals.
+    fn axis_follows(&self) -> bool {
+        let [axis, load] = [EffectName::Inertia.into(), LoadInertia.called()].map(|called| {
+            let mut pairs = self.first.iter().zip(&self.other);
+            let pair = pairs.find(|(first, _)| first.part.called() == called);
+            pair.map_or((0.0, 0.0), |(first, other)| {
+                let ((before, half_before), (after, half_after)) = (first.own[0], other.own[0]);
+                (after - before, half_before.hypot(half_after))
+            })
+        });
+        (axis.0 - load.0).abs() <= axis.1.hypot(load.1)
     }
 
     /// Friction that has turned from one record to the other. Another day makes it more or less;
@@ -224,14 +233,19 @@ mod tests {
             estimates.push(of_load);
             estimates
         };
-        let told = |axis: f64| {
+        let told = |axis: f64, load: f64| {
             let both = OnBoth {
                 first: with_load(&both.first, 1.0, 40.0),
-                other: with_load(&both.other, axis, 50.0),
+                other: with_load(&both.other, axis, load),
             };
-            both.changes().len()
+            let changes = both.changes().into_iter();
+            changes.map(|one| one.effect).collect::<Vec<_>>()
         };
-        assert_eq!((told(1.0), told(1.1)), (0, 2));
+        assert!(told(1.0, 50.0).is_empty());
+        // 3 kg of 90, and of 40: told of the load alone.
+        assert_eq!(told(93.0 / 90.0, 43.0), [LoadInertia.called()]);
+        let axis: Called = EffectName::Inertia.into();
+        assert_eq!(told(100.0 / 90.0, 50.0), [axis, LoadInertia.called()]);
     }
 
     #[test]

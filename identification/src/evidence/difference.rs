@@ -849,7 +849,8 @@ impl Difference {
     fn take_back(&mut self, apart: &Apart<'_>) {
         let [without, with] =
             [&self.declared, &self.extended].map(|ways| apart.rms_um(ways).powi(2));
-        if !self.found.is_empty() && (1.0 - IDLE) * without <= with {
+        let is_more = self.declared.ways() != self.extended.ways();
+        if is_more && (1.0 - IDLE) * without <= with {
             let scored = std::mem::take(&mut self.scored);
             let declared = self.declared.clone();
             *self = Self::of([declared.clone(), declared], scored);

@@ -643,6 +643,7 @@ mod tests {
     fn what_a_record_shows_and_another_contradicts_counts_where_it_is_large() {
         let vetoed = |effect: EffectName, share, percent| Vetoed {
             effect: effect.into(),
+            parameter: 0.0,
             gain: Gain {
                 removed: 1.0,
                 share,

@@ -13,6 +13,9 @@ use crate::fit::blocks::Gain;
 use crate::model::inverse::{Model, Origin, Part};
 use crate::model::name::Called;
 
+/// Parameters that differ by at most so many times are of one effect that two outputs show. Chosen.
+const NEAR: f64 = 3.0;
+
 /// What an effect is worth.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scored {
@@ -81,6 +84,8 @@ pub(crate) struct Selection<M = Model> {
 pub(crate) struct Vetoed {
     /// Effect.
     pub effect: Called,
+    /// Nonlinear parameter.
+    pub parameter: f64,
     /// What it removes on held-out blocks of the record that shows it.
     pub gain: Gain,
 }
@@ -94,9 +99,13 @@ impl Selection {
     }
 
     /// Takes in an effect that another output shows on both records. That the effort of one of them
-    /// contradicts it is answered.
+    /// contradicts it is answered, where it is the same: of a parameter that is near.
     pub(crate) fn take_in(&mut self, part: Part) {
-        self.vetoed.retain(|vetoed| vetoed.effect != part.called());
+        let is_answered = |vetoed: &Vetoed| {
+            let times = (vetoed.parameter / part.parameter).ln().abs();
+            vetoed.effect == part.called() && times <= NEAR.ln()
+        };
+        self.vetoed.retain(|vetoed| !is_answered(vetoed));
         self.model.parts.push(part);
     }
 
@@ -178,8 +187,14 @@ mod tests {
 
     #[test]
     fn what_another_output_shows_on_both_records_is_contradicted_no_more() {
-        let vetoed = [EffectName::Stribeck, EffectName::Payload].map(|name| Vetoed {
+        let at = [
+            (EffectName::Stribeck, 3.0e-3),
+            (EffectName::Stribeck, 0.1),
+            (EffectName::Payload, 2.0e-3),
+        ];
+        let vetoed = at.map(|(name, parameter)| Vetoed {
             effect: name.into(),
+            parameter,
             gain: gain(0.5, 1.0, 9.0),
         });
         let mut selection = Selection {

@@ -38,6 +38,7 @@ pub(crate) fn veto(bench: &Bench<'_>, other: &Bench<'_>, selection: &mut Selecti
     let gone = before.parts.iter().filter(|part| !stays(part));
     let vetoed = gone.map(|part| Vetoed {
         effect: part.called(),
+        parameter: part.parameter,
         gain: Gain::of(
             &bench.cross_validate(&before.without(part)),
             &bench.cross_validate(&before),

@@ -26,7 +26,8 @@ impl Sides {
         motor.mass_kg * (motor.free_velocity - velocity)
     }
 
-    /// Keeps the internal states, to go back to with [`Self::go_back`].
+    /// Keeps the internal states, to go back to with [`Self::go_back`]. There is room for one: who
+    /// keeps within a sub-step keeps its begin.
     pub fn keep(&mut self) {
         self.table.keep();
         self.motor.iter_mut().for_each(Friction::keep);

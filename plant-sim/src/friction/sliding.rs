@@ -215,6 +215,23 @@ mod tests {
     }
 
     #[test]
+    fn a_fall_that_is_not_asked_for_is_below_the_last_digit() {
+        for excess in [1.0, 0.5, 7.0, 10.0, 300.0] {
+            let sliding = Sliding {
+                coulomb_n: 37.0,
+                static_n: 37.0 * (1.0 + excess),
+                ..LAGGING
+            };
+            for step in 0..4000 {
+                // Powers up to 160, of which none is asked for beyond 40.
+                let v = 1.0e-2 * 3.16e-3 * f64::from(step);
+                let whole = sliding.level_with_n((-sliding.power(v)).exp(), v);
+                assert_eq!(sliding.level_n(v), whole, "{excess} at {v}");
+            }
+        }
+    }
+
+    #[test]
     fn without_a_lag_the_level_is_that_of_the_velocity() {
         let sliding = Sliding {
             stribeck_lag_s: 0.0,

@@ -54,7 +54,9 @@ impl<L: Link> Master<L> {
         for (index, axis) in machine.axes.iter().enumerate() {
             self.download(index, objects::DECLARED_PERIOD, Expedited::u32(period_us))?;
             let own = compensation.get(index).cloned().unwrap_or_default();
-            for (entry, value) in drive_parameters::parameters(axis, machine.period_s, &own)? {
+            let parameters = drive_parameters::parameters(axis, machine.period_s, &own);
+            let of_axis = |why| Failure::new(format!("axis {}: {why}", axis.name));
+            for (entry, value) in parameters.map_err(of_axis)? {
                 self.download(index, entry.address, Expedited::i32(value))?;
             }
             self.commit(index)?;
