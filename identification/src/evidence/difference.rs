@@ -847,10 +847,12 @@ impl Difference {
     /// Takes back what was found where what is declared leaves as little without it. It was found
     /// beside wind-up by the effort; the load's motion may know the wind-up better.
     fn take_back(&mut self, apart: &Apart<'_>) {
+        if self.declared.ways() == self.extended.ways() {
+            return;
+        }
         let [without, with] =
             [&self.declared, &self.extended].map(|ways| apart.rms_um(ways).powi(2));
-        let is_more = self.declared.ways() != self.extended.ways();
-        if is_more && (1.0 - IDLE) * without <= with {
+        if (1.0 - IDLE) * without <= with {
             let scored = std::mem::take(&mut self.scored);
             let declared = self.declared.clone();
             *self = Self::of([declared.clone(), declared], scored);
