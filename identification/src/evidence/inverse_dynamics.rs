@@ -7,12 +7,13 @@
 
 use crate::evidence::difference::Known;
 use crate::evidence::fast_motion;
+use crate::evidence::forms;
 use crate::evidence::reversal;
 use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::thresholds::METHOD;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
-use crate::fit::tuning::{self, Pair};
+use crate::fit::tuning::Pair;
 use crate::model::effects::by_motion::place_among_usual;
 use crate::model::inverse::Model;
 use crate::motion::kinematics::Kinematics;
@@ -64,8 +65,9 @@ pub(crate) struct Judgement {
 
 impl InverseDynamics {
     /// A model fitted to moving samples; its sign columns follow the bristle, where there is one.
-    /// Nonlinear parameters are refined once more then: they were found with the sign.
-    pub(crate) fn fitted(pair: Pair<'_>, mut model: Model, bristle: Option<Bristle>) -> Self {
+    /// Nonlinear parameters and forms are asked for once more then: they were found with the sign,
+    /// and a fall that lags is hidden behind a bristle that bends far.
+    pub(crate) fn fitted(pair: Pair<'_>, model: Model, bristle: Option<Bristle>) -> Self {
         let Some(own) = &bristle else {
             let fitted = pair.bench.fit(&model);
             return Self { fitted, bristle };
@@ -77,8 +79,7 @@ impl InverseDynamics {
             bench: &bench,
             low: &low,
         };
-        tuning::refine(pair, &mut model);
-        let fitted = bench.fit(&model);
+        let fitted = bench.fit(&forms::refined(pair, model));
         Self { fitted, bristle }
     }
 
@@ -208,10 +209,11 @@ impl InverseDynamics {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use axis_model::EffectName::{Coulomb, Inertia, Viscous};
+    use axis_model::EffectName::{Coulomb, Inertia, Stribeck, Viscous};
 
     use super::*;
     use crate::evidence::reversal::slip;
+    use crate::model::effects::stribeck;
     use crate::record::samples::Record;
     use crate::simulate::made;
 
@@ -317,6 +319,37 @@ pub(crate) mod tests {
                 assert_eq!(known.value, own.deflection());
             }
         }
+    }
+
+    #[test]
+    fn a_fall_that_lags_is_found_behind_a_bristle() {
+        let lag_s = 0.015;
+        let fall = stribeck::nearest(2.0, lag_s);
+        let bristle = Bristle::Dahl(DEFLECTION_M);
+        let dataset = declared(record(None));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let seen = bristle.motion(&motion);
+        let excess = &fall.columns(&seen, &dataset, 0.01)[0];
+        let mut lagging = dataset.train.clone();
+        for (row, effort) in lagging.effort.iter_mut().enumerate() {
+            *effort += 300.0 * (seen.direction[row] - motion.direction[row]) + 200.0 * excess[row];
+        }
+        let dataset = Dataset {
+            declared: vec![Inertia, Viscous, Coulomb, Stribeck],
+            ..made::dataset(lagging, None)
+        };
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let bench = Bench::new(&dataset, &motion);
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let model = Model::declared(&dataset).with_parameter(3, 0.012);
+        let found = InverseDynamics::fitted(pair, model, Some(bristle));
+        let part = found.fitted.terms().last().unwrap();
+        assert_near(part.part.effect.lag_s(), lag_s, 0.1);
+        assert_near(part.own[0], 200.0, 0.01);
+        assert_near(found.fitted.of(Coulomb).unwrap()[0], 300.0, 0.01);
     }
 
     #[test]

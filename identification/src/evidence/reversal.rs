@@ -200,8 +200,8 @@ impl<'a> Observed<'a> {
         let mut others = vec![0.0; motion.len()];
         for Term { part, own } in fitted.terms() {
             let columns = bench.raw(part);
-            for (column, coefficient) in columns.iter().zip(own) {
-                if part.effect.is_level() {
+            for (place, (column, coefficient)) in columns.iter().zip(own).enumerate() {
+                if part.effect.is_level(place) {
                     let signed = column.iter().zip(&motion.direction);
                     level
                         .iter_mut()
@@ -329,6 +329,39 @@ mod tests {
             !contradicted.repeats() && !contradicted.accepted,
             "{contradicted:?}"
         );
+    }
+
+    #[test]
+    fn friction_that_drifts_bends_before_it_slips_too() {
+        // 300 N of which as much again is there at first, and a tenth of that is not friction.
+        let drift = [0.0, 300.0, 90.0, 30.0];
+        let dataset = declared(record(Some(DEFLECTION_M)));
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let seen = Bristle::Dahl(DEFLECTION_M).motion(&motion);
+        let effort = |row: usize| {
+            let fall = (-motion.time_s[row] / 2.0).exp();
+            let (v, direction) = (motion.velocity_lp[row], seen.direction[row]);
+            fall * (drift[1] * direction + drift[2] * v + drift[3])
+        };
+        let mut dataset = dataset.clone();
+        for (row, force) in dataset.train.effort.iter_mut().enumerate() {
+            *force += effort(row);
+        }
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let bench = Bench::new(&dataset, &motion);
+        let drifting = made::found(EffectName::FrictionDrift, 2.0);
+        let drifting = crate::model::inverse::Part {
+            effect: drifting.effect.by_direction().unwrap(),
+            ..drifting
+        };
+        let model = made::model(&[Inertia, Viscous, EffectName::Coulomb]).with(drifting);
+        let fitted = Fitted::new(model, &[700.0, 900.0, 300.0, 300.0, 90.0, 30.0]);
+        let seen = presliding(&bench, &bench, &fitted).unwrap();
+        assert!(
+            (seen.deflection / DEFLECTION_M - 1.0).abs() < 0.01,
+            "{seen:?}"
+        );
+        assert!(seen.dahl < 0.01 * seen.rigid, "{seen:?}");
     }
 
     #[test]

@@ -411,8 +411,9 @@ pub(crate) trait Effect: Sync {
         false
     }
 
-    /// Whether all its columns are parts of the friction level, which holds at rest.
-    fn is_level(&self) -> bool {
+    /// Whether one of its columns is a part of the friction level, which holds at rest and bends
+    /// before it slips.
+    fn is_level(&self, _column: usize) -> bool {
         false
     }
 

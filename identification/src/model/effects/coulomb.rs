@@ -22,7 +22,7 @@ impl Effect for Coulomb {
         vec![motion.direction.clone()]
     }
 
-    fn is_level(&self) -> bool {
+    fn is_level(&self, _: usize) -> bool {
         true
     }
 

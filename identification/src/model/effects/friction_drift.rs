@@ -57,6 +57,10 @@ impl Effect for FrictionDrift {
         true
     }
 
+    fn is_level(&self, column: usize) -> bool {
+        column == 0
+    }
+
     /// What friction takes more of at first is there at any cut-off. A loop that bounces between
     /// two flanks shakes otherwise as the setpoint goes on, and looks so above the lower one.
     fn is_judged_slow_too(&self) -> bool {

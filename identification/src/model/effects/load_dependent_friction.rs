@@ -151,7 +151,7 @@ impl Effect for LoadDependentFriction {
         true
     }
 
-    fn is_level(&self) -> bool {
+    fn is_level(&self, _: usize) -> bool {
         true
     }
 

@@ -83,6 +83,10 @@ impl Effect for Payload {
         true
     }
 
+    fn is_level(&self, column: usize) -> bool {
+        column == 1
+    }
+
     fn look_alikes(&self) -> &'static [&'static dyn Effect] {
         &[&StepOfForce, &StrongerDrive, &GradualChange]
     }

@@ -46,7 +46,7 @@ impl Effect for PositionDependentFriction {
         intervals(choice).unwrap_or_else(|| polynomial::width(choice))
     }
 
-    fn is_level(&self) -> bool {
+    fn is_level(&self, _: usize) -> bool {
         true
     }
 

@@ -185,8 +185,8 @@ impl Effect for Stribeck {
         true
     }
 
-    fn is_level(&self) -> bool {
-        !self.by_direction
+    fn is_level(&self, column: usize) -> bool {
+        column == 0
     }
 
     fn fall(&self) -> Option<Stribeck> {
