@@ -46,3 +46,4 @@ pub(crate) mod thresholds;
 pub(crate) mod velocity;
 pub(crate) mod verdict;
 pub(crate) mod veto;
+pub(crate) mod which_wave;

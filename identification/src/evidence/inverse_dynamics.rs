@@ -11,6 +11,7 @@ use crate::evidence::forms;
 use crate::evidence::reversal;
 use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::thresholds::METHOD;
+use crate::evidence::which_wave;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::Pair;
@@ -147,7 +148,13 @@ impl InverseDynamics {
         [motion, low]: [&Kinematics; 2],
     ) -> Vec<Estimate> {
         let of = |motion: &Kinematics| Bench::new(dataset, motion).fit(self.fitted.model());
-        let mut estimates = Bench::new(dataset, &self.motion(motion)).estimates(&self.fitted);
+        let seen = self.motion(motion);
+        let bench = Bench::new(dataset, &seen);
+        let mut estimates = bench.estimates(&self.fitted);
+        for (place, estimate) in estimates.iter_mut().enumerate() {
+            let open = which_wave::half_width(&bench, self.fitted.model(), place);
+            estimate.parameter_half_width = estimate.parameter_half_width.map(|own| own.max(open));
+        }
         let others = [Some(of(&self.motion(low))), self.sharpened(dataset, motion)];
         for other in others.iter().flatten() {
             for (estimate, term) in estimates.iter_mut().zip(other.terms()) {

@@ -4,6 +4,8 @@
 //! with its grid, and a test whether what was fitted is physical. Adding one touches its file and
 //! [`LIBRARY`].
 
+use std::ops::Range;
+
 use axis_model::EffectName;
 
 use crate::model::name::Called;
@@ -362,6 +364,17 @@ pub(crate) trait Effect: Sync {
     /// an encoder, blows of a gap) imitates it at the higher one.
     fn is_judged_slow_too(&self) -> bool {
         false
+    }
+
+    /// For a wave over position: about where it is strongest in what is left, of so many periods
+    /// within the travel. Nothing for what is no wave.
+    fn strongest(
+        &self,
+        _motion: &Kinematics,
+        _setting: &Setting<'_>,
+        _periods: Range<f64>,
+    ) -> Vec<f64> {
+        Vec::new()
     }
 
     /// First step of the descent about the best of the grid; zero where there is nothing to refine.

@@ -9,6 +9,8 @@
 //! with its own wave: with q in its place the second order would look like a ripple of twice the
 //! wave number.
 
+use std::ops::Range;
+
 use axis_model::EffectName;
 
 use super::by_motion::{ByMotion, Others, Usual};
@@ -157,12 +159,19 @@ impl Effect for TorqueConstantRipple {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
+        self.strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY)
+    }
+
+    fn strongest(
+        &self,
+        motion: &Kinematics,
+        setting: &Setting<'_>,
+        periods: Range<f64>,
+    ) -> Vec<f64> {
         let efforts = ByMotion::of(motion).efforts();
-        wave::strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY, |row| {
-            Weight {
-                wave: -efforts[row],
-                half_slope: 0.0,
-            }
+        wave::strongest(motion, setting, periods, |row| Weight {
+            wave: -efforts[row],
+            half_slope: 0.0,
         })
     }
 

@@ -4,6 +4,8 @@
 //! reported. Fewer periods within the travel than tell themselves must earn the name
 //! ([`FewPeriods`]): cogging on half a turn, the magnets of a short linear motor.
 
+use std::ops::Range;
+
 use axis_model::EffectName;
 
 use super::few_periods::{FewPeriods, WaveNumbers};
@@ -80,9 +82,16 @@ impl Effect for TorqueRipple {
     }
 
     fn grid(&self, motion: &Kinematics, setting: &Setting<'_>) -> Vec<f64> {
-        wave::strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY, |_| {
-            Weight::PLAIN
-        })
+        self.strongest(motion, setting, FEWEST_PERIODS..f64::INFINITY)
+    }
+
+    fn strongest(
+        &self,
+        motion: &Kinematics,
+        setting: &Setting<'_>,
+        periods: Range<f64>,
+    ) -> Vec<f64> {
+        wave::strongest(motion, setting, periods, |_| Weight::PLAIN)
     }
 
     fn first_step(&self, motion: &Kinematics, _: f64) -> f64 {

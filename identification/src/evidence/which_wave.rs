@@ -1,0 +1,183 @@
+//! Which wave number a ripple has, where the record leaves that open.
+//!
+//! A ripple shows where the axis is slow. How many periods lie between one slow place and the next
+//! nothing tells: beside the wave number that leaves the least there are others, a period more or
+//! less between those places, that leave nearly as little. What a motor and its screw do, they do a
+//! whole number of times a revolution. So a whole order is taken where the record does not tell it
+//! from what leaves the least, and all wave numbers that it does not tell apart are in the
+//! interval.
+
+use crate::evidence::forms;
+use crate::evidence::thresholds::CERTAIN_T;
+use crate::fit::bench::Bench;
+use crate::fit::search::smallest;
+use crate::fit::tuning::{self, Pair};
+use crate::model::effects::{Against, Setting, wave};
+use crate::model::inverse::Model;
+
+/// So many orders to either side are looked at; beyond, the low-pass tells waves apart.
+const ORDERS: f64 = 1.5;
+/// The same as a share of the wave number, where no revolution is known.
+const SHARE: f64 = 0.1;
+/// Wave numbers that differ by less than so many periods within the travel are one.
+const APART_PERIODS: f64 = 1.0;
+
+/// The model with the ripple at a place on a whole order per revolution, where the record does not
+/// tell that from where it was found.
+#[must_use]
+pub(crate) fn at_whole_order(pair: Pair<'_>, model: Model, place: usize) -> Model {
+    let bench = pair.bench;
+    let found = model.parts[place].parameter;
+    let Some(revolution) = bench
+        .dataset
+        .revolution()
+        .filter(|_| is_wave(&model, place))
+    else {
+        return model;
+    };
+    let order = found * revolution;
+    let first = (order - ORDERS).ceil().max(1.0);
+    let whole = (0..=(2.0 * ORDERS) as u32).map(|next| (first + f64::from(next)) / revolution);
+    let whole: Vec<f64> = whole
+        .filter(|k| (k * revolution - order).abs() <= ORDERS)
+        .collect();
+    if whole.iter().any(|k| !is_apart(bench, found, *k)) {
+        return model;
+    }
+    let at = |k: f64| tuning::refined_at(pair, model.with_parameter(place, k), place);
+    let open = whole.into_iter().map(at);
+    let open: Vec<Model> = open.filter(|other| is_open(bench, &model, other)).collect();
+    let places: Vec<f64> = (0..open.len()).map(|place| place as f64).collect();
+    let error = |place: f64| {
+        let held_out = bench.cross_validate(&open[place as usize]).held_out;
+        held_out.iter().sum()
+    };
+    let best = smallest(&places, &error);
+    best.map_or(model, |best| open[best as usize].clone())
+}
+
+/// How far away wave numbers are that the record does not tell from that of a part; zero where it
+/// tells it from all others.
+#[must_use]
+pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 {
+    if !is_wave(model, place) {
+        return 0.0;
+    }
+    let part = &model.parts[place];
+    let found = part.parameter;
+    let residual = bench.residual(&bench.fit(&model.without(part)));
+    let setting = Setting {
+        dataset: bench.dataset,
+        residual: &residual,
+    };
+    let revolution = bench.dataset.revolution();
+    let aside = revolution.map_or(SHARE * found, |revolution| ORDERS / revolution);
+    let [from, to] = [found - aside, found + aside].map(|k| wave::periods(bench.motion, k));
+    let near = part
+        .effect
+        .strongest(bench.motion, &setting, from.max(0.0)..to);
+    let others = near.into_iter().filter(|k| is_apart(bench, found, *k));
+    others
+        .filter(|k| is_open(bench, model, &model.with_parameter(place, *k)))
+        .map(|k| (k - found).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Whether a part is a wave over position whose wave number was searched.
+fn is_wave(model: &Model, place: usize) -> bool {
+    let effect = model.parts[place].effect;
+    effect.repeats() && effect.is_tuned() && effect.against() == Against::Period
+}
+
+fn is_apart(bench: &Bench<'_>, one: f64, other: f64) -> bool {
+    (one - other).abs() > wave::of_periods(bench.motion, APART_PERIODS)
+}
+
+/// Whether a record does not tell a model from another that leaves less.
+fn is_open(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
+    forms::gain(bench, model, other).t < CERTAIN_T
+}
+
+#[cfg(test)]
+mod tests {
+    use axis_model::EffectName::{Coulomb, Inertia, Offset, TorqueRipple, Viscous};
+
+    use super::*;
+    use crate::fit::made::{self, Axis, usual};
+    use crate::motion::kinematics::Kinematics;
+    use crate::simulate::made as simulated;
+
+    const LEAD_M: f64 = 0.01;
+
+    /// Slow about some places, 12 N of ripple at an order: a line from place to place, fast, and a
+    /// millimetre to and fro at each, slow.
+    fn slow_at(places: &[f64], order: f64) -> Axis {
+        let position = |t: f64| {
+            let (place, within) = ((t / 2.0) as usize, (t / 2.0).fract());
+            let [from, to] = [place, place + 1].map(|at| places[at % places.len()]);
+            let moved = ((within - 0.8) / 0.2).clamp(0.0, 1.0);
+            let there = from + (to - from) * moved * moved * (3.0 - 2.0 * moved);
+            let swing = (within / 0.8).min(1.0);
+            there + 1.0e-3 * (std::f64::consts::TAU * 1.5 * swing).sin()
+        };
+        let rows = (0..12_000).map(|row| position(1.0e-3 * f64::from(row)));
+        let mut axis = made::on(simulated::record(1.0e-3, rows.collect()));
+        axis.dataset.lead_m_per_rev = Some(LEAD_M);
+        let ripple = move |motion: &Kinematics, row: usize| {
+            let turns = order * motion.position_lp[row] / LEAD_M;
+            let noise = 6.0 * (0.71 * (row * row % 3001) as f64).sin();
+            12.0 * (std::f64::consts::TAU * turns).sin() + noise
+        };
+        axis.put(|motion, row| usual(motion, row) + ripple(motion, row));
+        axis
+    }
+
+    fn found_at(bench: &Bench<'_>, order: f64) -> Model {
+        let ripple = made::found(TorqueRipple, order / LEAD_M);
+        let model = made::model(&[Inertia, Viscous, Coulomb, Offset]).with(ripple);
+        let pair = Pair { bench, low: bench };
+        tuning::refined_at(pair, model, 4)
+    }
+
+    fn order(model: &Model) -> f64 {
+        model.parts[4].parameter * LEAD_M
+    }
+
+    #[test]
+    fn of_wave_numbers_that_a_record_does_not_tell_apart_a_whole_order_is_taken() {
+        // Seven revolutions from place to place: a seventh of an order is a period more.
+        let axis = slow_at(&[0.0, 0.07], 12.0);
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let found = found_at(&bench, 12.0 + 1.0 / 7.0);
+        assert!((order(&found) - 12.0 - 1.0 / 7.0).abs() < 0.03);
+        let whole = at_whole_order(pair, found, 4);
+        assert!((order(&whole) - 12.0).abs() < 0.03, "{}", order(&whole));
+        let open = LEAD_M * half_width(&bench, &whole, 4);
+        assert!(open > 0.1, "{open}");
+    }
+
+    #[test]
+    fn a_wave_that_the_record_tells_from_its_neighbours_stays_where_it_is() {
+        // The same places, and slow ones between them.
+        let places: Vec<f64> = (0..29).map(|place| 2.5e-3 * f64::from(place)).collect();
+        for of_the_axis in [12.0, 12.4] {
+            let axis = slow_at(&places[..6], of_the_axis);
+            let bench = axis.bench();
+            let pair = Pair {
+                bench: &bench,
+                low: &bench,
+            };
+            let found = at_whole_order(pair, found_at(&bench, of_the_axis), 4);
+            assert!(
+                (order(&found) - of_the_axis).abs() < 0.02,
+                "{}",
+                order(&found)
+            );
+            assert_eq!(half_width(&bench, &found, 4), 0.0);
+        }
+    }
+}
