@@ -62,8 +62,9 @@ impl Set {
             entry.ok_or_else(|| Failure::new(format!("{key}: the drive has no such object")))?;
         let rounded = (si * entry.unit().per_si as f64).round();
         if !(f64::from(entry.min)..=f64::from(entry.max)).contains(&rounded) {
+            let forces = self.forces(entry);
             return Err(Failure::new(format!(
-                "{key}: the drive cannot hold this value ({} [{}] takes {} to {}, wanted {rounded}); choose another one",
+                "{key}: the drive cannot hold this value ({} [{}] takes {} to {}{forces}, wanted {rounded}); choose another one",
                 entry.name(),
                 entry.unit().text,
                 entry.min,
@@ -76,6 +77,20 @@ impl Set {
         )]
         self.values.push((entry, key, rounded as i32));
         Ok(())
+    }
+
+    /// What the range of a torque is in forces, which machine files have.
+    fn forces(&self, entry: &Entry) -> String {
+        if !entry.unit().text.ends_with("N m") {
+            return String::new();
+        }
+        let force = |torque: i32| {
+            let torque_nm = f64::from(torque) / entry.unit().per_si as f64;
+            torque_nm / self.torque_per_newton
+        };
+        let lead_m = self.torque_per_newton * TAU;
+        let [least, most] = [entry.min, entry.max].map(force);
+        format!(", at {lead_m} m a revolution {least:.0} to {most:.0} N")
     }
 
     /// Asks the drive's own code whether the set goes together and fits its machine units.
@@ -723,6 +738,17 @@ mod tests {
                 .starts_with("gravity_n: the drive cannot hold"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_force_beyond_the_torque_of_the_drive_is_told_in_forces_too() {
+        let mut machine = Machine::reference();
+        machine.axes[0].actual.force_limit_n = 200_000.0;
+        let axis = &machine.axes[0];
+        let error = parameters(axis, machine.period_s, &AxisCompensation::default()).unwrap_err();
+        // 250 N m at 10 mm a revolution.
+        let wanted = "at 0.01 m a revolution 0 to 157080 N, wanted 318309886)";
+        assert!(error.to_string().contains(wanted), "{error}");
     }
 
     #[test]
