@@ -7,9 +7,9 @@
 //! from what leaves the least, and all wave numbers that it does not tell apart are in the
 //! interval.
 
-use crate::evidence::forms;
 use crate::evidence::thresholds::CERTAIN_T;
 use crate::fit::bench::Bench;
+use crate::fit::blocks::Gain;
 use crate::fit::search::smallest;
 use crate::fit::tuning::{self, Pair};
 use crate::model::effects::{Against, Setting, wave};
@@ -95,7 +95,8 @@ fn is_apart(bench: &Bench<'_>, one: f64, other: f64) -> bool {
 
 /// Whether a record does not tell a model from another that leaves less.
 fn is_open(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
-    forms::gain(bench, model, other).t < CERTAIN_T
+    let [own, other] = [model, other].map(|model| bench.cross_validate(model));
+    Gain::of(&other, &own).t < CERTAIN_T
 }
 
 #[cfg(test)]
