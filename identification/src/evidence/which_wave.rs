@@ -45,7 +45,10 @@ pub(crate) fn at_whole_order(pair: Pair<'_>, model: Model, place: usize) -> Mode
         return model;
     }
     let at = |k: f64| tuning::refined_at(pair, model.with_parameter(place, k), place);
-    let open = whole.into_iter().map(at);
+    let free = whole
+        .into_iter()
+        .filter(|k| is_free(bench, &model, place, *k));
+    let open = free.map(at);
     let open: Vec<Model> = open.filter(|other| is_open(bench, &model, other)).collect();
     let places: Vec<f64> = (0..open.len()).map(|place| place as f64).collect();
     let error = |place: f64| {
@@ -76,11 +79,23 @@ pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 
     let near = part
         .effect
         .strongest(bench.motion, &setting, from.max(0.0)..to);
-    let others = near.into_iter().filter(|k| is_apart(bench, found, *k));
+    let others = near
+        .into_iter()
+        .filter(|k| is_apart(bench, found, *k) && is_free(bench, model, place, *k));
     others
         .filter(|k| is_open(bench, model, &model.with_parameter(place, *k)))
         .map(|k| (k - found).abs())
         .fold(0.0, f64::max)
+}
+
+/// Whether no other wave of its kind is about a wave number.
+fn is_free(bench: &Bench<'_>, model: &Model, place: usize, k: f64) -> bool {
+    let own = &model.parts[place];
+    let least = own.effect.least_distance(bench.motion);
+    let others = model.parts.iter().enumerate();
+    let mut others =
+        others.filter(|(other, part)| *other != place && part.called() == own.called());
+    others.all(|(_, part)| (part.parameter - k).abs() > least)
 }
 
 /// Whether a part is a wave over position whose wave number was searched.
@@ -159,6 +174,24 @@ mod tests {
         assert!((order(&whole) - 12.0).abs() < 0.03, "{}", order(&whole));
         let open = LEAD_M * half_width(&bench, &whole, 4);
         assert!(open > 0.1, "{open}");
+    }
+
+    #[test]
+    fn a_wave_is_not_put_where_another_one_is() {
+        let axis = slow_at(&[0.0, 0.07], 12.0);
+        let bench = axis.bench();
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let aside = 12.0 + 1.0 / 7.0;
+        let twelfth = made::found(TorqueRipple, 12.0 / LEAD_M);
+        let both = found_at(&bench, aside).with(twelfth);
+        assert!(
+            !is_free(&bench, &both, 4, 12.0 / LEAD_M) && is_free(&bench, &both, 4, 11.0 / LEAD_M)
+        );
+        let after = at_whole_order(pair, both, 4);
+        assert!((order(&after) - 12.0).abs() > 0.1, "{}", order(&after));
     }
 
     #[test]
