@@ -5,7 +5,6 @@
 //! one that is not the same both ways what looks like friction of another law.
 
 use crate::evidence::selection::{is_enough, is_large_outside};
-use crate::evidence::which_wave;
 use crate::fit::bench::Bench;
 use crate::fit::blocks::Gain;
 use crate::fit::fitted::Searched;
@@ -55,7 +54,6 @@ fn chosen(pair: Pair<'_>, mut model: Model) -> Model {
             model = of_part(pair, model, place, usual);
         }
         model = with_best_choice(pair.bench, model, place);
-        model = which_wave::at_whole_order(pair, model, place);
     }
     model
 }

@@ -2,16 +2,12 @@
 //!
 //! A ripple shows where the axis is slow. How many periods lie between one slow place and the next
 //! nothing tells: beside the wave number that leaves the least there are others, a period more or
-//! less between those places, that leave nearly as little. What a motor and its screw do, they do a
-//! whole number of times a revolution. So a whole order is taken where the record does not tell it
-//! from what leaves the least, and all wave numbers that it does not tell apart are in the
-//! interval.
+//! less between those places, that leave nearly as little. Those that the record does not tell from
+//! it are in the interval.
 
-use crate::evidence::thresholds::CERTAIN_T;
+use crate::evidence::thresholds::{CERTAIN_T, EFFORT_SHARE};
 use crate::fit::bench::Bench;
-use crate::fit::blocks::Gain;
-use crate::fit::search::smallest;
-use crate::fit::tuning::{self, Pair};
+use crate::fit::blocks::{Fit, Gain};
 use crate::model::effects::{Against, Setting, wave};
 use crate::model::inverse::Model;
 
@@ -20,44 +16,7 @@ const ORDERS: f64 = 1.5;
 /// The same as a share of the wave number, where no revolution is known.
 const SHARE: f64 = 0.1;
 /// Wave numbers that differ by less than so many periods within the travel are one.
-const APART_PERIODS: f64 = 1.0;
-
-/// The model with the ripple at a place on a whole order per revolution, where the record does not
-/// tell that from where it was found.
-#[must_use]
-pub(crate) fn at_whole_order(pair: Pair<'_>, model: Model, place: usize) -> Model {
-    let bench = pair.bench;
-    let found = model.parts[place].parameter;
-    let Some(revolution) = bench
-        .dataset
-        .revolution()
-        .filter(|_| is_wave(&model, place))
-    else {
-        return model;
-    };
-    let order = found * revolution;
-    let first = (order - ORDERS).ceil().max(1.0);
-    let whole = (0..=(2.0 * ORDERS) as u32).map(|next| (first + f64::from(next)) / revolution);
-    let whole: Vec<f64> = whole
-        .filter(|k| (k * revolution - order).abs() <= ORDERS)
-        .collect();
-    if whole.iter().any(|k| !is_apart(bench, found, *k)) {
-        return model;
-    }
-    let at = |k: f64| tuning::refined_at(pair, model.with_parameter(place, k), place);
-    let free = whole
-        .into_iter()
-        .filter(|k| is_free(bench, &model, place, *k));
-    let open = free.map(at);
-    let open: Vec<Model> = open.filter(|other| is_open(bench, &model, other)).collect();
-    let places: Vec<f64> = (0..open.len()).map(|place| place as f64).collect();
-    let error = |place: f64| {
-        let held_out = bench.cross_validate(&open[place as usize]).held_out;
-        held_out.iter().sum()
-    };
-    let best = smallest(&places, &error);
-    best.map_or(model, |best| open[best as usize].clone())
-}
+const APART_PERIODS: f64 = 0.5;
 
 /// How far away wave numbers are that the record does not tell from that of a part; zero where it
 /// tells it from all others.
@@ -75,15 +34,21 @@ pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 
     };
     let revolution = bench.dataset.revolution();
     let aside = revolution.map_or(SHARE * found, |revolution| ORDERS / revolution);
-    let [from, to] = [found - aside, found + aside].map(|k| wave::periods(bench.motion, k));
-    let near = part
-        .effect
-        .strongest(bench.motion, &setting, from.max(0.0)..to);
+    let (lowest, _) = part.effect.bounds(bench.motion);
+    let ends = [(found - aside).max(lowest), found + aside];
+    let [from, to] = ends.map(|k| wave::periods(bench.motion, k));
+    let near = part.effect.strongest(bench.motion, &setting, from..to);
+    let own = bench.cross_validate(model);
     let others = near
         .into_iter()
         .filter(|k| is_apart(bench, found, *k) && is_free(bench, model, place, *k));
     others
-        .filter(|k| is_open(bench, model, &model.with_parameter(place, *k)))
+        .filter(|k| {
+            is_open(
+                &own,
+                &bench.cross_validate(&model.with_parameter(place, *k)),
+            )
+        })
         .map(|k| (k - found).abs())
         .fold(0.0, f64::max)
 }
@@ -108,10 +73,11 @@ fn is_apart(bench: &Bench<'_>, one: f64, other: f64) -> bool {
     (one - other).abs() > wave::of_periods(bench.motion, APART_PERIODS)
 }
 
-/// Whether a record does not tell a model from another that leaves less.
-fn is_open(bench: &Bench<'_>, model: &Model, other: &Model) -> bool {
-    let [own, other] = [model, other].map(|model| bench.cross_validate(model));
-    Gain::of(&other, &own).t < CERTAIN_T
+/// Whether a record does not tell a fit from another that leaves less. What sits in few blocks has a
+/// small t however much it removes.
+fn is_open(own: &Fit, other: &Fit) -> bool {
+    let gain = Gain::of(other, own);
+    gain.t < CERTAIN_T && gain.share < EFFORT_SHARE
 }
 
 #[cfg(test)]
@@ -120,6 +86,7 @@ mod tests {
 
     use super::*;
     use crate::fit::made::{self, Axis, usual};
+    use crate::fit::tuning::{self, Pair};
     use crate::motion::kinematics::Kinematics;
     use crate::simulate::made as simulated;
 
@@ -160,52 +127,25 @@ mod tests {
     }
 
     #[test]
-    fn of_wave_numbers_that_a_record_does_not_tell_apart_a_whole_order_is_taken() {
+    fn what_a_record_does_not_tell_apart_is_in_the_interval() {
         // Seven revolutions from place to place: a seventh of an order is a period more.
         let axis = slow_at(&[0.0, 0.07], 12.0);
         let bench = axis.bench();
-        let pair = Pair {
-            bench: &bench,
-            low: &bench,
-        };
         let found = found_at(&bench, 12.0 + 1.0 / 7.0);
-        assert!((order(&found) - 12.0 - 1.0 / 7.0).abs() < 0.03);
-        let whole = at_whole_order(pair, found, 4);
-        assert!((order(&whole) - 12.0).abs() < 0.03, "{}", order(&whole));
-        let open = LEAD_M * half_width(&bench, &whole, 4);
-        assert!(open > 0.1, "{open}");
+        let off = (order(&found) - 12.0).abs();
+        assert!((off - 1.0 / 7.0).abs() < 0.03, "{off}");
+        let open = LEAD_M * half_width(&bench, &found, 4);
+        assert!(open >= off - 0.03, "{open} {off}");
     }
 
     #[test]
-    fn a_wave_is_not_put_where_another_one_is() {
-        let axis = slow_at(&[0.0, 0.07], 12.0);
-        let bench = axis.bench();
-        let pair = Pair {
-            bench: &bench,
-            low: &bench,
-        };
-        let aside = 12.0 + 1.0 / 7.0;
-        let twelfth = made::found(TorqueRipple, 12.0 / LEAD_M);
-        let both = found_at(&bench, aside).with(twelfth);
-        assert!(
-            !is_free(&bench, &both, 4, 12.0 / LEAD_M) && is_free(&bench, &both, 4, 11.0 / LEAD_M)
-        );
-        let after = at_whole_order(pair, both, 4);
-        assert!((order(&after) - 12.0).abs() > 0.1, "{}", order(&after));
-    }
-
-    #[test]
-    fn a_wave_that_the_record_tells_from_its_neighbours_stays_where_it_is() {
-        // The same places, and slow ones between them.
-        let places: Vec<f64> = (0..29).map(|place| 2.5e-3 * f64::from(place)).collect();
+    fn a_wave_that_the_record_tells_from_its_neighbours_has_none_beside_it() {
+        // Two and a half millimetres from place to place, and a millimetre about each.
+        let places: Vec<f64> = (0..6).map(|place| 2.5e-3 * f64::from(place)).collect();
         for of_the_axis in [12.0, 12.4] {
-            let axis = slow_at(&places[..6], of_the_axis);
+            let axis = slow_at(&places, of_the_axis);
             let bench = axis.bench();
-            let pair = Pair {
-                bench: &bench,
-                low: &bench,
-            };
-            let found = at_whole_order(pair, found_at(&bench, of_the_axis), 4);
+            let found = found_at(&bench, of_the_axis);
             assert!(
                 (order(&found) - of_the_axis).abs() < 0.02,
                 "{}",
@@ -213,5 +153,15 @@ mod tests {
             );
             assert_eq!(half_width(&bench, &found, 4), 0.0);
         }
+    }
+
+    #[test]
+    fn where_another_wave_is_there_is_no_other_place_for_one() {
+        let axis = slow_at(&[0.0, 0.07], 12.0);
+        let bench = axis.bench();
+        let twelfth = made::found(TorqueRipple, 12.0 / LEAD_M);
+        let both = found_at(&bench, 12.0 + 1.0 / 7.0).with(twelfth);
+        let free = |order: f64| is_free(&bench, &both, 4, order / LEAD_M);
+        assert!(!free(12.0) && free(11.0));
     }
 }
