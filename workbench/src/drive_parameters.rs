@@ -90,7 +90,7 @@ impl Set {
         };
         let lead_m = self.torque_per_newton * TAU;
         let [least, most] = [entry.min, entry.max].map(force);
-        format!(", at {lead_m} m a revolution {least:.0} to {most:.0} N")
+        format!(", at {lead_m:.4} m a revolution {least:.0} to {most:.0} N")
     }
 
     /// Asks the drive's own code whether the set goes together and fits its machine units.
@@ -747,7 +747,7 @@ mod tests {
         let axis = &machine.axes[0];
         let error = parameters(axis, machine.period_s, &AxisCompensation::default()).unwrap_err();
         // 250 N m at 10 mm a revolution.
-        let wanted = "at 0.01 m a revolution 0 to 157080 N, wanted 318309886)";
+        let wanted = "at 0.0100 m a revolution 0 to 157080 N, wanted 318309886)";
         assert!(error.to_string().contains(wanted), "{error}");
     }
 

@@ -73,8 +73,8 @@ fn is_apart(bench: &Bench<'_>, one: f64, other: f64) -> bool {
     (one - other).abs() > wave::of_periods(bench.motion, APART_PERIODS)
 }
 
-/// Whether a record does not tell a fit from another that leaves less. What sits in few blocks has a
-/// small t however much it removes.
+/// Whether a record does not tell a fit from another that leaves less. What sits in few blocks has
+/// a small t however much it removes.
 fn is_open(own: &Fit, other: &Fit) -> bool {
     let gain = Gain::of(other, own);
     gain.t < CERTAIN_T && gain.share < EFFORT_SHARE
