@@ -274,6 +274,7 @@ mod tests {
     use super::*;
     use crate::evidence::inverse_dynamics::tests::{DEFLECTION_M, declared, record};
     use crate::fit::made::{self, USUAL, axis, usual};
+    use crate::model::inverse::Part;
     use EffectName::{Inertia, Offset, Viscous};
 
     fn fitted(coefficients: &[f64]) -> Fitted {
@@ -333,24 +334,19 @@ mod tests {
 
     #[test]
     fn friction_that_drifts_bends_before_it_slips_too() {
-        // 300 N of which as much again is there at first, and a tenth of that is not friction.
-        let drift = [0.0, 300.0, 90.0, 30.0];
-        let dataset = declared(record(Some(DEFLECTION_M)));
+        // As much again as the 300 N at first, and a force and a viscous friction that fade as it.
+        let mut dataset = declared(record(Some(DEFLECTION_M)));
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let seen = Bristle::Dahl(DEFLECTION_M).motion(&motion);
-        let effort = |row: usize| {
-            let fall = (-motion.time_s[row] / 2.0).exp();
+        for (row, effort) in dataset.train.effort.iter_mut().enumerate() {
             let (v, direction) = (motion.velocity_lp[row], seen.direction[row]);
-            fall * (drift[1] * direction + drift[2] * v + drift[3])
-        };
-        let mut dataset = dataset.clone();
-        for (row, force) in dataset.train.effort.iter_mut().enumerate() {
-            *force += effort(row);
+            let fall = (-motion.time_s[row] / 2.0).exp();
+            *effort += fall * (300.0 * direction + 90.0 * v + 30.0);
         }
         let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
         let bench = Bench::new(&dataset, &motion);
         let drifting = made::found(EffectName::FrictionDrift, 2.0);
-        let drifting = crate::model::inverse::Part {
+        let drifting = Part {
             effect: drifting.effect.by_direction().unwrap(),
             ..drifting
         };

@@ -8,6 +8,7 @@
 use crate::evidence::thresholds::{CERTAIN_T, EFFORT_SHARE};
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
+use crate::fit::tuning::is_new;
 use crate::model::effects::{Against, Setting, wave};
 use crate::model::inverse::Model;
 
@@ -27,7 +28,8 @@ pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 
     }
     let part = &model.parts[place];
     let found = part.parameter;
-    let residual = bench.residual(&bench.fit(&model.without(part)));
+    let without = model.without(part);
+    let residual = bench.residual(&bench.fit(&without));
     let setting = Setting {
         dataset: bench.dataset,
         residual: &residual,
@@ -39,28 +41,13 @@ pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 
     let [from, to] = ends.map(|k| wave::periods(bench.motion, k));
     let near = part.effect.strongest(bench.motion, &setting, from..to);
     let own = bench.cross_validate(model);
-    let others = near
-        .into_iter()
-        .filter(|k| is_apart(bench, found, *k) && is_free(bench, model, place, *k));
-    others
-        .filter(|k| {
-            is_open(
-                &own,
-                &bench.cross_validate(&model.with_parameter(place, *k)),
-            )
-        })
+    let is_other = |k: &f64| is_apart(bench, found, *k) && is_new(bench, &without, part.effect, *k);
+    let fit_at = |k: f64| bench.cross_validate(&model.with_parameter(place, k));
+    near.into_iter()
+        .filter(is_other)
+        .filter(|k| is_open(&own, &fit_at(*k)))
         .map(|k| (k - found).abs())
         .fold(0.0, f64::max)
-}
-
-/// Whether no other wave of its kind is about a wave number.
-fn is_free(bench: &Bench<'_>, model: &Model, place: usize, k: f64) -> bool {
-    let own = &model.parts[place];
-    let least = own.effect.least_distance(bench.motion);
-    let others = model.parts.iter().enumerate();
-    let mut others =
-        others.filter(|(other, part)| *other != place && part.called() == own.called());
-    others.all(|(_, part)| (part.parameter - k).abs() > least)
 }
 
 /// Whether a part is a wave over position whose wave number was searched.
@@ -161,7 +148,8 @@ mod tests {
         let bench = axis.bench();
         let twelfth = made::found(TorqueRipple, 12.0 / LEAD_M);
         let both = found_at(&bench, 12.0 + 1.0 / 7.0).with(twelfth);
-        let free = |order: f64| is_free(&bench, &both, 4, order / LEAD_M);
+        let own = &both.parts[4];
+        let free = |order: f64| is_new(&bench, &both.without(own), own.effect, order / LEAD_M);
         assert!(!free(12.0) && free(11.0));
     }
 }

@@ -151,7 +151,13 @@ pub(crate) fn extended(
 }
 
 /// Whether an effect that repeats has another parameter than those of its kind in the model.
-fn is_new(bench: &Bench<'_>, model: &Model, effect: &'static dyn Effect, parameter: f64) -> bool {
+#[must_use]
+pub(crate) fn is_new(
+    bench: &Bench<'_>,
+    model: &Model,
+    effect: &'static dyn Effect,
+    parameter: f64,
+) -> bool {
     if !effect.repeats() {
         return true;
     }
