@@ -1,4 +1,7 @@
-//! The main job, end to end on the in-process bus.
+//! The main job, end to end on the in-process bus, and its run beside a later one.
+
+#[path = "commission/compared.rs"]
+mod compared;
 
 use std::path::Path;
 
@@ -14,12 +17,13 @@ use workbench::network::place::Place;
 
 #[test]
 fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
-    let out = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("cold");
     let machine = MachineArguments::default();
     commission::run(
         &Commission {
             machine,
-            out: out.path().to_path_buf(),
+            out: out.clone(),
             tolerance_um: None,
             log: false,
             real_axes: false,
@@ -28,7 +32,7 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     )
     .unwrap();
 
-    let text = std::fs::read_to_string(out.path().join("summary.json")).unwrap();
+    let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut rows = Vec::new();
     for axis in summary["axes"].as_array().unwrap() {
@@ -98,11 +102,12 @@ fn commissioning_names_what_the_reference_machine_lacks_and_compensates_it() {
     rows.push(row("largest burst before", burst("circle_before"), "µm"));
     rows.push(row("largest burst after", burst("circle_after"), "µm"));
     golden::check("commission", &rows);
-    check_files(out.path());
-    check_certificate(out.path(), &summary);
-    let circle = std::fs::read_to_string(out.path().join("circle.svg")).unwrap();
+    check_files(&out);
+    check_certificate(&out, &summary);
+    let circle = std::fs::read_to_string(out.join("circle.svg")).unwrap();
     pictures::check("circle.svg", &circle);
-    check_drawn_path(out.path(), &circle);
+    check_drawn_path(&out, &circle);
+    compared::assert_a_warm_machine_differs_by_its_friction(&out);
 }
 
 /// The drawn circles are the recorded ones within 0.05 µm: every point of a record has a place of

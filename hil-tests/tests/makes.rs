@@ -118,7 +118,7 @@ fn beside_oracle(make: &Make) -> (f64, f64) {
 #[test]
 fn errors_beside_those_of_an_oracle_are_those_of_the_golden_table() {
     let makes = with_oracle();
-    let some = Scope::now().spread("makes beside an oracle", &makes, 1, 2);
+    let some = Scope::now().spread("makes beside an oracle", &makes, 1, 1);
     let errors = on_all_cores(&some, |make| beside_oracle(make));
     let (mut names, mut figures) = (Vec::new(), Vec::new());
     for (make, (told, found)) in some.iter().zip(errors) {

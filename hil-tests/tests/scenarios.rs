@@ -22,8 +22,6 @@ mod circle_causes;
 mod coarse_setpoints;
 #[path = "commission.rs"]
 mod commission;
-#[path = "compare.rs"]
-mod compare;
 #[path = "consistent_report.rs"]
 mod consistent_report;
 #[path = "dead_nodes.rs"]

@@ -102,7 +102,7 @@ fn every_hidden_effect_changes_the_record() {
 #[test]
 fn every_disturbance_outside_the_list_changes_the_record() {
     let scope = Scope::now();
-    let some = scope.rows("disturbances", OUTSIDE, 4, 12);
+    let some = scope.rows("disturbances", OUTSIDE, 4, 6);
     let rows = [some.to_vec(), some_outside()].concat();
     let changed = on_all_cores(&rows, |outside| {
         change(&training(&outside.rig(1)), &training(&outside.good_rig(1)))

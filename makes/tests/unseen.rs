@@ -187,7 +187,7 @@ fn each_alone(make: &Make) -> Vec<Shown> {
 #[test]
 fn each_effect_of_an_unseen_make_shows_by_itself() {
     let makes = unseen();
-    let some = Scope::now().spread("unseen makes, effect by effect", &makes, 1, 6);
+    let some = Scope::now().spread("unseen makes, effect by effect", &makes, 1, 2);
     let all = on_all_cores(&some, |make| each_alone(make));
     for (make, each) in some.iter().zip(all) {
         for (effect, shown) in make.hides.iter().zip(each) {
@@ -234,7 +234,7 @@ fn shown_and_alike(make: &Make, motion: fn(&Rig) -> &(Motion, f64)) -> (Vec<Show
 /// Asks of makes of a table that each effect shows in both records and is like no other.
 fn assert_each_shows_in_both_records_and_is_like_no_other(table: &str, makes: &[Make]) {
     let rows = format!("{table} makes, effect by effect");
-    let some = Scope::now().spread(&rows, makes, 1, 6);
+    let some = Scope::now().spread(&rows, makes, 1, 2);
     let all = on_all_cores(&some, |make| {
         [
             shown_and_alike(make, |rig| &rig.training),

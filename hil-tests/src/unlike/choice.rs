@@ -1,9 +1,9 @@
 //! Which records of unlike make a scope runs.
 //!
-//! `certify` runs all of them, `test` the hidden record of every fourth make with one of its other
+//! `certify` runs all of them, `test` the hidden record of every eighth make with one of its other
 //! forms in turn (empty, declared, validation from another day) and some of the other tables,
-//! `landing` the same of the other makes, `quick` a handful. Records that are held back are in none
-//! of these lists.
+//! `landing` the same of the other makes and more of the tables, `quick` a handful. Records
+//! that are held back are in none of these lists.
 
 use makes::Recipe;
 use makes::make::Form;
@@ -61,27 +61,27 @@ pub fn chosen_of(table: &str) -> Vec<Recipe> {
 
 /// Which of so many records of a table a scope runs: their places.
 fn places(table: &str, scope: Scope, all: usize) -> Vec<usize> {
-    let is_once = ONCE_HELD_BACK.contains(&table);
-    match (table, scope) {
-        ("makes", Scope::Test) => return (0..all).filter(|place| is_of_test(*place)).collect(),
-        ("makes", Scope::Landing) => {
-            let more = |place: &usize| is_run(*place) && !is_of_test(*place);
-            return (0..all).filter(more).collect();
-        }
-        // The second of two, and what `quick` runs.
-        (_, Scope::Landing) if is_once => return vec![all / 2],
-        (_, Scope::Landing) => return vec![0],
-        _ => {}
+    if scope == Scope::Certify {
+        return (0..all).collect();
     }
-    let (quick, test) = match table {
-        "makes" => (2, all),
-        "clean" => (1, 2),
-        "outside" => (1, 3),
-        _ if is_once => (1, 1),
-        _ => (2, 6),
+    if table == "makes" && scope != Scope::Quick {
+        let wanted = |place: &usize| is_run(*place) && is_of_test(*place) == (scope == Scope::Test);
+        return (0..all).filter(wanted).collect();
+    }
+    // Of those that are spread over the table `test` runs the first, `landing` the others.
+    let (quick, test, both) = match table {
+        "makes" => (2, 2, 2),
+        "clean" => (1, 1, 2),
+        "outside" => (1, 1, 3),
+        _ if ONCE_HELD_BACK.contains(&table) => (1, 1, 2),
+        _ => (2, 2, 6),
     };
-    let count = scope.pick(quick, test, all);
-    (0..count).map(|row| row * all / count).collect()
+    let spread = (0..both).map(|row| row * all / both);
+    match scope {
+        Scope::Quick => spread.take(quick).collect(),
+        Scope::Landing => spread.skip(test).collect(),
+        _ => spread.take(test).collect(),
+    }
 }
 
 /// Where a record of a make stands: its make and its form. The forms of a make stand together, the
@@ -96,9 +96,9 @@ const fn is_run(place: usize) -> bool {
     form == 0 || make % OTHERS == form % OTHERS
 }
 
-/// Of every fourth make.
+/// Of every eighth make.
 const fn is_of_test(place: usize) -> bool {
-    is_run(place) && at(place).0.is_multiple_of(4)
+    is_run(place) && at(place).0.is_multiple_of(8)
 }
 
 /// Forms beside the hidden one.
@@ -114,7 +114,7 @@ mod tests {
         let all = of_table("makes");
         let of = |scope| places("makes", scope, all.len());
         let (of_test, more) = (of(Scope::Test), of(Scope::Landing));
-        assert!(of_test.len() == 20 && more.len() == 58);
+        assert!(of_test.len() == 10 && more.len() == 68);
         let mut chosen = [of_test, more].concat();
         chosen.sort_unstable();
         let chosen = chosen.into_iter().map(|place| all[place].name.clone());
@@ -132,7 +132,10 @@ mod tests {
             assert_eq!(places(table, Scope::Certify, 40), whole);
             assert_eq!(places(table, Scope::Quick, 40)[0], 0);
         }
-        assert_eq!(places("clean", Scope::Test, 40), [0, 20]);
+        assert_eq!(places("clean", Scope::Test, 40), [0]);
+        assert_eq!(places("clean", Scope::Landing, 40), [20]);
+        assert_eq!(places("spoilt", Scope::Test, 60), [0, 10]);
+        assert_eq!(places("spoilt", Scope::Landing, 60), [20, 30, 40, 50]);
     }
 
     #[test]

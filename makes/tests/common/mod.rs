@@ -12,8 +12,8 @@ pub(crate) fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
         Scope::now().rows(table, &makes, quick, test).to_vec()
     };
     let apart = written_apart().into_iter();
-    let apart = apart.flat_map(|apart| some(apart.table, apart.makes, 2, 6));
-    some("makes", all(), 4, 12)
+    let apart = apart.flat_map(|apart| some(apart.table, apart.makes, 1, 2));
+    some("makes", all(), 4, 6)
         .into_iter()
         .chain(apart)
         .collect()
@@ -22,8 +22,8 @@ pub(crate) fn some_of(kind: impl Fn(&Make) -> bool) -> Vec<Make> {
 /// As many disturbances as the scope runs of each table that was written apart.
 pub(crate) fn some_outside() -> Vec<Outside> {
     let some = |table: &str, rows: &[Outside]| {
-        let test = rows.len().min(6);
-        Scope::now().rows(table, rows, 2, test).to_vec()
+        let test = rows.len().min(2);
+        Scope::now().rows(table, rows, 1, test).to_vec()
     };
     let apart = written_apart().into_iter();
     apart

@@ -497,4 +497,21 @@ mod tests {
         assert!(is_apart(&own(2.1, 3.0), &own(1.0, 2.0)));
         assert!(!is_apart(&own(1.0, 2.0), &own(1.9, 3.0)));
     }
+
+    #[test]
+    fn what_is_no_run_is_refused_with_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let refusal = run(&cli::Compare {
+            runs: vec![folder.path().to_path_buf(), folder.path().to_path_buf()],
+            out: None,
+            plot: None,
+            circles: Circles::After,
+            json: None,
+        });
+        let refusal = refusal.unwrap_err().to_string();
+        assert!(
+            refusal.contains("summary.json") && refusal.contains("quadrant commission --out"),
+            "{refusal}"
+        );
+    }
 }
