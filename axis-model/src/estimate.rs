@@ -122,12 +122,14 @@ mod tests {
             velocity: estimate(2.0e-3),
             exponent: Some(estimate(2.1)),
             lag: None,
+            lag_growth: None,
         });
         let stated = Effect::from(Stribeck {
             excess: 0.0,
             velocity: 2.0e-3,
             exponent: Some(2.0),
             lag: None,
+            lag_growth: None,
         });
         assert_eq!(stribeck.stated(), stated);
         let pitch = Effect::from(PitchError {

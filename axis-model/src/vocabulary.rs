@@ -79,6 +79,9 @@ vocabulary! {
         exponent: RATIO, 0.5 => 2.0,
         /// time in which 63 % of a change of the fall has come; none where it is not known
         lag: TIME, 0.0 => 0.1,
+        /// by how much longer it lags at rest, as a share: excess over the sliding level with
+        /// generalised Maxwell slip; none where it is not known
+        lag_growth: RATIO, 0.0 => 4.0,
     }
 
     /// hysteretic displacement before the contact slips

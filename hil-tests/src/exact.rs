@@ -103,6 +103,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
             velocity: known(sliding.stribeck_velocity_m_per_s),
             exponent: Some(known(sliding.stribeck_exponent)),
             lag: Some(known(sliding.stribeck_lag_s)),
+            lag_growth: Some(known(sliding.stribeck_lag_growth)),
         }),
         Effect::Compliance(Compliance {
             stiffness: known(mechanics.screw_stiffness_n_per_m),

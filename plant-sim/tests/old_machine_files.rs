@@ -168,6 +168,7 @@ fn a_vertical_axis_and_one_like_it_are_read_as_then() {
         stribeck_velocity_m_per_s: 2.0e-3,
         stribeck_exponent: 2.0,
         stribeck_lag_s: 0.0,
+        stribeck_lag_growth: 0.0,
         viscous_n_s_per_m: 1800.0,
         coulomb_asymmetry: 0.1,
         viscous_asymmetry: -0.2,

@@ -60,6 +60,7 @@ fn sliding(plan: &Plan, draws: &mut Draws) -> Sliding {
         stribeck_velocity_m_per_s: 2.0e-3,
         stribeck_exponent: 2.0,
         stribeck_lag_s: 0.0,
+        stribeck_lag_growth: 0.0,
         viscous_n_s_per_m: draws.between(700.0, 1100.0),
         coulomb_asymmetry: 0.0,
         viscous_asymmetry: 0.0,

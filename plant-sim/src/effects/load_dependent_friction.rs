@@ -37,6 +37,7 @@ mod tests {
                 stribeck_velocity_m_per_s: 1.0e-3,
                 stribeck_exponent: 2.0,
                 stribeck_lag_s: 0.0,
+                stribeck_lag_growth: 0.0,
                 viscous_n_s_per_m: 0.0,
                 coulomb_asymmetry: 0.0,
                 viscous_asymmetry: 0.0,

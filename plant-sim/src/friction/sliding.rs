@@ -22,6 +22,10 @@ ranged! {
         /// Al-Bender, Swevers 2003; Hess and Soom 1990). Zero where the fall follows at once.
         #[serde(default)]
         pub stribeck_lag_s: f64 [0.0 => 0.1],
+        /// By how much longer it lags at rest, as a share: (Fs − Fc)/Fc with generalised Maxwell
+        /// slip, whose lag goes with the level (Lampaert, Al-Bender, Swevers 2003).
+        #[serde(default)]
+        pub stribeck_lag_growth: f64 [0.0 => 4.0],
         /// Viscous friction Fv.
         pub viscous_n_s_per_m: f64 [0.0 => 1.0e7],
         /// Relative difference of Coulomb friction by direction: Fc (1 ± a) for positive and
@@ -52,6 +56,7 @@ impl Sliding {
             stribeck_velocity_m_per_s: 1.0e-3,
             stribeck_exponent: gaussian(),
             stribeck_lag_s: 0.0,
+            stribeck_lag_growth: 0.0,
             viscous_n_s_per_m: 0.0,
             coulomb_asymmetry: 0.0,
             viscous_asymmetry: 0.0,
@@ -141,8 +146,9 @@ impl Fall {
         if sliding.stribeck_lag_s == 0.0 {
             return self;
         }
-        let share = lag_share(dt_s, sliding.stribeck_lag_s);
-        Self(self.0 + share * (sliding.left(v) - self.0))
+        let goes_to = sliding.left(v);
+        let lag_s = sliding.stribeck_lag_s * (1.0 + sliding.stribeck_lag_growth * goes_to);
+        Self(self.0 + lag_share(dt_s, lag_s) * (goes_to - self.0))
     }
 }
 
@@ -212,6 +218,18 @@ mod tests {
                 "{back}"
             );
         }
+    }
+
+    #[test]
+    fn a_lag_that_goes_with_the_level_is_longer_at_rest_and_the_same_where_friction_has_fallen() {
+        let growing = Sliding {
+            stribeck_lag_growth: 0.5,
+            ..LAGGING
+        };
+        let left_after = |from: f64, v: f64, time_s: f64| Fall(from).after(&growing, v, time_s).0;
+        let e = std::f64::consts::E;
+        assert!((left_after(1.0, 1.0, 5.0e-3) - 1.0 / e).abs() < 1.0e-12);
+        assert!((left_after(0.0, 0.0, 7.5e-3) - (1.0 - 1.0 / e)).abs() < 1.0e-12);
     }
 
     #[test]

@@ -174,6 +174,7 @@ fn curve(effects: &[Effect]) -> Sliding {
                 curve.stribeck_velocity_m_per_s = own.velocity;
                 curve.stribeck_exponent = own.exponent.unwrap_or_else(gaussian);
                 curve.stribeck_lag_s = own.lag.unwrap_or(0.0);
+                curve.stribeck_lag_growth = own.lag_growth.unwrap_or(0.0);
             }
             Effect::Viscous(own) => curve.viscous_n_s_per_m = own.viscous,
             Effect::CoulombAsymmetry(own) => curve.coulomb_asymmetry = own.coulomb_asymmetry,

@@ -86,6 +86,7 @@ impl MotorSide {
                     sliding.stribeck_velocity_m_per_s = own.velocity;
                     sliding.stribeck_exponent = own.exponent.unwrap_or(2.0);
                     sliding.stribeck_lag_s = own.lag.unwrap_or(0.0);
+                    sliding.stribeck_lag_growth = own.lag_growth.unwrap_or(0.0);
                 }
                 Effect::Presliding(own) => friction = self.bristle(own, motor_kg),
                 Effect::CoulombAsymmetry(own) => sliding.coulomb_asymmetry = own.coulomb_asymmetry,

@@ -245,8 +245,10 @@ fn ripple(own: &TorqueRipple<Estimate>, known: &Known) -> Option<Ripple> {
     })
 }
 
+/// The drive has one lag for all velocities: that of half the fall.
 fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {
-    stribeck.lag.as_ref().map_or(0.0, |lag| lag.value.max(0.0))
+    let value = |own: &Option<Estimate>| own.as_ref().map_or(0.0, |own| own.value.max(0.0));
+    value(&stribeck.lag) * (1.0 + 0.5 * value(&stribeck.lag_growth))
 }
 
 /// A bristle comes to another level within its deflection, and has a damping. The way within which
