@@ -40,7 +40,7 @@ pub(crate) struct Gathered {
 
 type Columns = Arc<Vec<Vec<f64>>>;
 /// Effect; nonlinear parameter, form and lag; number of columns.
-type Structure = (Called, [u64; 3], usize);
+type Structure = (Called, [u64; 4], usize);
 /// A structure, and those beside which it is with their coefficients.
 type Key = (Structure, Vec<(Structure, Vec<u64>)>);
 type Kept = HashMap<Key, Columns>;
@@ -212,7 +212,7 @@ impl<'a> Bench<'a> {
     fn lost_at_peaks(&self, model: &Model) -> Vec<f64> {
         let drive = model.saturation();
         let lost = Called::Structure("lost at peaks");
-        let key = ((lost, [drive.per_effort.to_bits(), 0, 0], 1), Vec::new());
+        let key = ((lost, [drive.per_effort.to_bits(), 0, 0, 0], 1), Vec::new());
         if let Some(known) = self.kept().get(&key) {
             return known[0].clone();
         }
@@ -546,7 +546,8 @@ fn key(part: &Part) -> Key {
         let Part {
             effect, parameter, ..
         } = part;
-        let shape = [*parameter, effect.form(), effect.lag_s()].map(f64::to_bits);
+        let lag = [effect.lag_s(), effect.lag_growth()];
+        let shape = [*parameter, effect.form(), lag[0], lag[1]].map(f64::to_bits);
         (part.called(), shape, part.width())
     };
     let bits = |own: &[f64]| own.iter().map(|value| value.to_bits()).collect();

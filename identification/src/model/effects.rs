@@ -329,6 +329,16 @@ pub(crate) trait Effect: Sync {
         0.0
     }
 
+    /// The same form with a lag that is so much longer at rest, as a share, where there is one.
+    fn lag_growing(&self, _growth: f64) -> Option<&'static dyn Effect> {
+        None
+    }
+
+    /// By how much longer its lag is at rest, as a share.
+    fn lag_growth(&self) -> f64 {
+        0.0
+    }
+
     /// The same effect with fewer periods within the travel than tell themselves ([`few_periods`]).
     fn with_few_periods(&self) -> &'static [&'static dyn Effect] {
         &[]

@@ -90,6 +90,7 @@ impl Part {
             && self.parameter == other.parameter
             && self.effect.form() == other.effect.form()
             && self.effect.lag_s() == other.effect.lag_s()
+            && self.effect.lag_growth() == other.effect.lag_growth()
             && self.width() == other.width()
     }
 

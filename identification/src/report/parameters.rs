@@ -108,7 +108,7 @@ impl Parameters {
     /// those go with an exponent and a lag of their own.
     fn without_shape_of_fall(&mut self, told: &ByTheLoad) {
         if told.excess.value > 0.0 {
-            for name in ["stribeck_exponent", "stribeck_lag"] {
+            for name in ["stribeck_exponent", "stribeck_lag", "stribeck_lag_growth"] {
                 self.estimates.remove(name);
                 self.from.remove(name);
             }

@@ -8,8 +8,12 @@
 //! The fall may lag (frictional lag: Hess and Soom, ASME J. Tribology 112, 1990; Lampaert,
 //! Al-Bender and Swevers, 2003): what is left of the excess goes to exp(−|v / vs|^p) by first
 //! order. Each lag is a form, too, of which the usual one is none.
+//!
+//! With generalised Maxwell slip the lag goes with the level, s(v)/C: at rest it is longer than
+//! where friction has fallen, by the excess over the Coulomb level (its growth). That is another
+//! form again.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use axis_model::EffectName;
 
@@ -22,7 +26,10 @@ use crate::record::dataset::Dataset;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stribeck {
     exponent: f64,
+    /// Where friction has fallen.
     lag_s: f64,
+    /// By how much longer it lags at rest, as a share.
+    growth: f64,
     by_direction: bool,
 }
 
@@ -37,47 +44,70 @@ const COUNT: usize = 61;
 /// Smallest lag, s.
 const SHORTEST_LAG_S: f64 = 2.0e-4;
 /// From one lag to the next.
-const LAG_RATIO: f64 = 1.15;
+const LAG_RATIO: f64 = 1.05;
 /// Number of lags, the first of which is none; the last is 0.09 s.
-const LAGS: usize = 45;
+const LAGS: usize = 127;
+/// Smallest growth of a lag.
+const SMALLEST_GROWTH: f64 = 0.12;
+/// From one growth to the next.
+const GROWTH_RATIO: f64 = 1.25;
+/// Number of growths, the first of which is none; the last is 3.4.
+const GROWTHS: usize = 17;
+/// Number of kinds: each growth, alike in both directions and by direction.
+const KINDS: usize = 2 * GROWTHS;
 /// The usual one.
 pub(crate) static GAUSSIAN: Stribeck = Stribeck {
     exponent: GAUSS,
     lag_s: 0.0,
+    growth: 0.0,
     by_direction: false,
 };
-/// All of them: those of both directions alike, then those by direction; lag by lag, each with its
-/// exponents.
-static FALLS: LazyLock<Vec<Stribeck>> = LazyLock::new(falls);
-/// The same, as effects.
-static BY_LAG: LazyLock<Vec<&dyn Effect>> = LazyLock::new(|| {
-    let falls = FALLS.iter();
-    falls.map(|fall| fall as &dyn Effect).collect()
-});
-/// The same, exponent by exponent, each with its lags.
-static BY_EXPONENT: LazyLock<Vec<&dyn Effect>> = LazyLock::new(|| {
-    let places = (0..2).flat_map(|kind| (0..COUNT).map(move |place| (kind, place)));
-    let all = places.flat_map(|(kind, place)| (0..LAGS).map(move |lag| (kind, place, lag)));
-    all.map(|(kind, place, lag)| BY_LAG[(kind * LAGS + lag) * COUNT + place])
-        .collect()
-});
+/// Forms that differ in one thing, in order.
+type Row = OnceLock<Vec<&'static dyn Effect>>;
+/// Those of a kind and a lag, each exponent.
+static BY_LAG: [Row; KINDS * LAGS] = [const { OnceLock::new() }; KINDS * LAGS];
+/// Those of a kind and an exponent, each lag.
+static BY_EXPONENT: [Row; KINDS * COUNT] = [const { OnceLock::new() }; KINDS * COUNT];
 
-fn falls() -> Vec<Stribeck> {
-    let lags = (0..LAGS as i32).map(|lag| match lag {
+/// A row of forms: made when it is first asked for, and kept.
+fn row(row: &'static Row, forms: impl Iterator<Item = Stribeck>) -> &'static [&'static dyn Effect] {
+    let kept = |form: Stribeck| -> &'static dyn Effect { Box::leak(Box::new(form)) };
+    row.get_or_init(|| forms.map(kept).collect())
+}
+
+/// The forms of a kind with a lag, by the place of it.
+fn of_lag(kind: usize, lag: usize) -> &'static [&'static dyn Effect] {
+    let forms = (0..COUNT).map(|place| form(kind, lag, place));
+    row(&BY_LAG[kind * LAGS + lag], forms)
+}
+
+/// The forms of a kind with an exponent, by the place of it.
+fn of_exponent(kind: usize, place: usize) -> &'static [&'static dyn Effect] {
+    let forms = (0..LAGS).map(|lag| form(kind, lag, place));
+    row(&BY_EXPONENT[kind * COUNT + place], forms)
+}
+
+fn form(kind: usize, lag: usize, place: usize) -> Stribeck {
+    let lag_s = match lag {
         0 => 0.0,
-        lag => SHORTEST_LAG_S * LAG_RATIO.powi(lag - 1),
-    });
-    let lags: Vec<f64> = lags.collect();
-    let of_kind = |by_direction: bool| {
-        lags.iter().flat_map(move |lag_s| {
-            (0..COUNT).map(move |place| Stribeck {
-                exponent: SMALLEST + STEP * place as f64,
-                lag_s: *lag_s,
-                by_direction,
-            })
-        })
+        lag => SHORTEST_LAG_S * LAG_RATIO.powi(lag as i32 - 1),
     };
-    of_kind(false).chain(of_kind(true)).collect()
+    let growth = match kind / 2 {
+        0 => 0.0,
+        place => SMALLEST_GROWTH * GROWTH_RATIO.powi(place as i32 - 1),
+    };
+    Stribeck {
+        exponent: SMALLEST + STEP * place as f64,
+        lag_s,
+        growth,
+        by_direction: kind % 2 == 1,
+    }
+}
+
+/// Place of the growth that is nearest to one.
+fn place_of_growth(growth: f64) -> usize {
+    let place = 1.0 + ((growth / SMALLEST_GROWTH).ln() / GROWTH_RATIO.ln()).round();
+    place.clamp(0.0, (GROWTHS - 1) as f64) as usize
 }
 
 /// The form that is nearest to an exponent and a lag, the same in both directions.
@@ -85,7 +115,7 @@ pub(crate) fn nearest(exponent: f64, lag_s: f64) -> &'static dyn Effect {
     let place = ((exponent - SMALLEST) / STEP).round();
     let lag = 1.0 + ((lag_s / SHORTEST_LAG_S).ln() / LAG_RATIO.ln()).round();
     let within = |place: f64, count: usize| place.clamp(0.0, (count - 1) as f64) as usize;
-    BY_LAG[within(lag, LAGS) * COUNT + within(place, COUNT)]
+    of_lag(0, within(lag, LAGS))[within(place, COUNT)]
 }
 
 impl Stribeck {
@@ -102,11 +132,34 @@ impl Stribeck {
         (place.round() as usize, lag.round() as usize)
     }
 
+    /// Place of its kind.
+    fn kind(&self) -> usize {
+        let place = if self.growth == 0.0 {
+            0
+        } else {
+            place_of_growth(self.growth)
+        };
+        2 * place + usize::from(self.by_direction)
+    }
+
+    /// Half of what lies between this lag and the next, and of what a growth between two of them
+    /// makes of it, s.
+    fn rounding_of_lag_s(&self) -> f64 {
+        let of_lag = 0.5 * (LAG_RATIO - 1.0);
+        let of_growth = 0.5 * (GROWTH_RATIO - 1.0) * self.growth / (2.0 + self.growth);
+        self.lag_s * of_lag.hypot(of_growth)
+    }
+
+    /// The lag where so much of the excess would be left, s.
+    fn lag_at(&self, left: f64) -> f64 {
+        self.lag_s * (1.0 + self.growth * left)
+    }
+
     /// What is left of the excess where it lags, after a time at a velocity.
     #[must_use]
     pub(crate) fn left_after(&self, left: f64, (v, vs): (f64, f64), time_s: f64) -> f64 {
-        let share = lag::share(time_s, self.lag_s);
-        left + share * (self.left(v, vs) - left)
+        let goes_to = self.left(v, vs);
+        left + lag::share(time_s, self.lag_at(goes_to)) * (goes_to - left)
     }
 
     /// What is left of the excess along a motion.
@@ -114,7 +167,11 @@ impl Stribeck {
         let velocity = motion.velocity_lp.iter();
         let mut fall: Vec<f64> = velocity.map(|v| self.left(*v, vs)).collect();
         if self.lag_s > 0.0 {
-            let share = lag::share(motion.period_s, self.lag_s);
+            let constant = lag::share(motion.period_s, self.lag_s);
+            let share = |goes_to: f64| match self.growth {
+                0.0 => constant,
+                _ => lag::share(motion.period_s, self.lag_at(goes_to)),
+            };
             for piece in &motion.pieces {
                 lag_behind(&mut fall[piece.clone()], share);
             }
@@ -141,15 +198,17 @@ pub(crate) fn left(ratio: f64, exponent: f64) -> f64 {
     (-power).exp()
 }
 
-/// Lets values lag: from row to row by a share of the way to what they would be.
-fn lag_behind(values: &mut [f64], share: f64) {
+/// Lets values lag: from row to row by a share of the way to what they would be, which is the share
+/// where they would be that.
+fn lag_behind(values: &mut [f64], share: impl Fn(f64) -> f64) {
     let Some(mut state) = values.first().copied() else {
         return;
     };
     let mut before = state;
     for value in values {
         // Between two rows it goes to the mean of what it would be at them.
-        state += share * (0.5 * (before + *value) - state);
+        let goes_to = 0.5 * (before + *value);
+        state += share(goes_to) * (goes_to - state);
         before = std::mem::replace(value, state);
     }
 }
@@ -203,14 +262,12 @@ impl Effect for Stribeck {
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
         let (_, lag) = self.places();
-        let from = (usize::from(self.by_direction) * LAGS + lag) * COUNT;
-        &BY_LAG[from..from + COUNT]
+        of_lag(self.kind(), lag)
     }
 
     fn lags(&self) -> &'static [&'static dyn Effect] {
         let (place, _) = self.places();
-        let from = (usize::from(self.by_direction) * COUNT + place) * LAGS;
-        &BY_EXPONENT[from..from + LAGS]
+        of_exponent(self.kind(), place)
     }
 
     fn lag_s(&self) -> f64 {
@@ -219,7 +276,17 @@ impl Effect for Stribeck {
 
     fn by_direction(&self) -> Option<&'static dyn Effect> {
         let (place, lag) = self.places();
-        Some(BY_LAG[(LAGS + lag) * COUNT + place])
+        Some(of_lag(self.kind() | 1, lag)[place])
+    }
+
+    fn lag_growing(&self, growth: f64) -> Option<&'static dyn Effect> {
+        let (place, lag) = self.places();
+        let kind = 2 * place_of_growth(growth) + usize::from(self.by_direction);
+        Some(of_lag(kind, lag)[place])
+    }
+
+    fn lag_growth(&self) -> f64 {
+        self.growth
     }
 
     fn form(&self) -> f64 {
@@ -269,13 +336,21 @@ impl Effect for Stribeck {
         let lag = naming.lag_half_width.map(|half_width| Named {
             name: "stribeck_lag".into(),
             value: self.lag_s,
-            half_width: Some(half_width),
+            half_width: Some(half_width.hypot(self.rounding_of_lag_s())),
             unit: "s".into(),
+        });
+        let growth = naming.lag_half_width.filter(|_| self.growth > 0.0);
+        let growth = growth.map(|_| Named {
+            name: "stribeck_lag_growth".into(),
+            value: self.growth,
+            half_width: Some(0.5 * (GROWTH_RATIO - 1.0) * self.growth),
+            unit: String::new(),
         });
         let by_direction = self
             .by_direction
             .then(|| naming.coefficient("stribeck_excess_by_direction", 1, unit));
-        let all = [Some(excess), by_direction, Some(velocity), exponent, lag];
+        let velocity = Some(velocity);
+        let all = [Some(excess), by_direction, velocity, exponent, lag, growth];
         all.into_iter().flatten().collect()
     }
 }
