@@ -27,6 +27,10 @@ pub(crate) fn table(estimates: BTreeMap<String, Estimate>) -> ParameterTable {
             }
         }
     }
+    // By how much a lag grows is nothing without the lag.
+    if !table.known.contains_key("stribeck_lag") {
+        table.known.remove("stribeck_lag_growth");
+    }
     table
 }
 

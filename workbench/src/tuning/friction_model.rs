@@ -301,6 +301,20 @@ mod tests {
     }
 
     #[test]
+    fn a_lag_that_goes_with_the_level_is_that_of_half_the_fall() {
+        let fall = |lag: Option<f64>, growth: Option<f64>| Stribeck {
+            excess: about(100.0),
+            velocity: about(1.0e-3),
+            exponent: None,
+            lag: lag.map(about),
+            lag_growth: growth.map(about),
+        };
+        assert!((lag_s(&fall(Some(6.0e-3), Some(0.5))) - 7.5e-3).abs() < 1.0e-12);
+        assert_eq!(lag_s(&fall(Some(6.0e-3), None)), 6.0e-3);
+        assert_eq!(lag_s(&fall(None, None)), 0.0);
+    }
+
+    #[test]
     fn levels_along_the_travel_are_the_same_function_from_another_zero() {
         let own = PositionDependentFriction {
             linear: about(-0.8),

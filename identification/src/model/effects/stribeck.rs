@@ -51,8 +51,8 @@ const LAGS: usize = 127;
 const SMALLEST_GROWTH: f64 = 0.12;
 /// From one growth to the next.
 const GROWTH_RATIO: f64 = 1.25;
-/// Number of growths, the first of which is none; the last is 3.4.
-const GROWTHS: usize = 17;
+/// Number of growths, the first of which is none; the last is 4.3.
+const GROWTHS: usize = 18;
 /// Number of kinds: each growth, alike in both directions and by direction.
 const KINDS: usize = 2 * GROWTHS;
 /// The usual one.
@@ -340,10 +340,12 @@ impl Effect for Stribeck {
             unit: "s".into(),
         });
         let growth = naming.lag_half_width.filter(|_| self.growth > 0.0);
+        let of_excess = excess.half_width.unwrap_or(0.0) / excess.value.abs();
+        let share = (0.5 * (GROWTH_RATIO - 1.0)).hypot(of_excess);
         let growth = growth.map(|_| Named {
             name: "stribeck_lag_growth".into(),
-            value: self.growth,
-            half_width: Some(0.5 * (GROWTH_RATIO - 1.0) * self.growth),
+            value: self.growth.min(LARGEST_RATIO),
+            half_width: Some(share * self.growth),
             unit: String::new(),
         });
         let by_direction = self
@@ -352,5 +354,39 @@ impl Effect for Stribeck {
         let velocity = Some(velocity);
         let all = [Some(excess), by_direction, velocity, exponent, lag, growth];
         all.into_iter().flatten().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_form_knows_its_place_in_both_rows() {
+        for kind in 0..KINDS {
+            for (lag, place) in [(0, 0), (1, COUNT - 1), (60, 30), (LAGS - 1, 7)] {
+                let by_lag = of_lag(kind, lag)[place];
+                let by_exponent = of_exponent(kind, place)[lag];
+                let wanted = form(kind, lag, place);
+                for effect in [by_lag, by_exponent] {
+                    assert_eq!(effect.fall(), Some(wanted));
+                }
+                assert_eq!((wanted.kind(), wanted.places()), (kind, (place, lag)));
+                let both_ways = by_lag.by_direction().unwrap().fall().unwrap();
+                assert_eq!(both_ways.kind(), kind | 1);
+                assert_eq!(both_ways.places(), (place, lag));
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_growth_is_within_an_eighth_and_no_number_is_none() {
+        for growth in [0.12, 0.2, 0.6, 1.0, 4.0] {
+            let own = GAUSSIAN.lag_growing(growth).unwrap().lag_growth();
+            assert!((own / growth - 1.0).abs() < 0.125, "{own} for {growth}");
+        }
+        for none in [f64::NAN, -0.5, 0.0] {
+            assert_eq!(GAUSSIAN.lag_growing(none).unwrap().lag_growth(), 0.0);
+        }
     }
 }
