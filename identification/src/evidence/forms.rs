@@ -146,9 +146,8 @@ fn with_the_level(pair: Pair<'_>, same: Model, place: usize) -> Model {
         let other = growing.with_form(place, effect);
         growing = tuning::reshaped(pair, &other, place, Searched::Lag);
     }
-    let error = |model: &Model| -> f64 { pair.bench.cross_validate(model).held_out.iter().sum() };
     let still_lags = growing.parts[place].effect.lag_s() > 0.0;
-    if still_lags && error(&growing) < error(&same) {
+    if still_lags && gain(pair.bench, &growing, &same).share > 0.0 {
         growing
     } else {
         same

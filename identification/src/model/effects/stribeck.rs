@@ -88,34 +88,41 @@ fn of_exponent(kind: usize, place: usize) -> &'static [&'static dyn Effect] {
 }
 
 fn form(kind: usize, lag: usize, place: usize) -> Stribeck {
-    let lag_s = match lag {
-        0 => 0.0,
-        lag => SHORTEST_LAG_S * LAG_RATIO.powi(lag as i32 - 1),
-    };
-    let growth = match kind / 2 {
-        0 => 0.0,
-        place => SMALLEST_GROWTH * GROWTH_RATIO.powi(place as i32 - 1),
-    };
     Stribeck {
         exponent: SMALLEST + STEP * place as f64,
-        lag_s,
-        growth,
+        lag_s: at_place(lag, (SHORTEST_LAG_S, LAG_RATIO)),
+        growth: at_place(kind / 2, (SMALLEST_GROWTH, GROWTH_RATIO)),
         by_direction: kind % 2 == 1,
     }
 }
 
-/// Place of the growth that is nearest to one.
+/// What stands at a place of a grid: nothing, then from the smallest on by a ratio.
+fn at_place(place: usize, (smallest, ratio): (f64, f64)) -> f64 {
+    match place {
+        0 => 0.0,
+        place => smallest * ratio.powi(place as i32 - 1),
+    }
+}
+
+/// Place of what is nearest to a value on such a grid, of so many.
+fn place_on(value: f64, (smallest, ratio): (f64, f64), count: usize) -> usize {
+    let place = 1.0 + ((value / smallest).ln() / ratio.ln()).round();
+    place.clamp(0.0, (count - 1) as f64) as usize
+}
+
+fn place_of_lag(lag_s: f64) -> usize {
+    place_on(lag_s, (SHORTEST_LAG_S, LAG_RATIO), LAGS)
+}
+
 fn place_of_growth(growth: f64) -> usize {
-    let place = 1.0 + ((growth / SMALLEST_GROWTH).ln() / GROWTH_RATIO.ln()).round();
-    place.clamp(0.0, (GROWTHS - 1) as f64) as usize
+    place_on(growth, (SMALLEST_GROWTH, GROWTH_RATIO), GROWTHS)
 }
 
 /// The form that is nearest to an exponent and a lag, the same in both directions.
 pub(crate) fn nearest(exponent: f64, lag_s: f64) -> &'static dyn Effect {
     let place = ((exponent - SMALLEST) / STEP).round();
-    let lag = 1.0 + ((lag_s / SHORTEST_LAG_S).ln() / LAG_RATIO.ln()).round();
-    let within = |place: f64, count: usize| place.clamp(0.0, (count - 1) as f64) as usize;
-    of_lag(0, within(lag, LAGS))[within(place, COUNT)]
+    let place = place.clamp(0.0, (COUNT - 1) as f64) as usize;
+    of_lag(0, place_of_lag(lag_s))[place]
 }
 
 impl Stribeck {
@@ -127,19 +134,12 @@ impl Stribeck {
     /// Place of its exponent, and of its lag.
     fn places(&self) -> (usize, usize) {
         let place = (self.exponent - SMALLEST) / STEP;
-        let lag = (self.lag_s / SHORTEST_LAG_S).ln() / LAG_RATIO.ln();
-        let lag = if self.lag_s == 0.0 { 0.0 } else { 1.0 + lag };
-        (place.round() as usize, lag.round() as usize)
+        (place.round() as usize, place_of_lag(self.lag_s))
     }
 
     /// Place of its kind.
     fn kind(&self) -> usize {
-        let place = if self.growth == 0.0 {
-            0
-        } else {
-            place_of_growth(self.growth)
-        };
-        2 * place + usize::from(self.by_direction)
+        2 * place_of_growth(self.growth) + usize::from(self.by_direction)
     }
 
     /// Half of what lies between this lag and the next, and of what a growth between two of them
