@@ -16,7 +16,7 @@ struct Case {
     parameters: &'static [(&'static str, f64)],
 }
 
-const CASES: [Case; 7] = [
+const CASES: [Case; 8] = [
     Case {
         machine: include_str!("../machines/rubbing-nut.toml"),
         lacks: &["presliding", "stribeck"],
@@ -87,6 +87,24 @@ const CASES: [Case; 7] = [
             ("stribeck_excess", 100.0),
             ("stribeck_velocity", 4.0e-3),
             ("stribeck_lag", 6.0e-3),
+        ],
+    },
+    Case {
+        machine: include_str!("../machines/creeping-stage.toml"),
+        lacks: &["presliding", "stribeck"],
+        parameters: &[
+            ("inertia", 140.0),
+            ("load_inertia", 60.0),
+            ("coulomb", 150.0),
+            ("viscous", 500.0),
+            ("compliance_stiffness", 4.0e7),
+            ("compliance_damping", 5.0e3),
+            ("presliding_deflection", 150.0 / 3.8e7),
+            ("stribeck_excess", 90.0),
+            ("stribeck_velocity", 6.0e-3),
+            ("stribeck_exponent", 1.0),
+            ("stribeck_lag", 12.0e-3),
+            ("stribeck_lag_growth", 0.6),
         ],
     },
     Case {

@@ -211,7 +211,9 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
         let lag = told.lag.map(|lag| ("stribeck_lag", estimate(lag, "s")));
         let exponent = told.exponent;
         let exponent = exponent.map(|exponent| ("stribeck_exponent", estimate(exponent, "")));
-        own.extend(lag.into_iter().chain(exponent));
+        let growth = told.lag_growth;
+        let growth = growth.map(|growth| ("stribeck_lag_growth", estimate(growth, "")));
+        own.extend(lag.into_iter().chain(growth).chain(exponent));
     }
     let is_level = fitted.of(EffectName::Stribeck).is_some() && told.excess.value <= 0.0;
     if told.motor_side.is_some() || is_level || !is_told(fitted.model(), told.more) {

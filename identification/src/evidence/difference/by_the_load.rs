@@ -57,6 +57,8 @@ pub(crate) struct ByTheLoad {
     pub velocity: Known,
     /// Lag with which it follows the velocity, where it does not at once, s.
     pub lag: Option<Known>,
+    /// By how much longer it lags at rest, as a share, where it does.
+    pub lag_growth: Option<Known>,
     /// Exponent of that fall, where it is not Gauss's.
     pub exponent: Option<Known>,
     /// Width of the gap, where there is one.
@@ -118,6 +120,13 @@ pub(super) fn told(
     let told = turning(SMALLEST_TURN)?;
     let mut others = OTHER_TURNS.into_iter();
     let told = others.try_fold(told, |told, counts| Some(told.beside(&turning(counts)?)))?;
+    // A lag that is the same at all velocities, where one that grows leaves as little.
+    let open = slipping::with_a_growing_lag(&apart, ways, place);
+    let open = open.and_then(|open| near(&apart, &open, place, stiffness));
+    let told = match open {
+        Some(open) => told.beside(&open),
+        None => told,
+    };
     let told = told.within(TIMING * apart.motion.period_s).by_method();
     Some(told.slipping(slipping::elements(&apart, ways, place)))
 }
@@ -151,6 +160,7 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
     let damping = known[Carried::DAMPING].times(stiffness);
     let deflection = of_friction(friction.deflection, 0)?;
     let bent = known[Carried::BENDING].times(of_both);
+    let rise = of_friction(friction.rise, 1)?;
     Some(ByTheLoad {
         stiffness,
         damping: damping.of(-1.0),
@@ -167,9 +177,10 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         deflection,
         elements: None,
         bristle_damping: (bent.times(deflection.inverse())).within_share(unlike),
-        excess: (of_friction(friction.rise, 1)?.times(coulomb)).within_share(unlike),
+        excess: rise.times(coulomb).within_share(unlike),
         velocity: of_friction(friction.velocity, 2)?,
         lag: of_friction(friction.lag_s, LoadFriction::LAG),
+        lag_growth: of_friction(friction.lag_growth.into(), LoadFriction::LAG_GROWTH),
         exponent: of_friction(friction.exponent, LoadFriction::EXPONENT),
         gap: gap(&linearised.others, &known[linearised.others_from()..]),
     })
@@ -210,6 +221,7 @@ impl ByTheLoad {
             excess: known(self.excess),
             velocity: known(self.velocity),
             lag: self.lag.map(known),
+            lag_growth: self.lag_growth.map(known),
             exponent: self.exponent.map(known),
             gap: self.gap.map(known),
         }
@@ -241,6 +253,7 @@ impl ByTheLoad {
             excess: self.excess.beside(other.excess),
             velocity: self.velocity.beside(other.velocity),
             lag: both(self.lag, other.lag),
+            lag_growth: both(self.lag_growth, other.lag_growth),
             exponent: both(self.exponent, other.exponent),
             gap: both(self.gap, other.gap),
             ..self

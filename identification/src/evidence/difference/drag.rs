@@ -26,6 +26,7 @@ pub(super) fn for_a_wide_fall(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -
             deflection: factor * own.friction.deflection,
             rise: 0.0,
             lag_s: 0.0,
+            lag_growth: 0.0,
             exponent: GAUSS,
             ..own.friction
         };

@@ -47,6 +47,8 @@ impl Difference {
         let value = |known: Option<Known>, usual: f64| known.map_or(usual, |known| known.value);
         let exponent = value(told.exponent, GAUSS);
         let form = stribeck::nearest(exponent, value(told.lag, 0.0));
+        let growth = value(told.lag_growth, 0.0);
+        let form = form.lag_growing(growth).unwrap_or(form);
         accepted.then(|| Part::found(form, velocity))
     }
 

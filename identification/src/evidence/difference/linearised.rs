@@ -104,7 +104,7 @@ mod tests {
         };
         let away = [
             ways[0],
-            Way::Carried(found.scaled([1.05, 0.9, 1.1, 1.0, 1.0, 1.0])),
+            Way::Carried(found.scaled([1.05, 0.9, 1.1, 1.0, 1.0, 1.0, 1.0])),
         ];
         let moved = Linearised::of(&apart, &away, 1).unwrap().step().unwrap();
         let near = [ways[0], Way::Carried(moved)];

@@ -2,9 +2,13 @@
 //! slip, both under a level that falls with the velocity.
 //!
 //! ```text
-//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·s     τ·ds/dt = exp(−|v2/vs|^p) − s
+//! dz/dx2 = (sign dx2 − z/g)/δ     g = 1 + rise·s     τ·ds/dt = s∞ − s     s∞ = exp(−|v2/vs|^p)
 //! z = Σ shareᵢ zᵢ     dzᵢ/dx2 = 1/δᵢ within ±g     Σ shareᵢ/δᵢ = 1/δ
 //! ```
+//!
+//! The lag is τ where the level has fallen, and may be longer at rest: τ·(1 + growth·s∞). With
+//! generalised Maxwell slip it goes with the level, growth = rise (Lampaert, Al-Bender, Swevers
+//! 2003).
 //!
 //! Levels may differ by direction: g is then (1 ± a) times as high, and a bristle comes to it
 //! within as much longer a way.
@@ -13,11 +17,10 @@
 
 use super::between_rows::Steps;
 use crate::model::effects::stribeck::{self, GAUSS};
-use crate::motion::lag;
 use crate::simulate::friction::bend_after;
 
 /// Most elements.
-const ELEMENTS: usize = 16;
+const ELEMENTS: usize = 15;
 
 /// An element with a smaller share of the level is none: a share of a two-thousandth that slips
 /// after a twentieth of the others' ways would make a hundredth of the stiffness.
@@ -55,6 +58,8 @@ pub(crate) struct LoadFriction {
     pub velocity: f64,
     /// Lag τ with which the level follows the velocity, s; zero where it follows at once.
     pub lag_s: f64,
+    /// By how much longer it lags at rest, as a share. In single precision as the elements are.
+    pub lag_growth: f32,
     /// Exponent p of the fall: 2 with Gauss.
     pub exponent: f64,
     /// Level forward, 1 + a, where that of both directions is one: [`ALIKE`] where it is the same.
@@ -68,6 +73,8 @@ pub(crate) struct LoadFriction {
 pub(super) const ALIKE: f32 = 1.0;
 /// Range of an exponent that is searched.
 const EXPONENTS: (f64, f64) = (0.4, 2.5);
+/// Largest growth of a lag that is searched: that of a breakaway of five times the Coulomb level.
+const MOST_GROWTH: f32 = 4.0;
 /// Range of a level forward that is searched.
 const FORWARD: (f64, f64) = (0.1, 1.9);
 
@@ -75,64 +82,102 @@ const FORWARD: (f64, f64) = (0.1, 1.9);
 #[derive(Clone, Copy)]
 struct Left {
     friction: LoadFriction,
-    /// Shares of the way to where it goes that are gone after half a part of a row and after one.
-    shares: [f64; 2],
+    part_s: f64,
+    /// Parts that are kept of the way to where it goes, by the lag where it has fallen.
+    kept: [f64; 2],
     state: f64,
 }
 
 impl Left {
     fn along(friction: LoadFriction, path: &Steps) -> Self {
-        let share = |time_s: f64| lag::share(time_s, friction.lag_s);
         Self {
             friction,
-            shares: [share(0.5 * path.part_s), share(path.part_s)],
+            part_s: path.part_s,
+            kept: kept(path.part_s, friction.lag_s),
             state: 1.0,
         }
     }
 
     /// Levels amid a part of a row at a velocity and at its end, in Coulomb levels; goes on there.
     fn levels(&mut self, velocity: f64) -> [f64; 2] {
+        let LoadFriction {
+            lag_s,
+            lag_growth,
+            rise,
+            ..
+        } = self.friction;
         let (before, end) = (self.state, self.friction.left(velocity));
-        let left = if self.friction.lag_s > 0.0 {
-            self.shares.map(|share| before + share * (end - before))
+        let kept = if lag_growth > 0.0 {
+            kept(self.part_s, lag_s * (1.0 + f64::from(lag_growth) * end))
         } else {
-            [end, end]
+            self.kept
         };
+        let left = kept.map(|kept| end + kept * (before - end));
         self.state = left[1];
-        left.map(|left| 1.0 + self.friction.rise * left)
+        left.map(|left| 1.0 + rise * left)
     }
 }
 
+/// What is kept of a way after half a part of a row and after one; nothing without a lag.
+fn kept(part_s: f64, lag_s: f64) -> [f64; 2] {
+    let half = (-0.5 * part_s / lag_s).exp();
+    [half, half * half]
+}
+
 impl LoadFriction {
-    /// Most quantities that are searched: deflection, rise, velocity, lag, exponent, level forward.
-    pub(super) const MOST_SEARCHED: usize = 6;
+    /// Most quantities that are searched: deflection, rise, velocity, lag, exponent, level forward,
+    /// growth of the lag.
+    pub(super) const MOST_SEARCHED: usize = 7;
     /// Place of the lag among them.
     pub(super) const LAG: usize = 3;
     /// Place of the exponent.
     pub(super) const EXPONENT: usize = 4;
     /// Place of the level forward.
     pub(super) const FORWARD: usize = 5;
+    /// Place of the growth of the lag.
+    pub(super) const LAG_GROWTH: usize = 6;
 
-    /// Places of those that are: the last three where they are not the usual ones.
+    /// Places of those that are: the last four where they are not the usual ones.
     pub(super) fn searched(self) -> Vec<usize> {
         let lag = (self.lag_s > 0.0).then_some(Self::LAG);
         let exponent = (self.exponent != GAUSS).then_some(Self::EXPONENT);
         let forward = (self.forward != ALIKE).then_some(Self::FORWARD);
-        let unusual = lag.into_iter().chain(exponent).chain(forward);
+        let growth = (self.lag_growth > 0.0).then_some(Self::LAG_GROWTH);
+        let unusual = lag.into_iter().chain(exponent).chain(forward).chain(growth);
         (0..Self::LAG).chain(unusual).collect()
     }
 
     /// The same with each of them times a factor.
     pub(super) fn scaled(self, factors: [f64; Self::MOST_SEARCHED]) -> Self {
-        let [deflection, rise, velocity, lag, exponent, forward] = factors;
+        let [deflection, rise, velocity, lag, exponent, forward, growth] = factors;
         Self {
             deflection: self.deflection * deflection,
             rise: self.rise * rise,
             velocity: self.velocity * velocity,
             lag_s: self.lag_s * lag,
+            lag_growth: (self.lag_growth * growth as f32).min(MOST_GROWTH),
             exponent: (self.exponent * exponent).clamp(EXPONENTS.0, EXPONENTS.1),
             forward: (f64::from(self.forward) * forward).clamp(FORWARD.0, FORWARD.1) as f32,
             law: self.law,
+        }
+    }
+
+    /// The same with such a lag, the same at all velocities.
+    pub(super) fn lagging(self, lag_s: f64) -> Self {
+        Self {
+            lag_s,
+            lag_growth: 0.0,
+            ..self
+        }
+    }
+
+    /// The same with a lag that grows by so much, and is the same halfway down the fall.
+    pub(super) fn lag_growing(self, growth: f64) -> Self {
+        let halfway = |growth: f64| 1.0 + 0.5 * growth;
+        Self {
+            lag_s: self.lag_s * halfway(self.lag_growth.into()) / halfway(growth),
+            lag_growth: growth as f32,
+            ..self
         }
     }
 
@@ -258,6 +303,7 @@ mod tests {
         rise: 0.0,
         velocity: 1.0,
         lag_s: 0.0,
+        lag_growth: 0.0,
         exponent: GAUSS,
         forward: ALIKE,
         law: Law::Dahl,
@@ -270,7 +316,9 @@ mod tests {
             .unwrap();
         // 0.75/2 + 0.25/8.
         assert!((1.0 / slipping.deflection - 0.40625).abs() < 1.0e-12);
-        let twice = slipping.scaled([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]).elements();
+        let twice = slipping
+            .scaled([2.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+            .elements();
         for (element, wanted) in twice.iter().zip([(4.0, 0.75), (16.0, 0.25)]) {
             assert!((element.0 - wanted.0).abs() < 1.0e-5, "{element:?}");
             assert!((element.1 - wanted.1).abs() < 1.0e-6, "{element:?}");

@@ -46,7 +46,12 @@ pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) ->
     let apart = &apart.without_strikes(&ways);
     let ways = levelled_otherwise(apart, ways, place);
     let ways = with_elements_and_more(apart, ways, place);
+    // Whether a lag grows is not seen before the elements are there.
+    let growing = with_a_growing_lag(apart, &ways, place);
+    let growing = growing.filter(|growing| is_better(apart, &ways, growing));
+    let ways = growing.map_or(ways, |growing| with_better_elements(apart, growing, place));
     let usual = [
+        Level::LagGrowth(0.0),
         Level::Lag(0.0),
         Level::Exponent(GAUSS),
         Level::Forward(ALIKE),
@@ -64,6 +69,8 @@ pub(super) fn by_another_law(apart: &Apart<'_>, ways: Vec<Way>, place: usize) ->
 enum Level {
     /// It falls with such a lag, s.
     Lag(f64),
+    /// Its lag grows by such a share.
+    LagGrowth(f64),
     /// It falls by such an exponent.
     Exponent(f64),
     /// It is so high forward.
@@ -81,8 +88,8 @@ fn levelled_otherwise(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Ve
     ways
 }
 
-/// The same ways with the lag, the exponent or the level forward that leaves least, of what it has
-/// not yet.
+/// The same ways with the lag, its growth, the exponent or the level forward that leaves least, of
+/// what it has not yet.
 fn with_another_level(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
     let own = carried(ways, place)?.friction;
     let (from, to, count) = LAGS;
@@ -92,12 +99,25 @@ fn with_another_level(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<V
     let lags = lags.filter(|_| own.lag_s == 0.0);
     let exponents = exponents.filter(|_| own.exponent == GAUSS);
     let forward = forward.filter(|_| own.forward == ALIKE);
-    let tried = lags.chain(exponents).chain(forward).filter_map(|level| {
-        let changed = with_level(apart, ways, place, level)?;
-        Some((apart.blocks(&changed).fit().sse, changed))
-    });
+    let tried = lags.chain(exponents).chain(forward);
+    let tried = tried.filter_map(|level| with_level(apart, ways, place, level));
+    let tried = tried.chain(with_a_growing_lag(apart, ways, place));
+    let tried = tried.map(|changed| (apart.blocks(&changed).fit().sse, changed));
     let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, changed)| changed)
+}
+
+/// The same ways with a lag that grows; `None` where nothing lags, or it grows already.
+pub(super) fn with_a_growing_lag(
+    apart: &Apart<'_>,
+    ways: &[Way],
+    place: usize,
+) -> Option<Vec<Way>> {
+    let own = carried(ways, place)?.friction;
+    if own.lag_s == 0.0 || own.lag_growth > 0.0 {
+        return None;
+    }
+    with_level(apart, ways, place, Level::LagGrowth(own.rise))
 }
 
 /// The same ways with such a level; `None` where it is so already, or would fall otherwise and does
@@ -106,7 +126,8 @@ fn with_level(apart: &Apart<'_>, ways: &[Way], place: usize, level: Level) -> Op
     let own = carried(ways, place)?;
     let friction = own.friction;
     let (friction, falls) = match level {
-        Level::Lag(lag_s) => (LoadFriction { lag_s, ..friction }, true),
+        Level::Lag(lag_s) => (friction.lagging(lag_s), true),
+        Level::LagGrowth(growth) => (friction.lag_growing(growth), true),
         Level::Exponent(exponent) => (
             LoadFriction {
                 exponent,
@@ -129,17 +150,12 @@ fn with_level(apart: &Apart<'_>, ways: &[Way], place: usize, level: Level) -> Op
 }
 
 fn with_elements_and_more(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
-    let slipping = |ways: Vec<Way>| {
-        let changed = with_elements(apart, &ways, place);
-        let changed = changed.filter(|changed| is_better(apart, &ways, changed));
-        changed.unwrap_or(ways)
-    };
-    let first = slipping(ways);
+    let first = with_better_elements(apart, ways, place);
     let more = with_more(apart, first.clone(), place);
     if more == first {
         return first;
     }
-    let ways = between_refined_flanks(apart, slipping(more));
+    let ways = between_refined_flanks(apart, with_better_elements(apart, more, place));
     stepped(apart, ways, place)
 }
 
@@ -203,6 +219,13 @@ pub(super) fn instead(ways: &[Way], place: usize, carried: Carried) -> Vec<Way> 
     let mut changed = ways.to_vec();
     changed[place] = Way::Carried(carried);
     changed
+}
+
+/// The same ways with the elements that leave clearly less than what they have, where some do.
+fn with_better_elements(apart: &Apart<'_>, ways: Vec<Way>, place: usize) -> Vec<Way> {
+    let changed = with_elements(apart, &ways, place);
+    let changed = changed.filter(|changed| is_better(apart, &ways, changed));
+    changed.unwrap_or(ways)
 }
 
 /// The same ways with the elements that leave least about the deflection of a wind-up.
@@ -297,6 +320,23 @@ mod tests {
             let found = carried(&ways, 1).unwrap().friction;
             assert!((found.lag_s / lag_s - 1.0).abs() < 0.05, "{found:?}");
             assert!((found.rise / 0.4 - 1.0).abs() < 0.05, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_lag_that_goes_with_the_level_is_told_from_one_that_does_not() {
+        for (lag_s, growth) in [(2.0e-3, 0.4), (10.0e-3, 0.6), (10.0e-3, 0.0)] {
+            let truth = LoadFriction {
+                lag_s,
+                lag_growth: growth,
+                ..FRICTION
+            };
+            let axis = rubbed(truth, 0.0, |_| 0.0);
+            let ways = carried_instead(&apart(&axis), &WAYS, UNIT, 0.0).unwrap();
+            let found = carried(&ways, 1).unwrap().friction;
+            let off = (found.lag_growth - growth).abs();
+            assert!(off <= 0.1 * growth, "{found:?}");
+            assert!((found.lag_s / lag_s - 1.0).abs() < 0.05, "{found:?}");
         }
     }
 
