@@ -31,6 +31,7 @@ pub(crate) mod force_noise;
 pub(crate) mod forms;
 pub(crate) mod free_run;
 pub(crate) mod inverse_dynamics;
+pub(crate) mod law_of_the_load;
 pub(crate) mod look_alikes;
 pub(crate) mod mains;
 pub(crate) mod oscillation;

@@ -14,6 +14,7 @@ use crate::evidence::fast_motion;
 use crate::evidence::findings::{Findings, Stages};
 use crate::evidence::forms;
 use crate::evidence::inverse_dynamics::{Compared, InverseDynamics};
+use crate::evidence::law_of_the_load::or_by_the_load;
 use crate::evidence::plausibility;
 use crate::evidence::rank;
 use crate::evidence::reversal::{self, bristle::Bristle};
@@ -313,9 +314,12 @@ fn models(
         }
         fitted.or_slipping(pair, other)
     };
+    let told = stages.difference.as_ref();
+    let told = told.and_then(|difference| difference.by_the_load.as_ref());
+    let extended = fitted(extended, has_bristle);
     Compared {
         declared: fitted(declared, declares_bristle),
-        extended: fitted(extended, has_bristle),
+        extended: or_by_the_load(extended, [pair.bench, other], told),
     }
 }
 

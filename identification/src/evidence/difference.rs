@@ -48,6 +48,8 @@ use self::flanks::{Balance, Judged};
 pub(crate) use self::known::Known;
 use self::left::Left;
 pub(crate) use self::load::More;
+#[cfg(test)]
+pub(crate) use self::motor_side::MotorSide;
 use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
@@ -117,9 +119,9 @@ const MOST_PITCH_ERRORS: usize = 4;
 /// (2026-11-25).
 const METHOD_OF_STIFFNESS: f64 = 0.02;
 
-/// Counts, rms, of which no other law of the load's friction is asked: a bristle that is right
-/// leaves a third of one.
-const ENOUGH_COUNTS: f64 = 1.0;
+/// Counts, rms, of which no other law of the load's friction is asked: what the rounding of two
+/// scales leaves at most is √(2/12) of one, and a bristle that is right leaves a third.
+const ENOUGH_COUNTS: f64 = 0.5;
 
 /// What was found is idle where it takes no more than this of the squares that the load's own
 /// motion leaves. Chosen: a tenth of what an effect has to take to be found; nuts that rub, whose
@@ -231,10 +233,10 @@ fn settled(
         motor_count: dataset.resolution,
         velocity: unit,
     };
-    let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place, smallest));
+    let spring = spring::on_moving_rows(&apart, &ways);
+    let told = carried.and_then(|place| by_the_load::told(&apart, &ways, place, smallest, spring));
     let told = told.filter(|told| difference.agrees_with(told));
     difference.know(&apart);
-    let spring = spring::on_moving_rows(&apart, &difference.extended.ways());
     difference.motor_coulomb = spring.map(|spring| spring.motor_coulomb);
     if let Some(told) = &told {
         difference.stiffness = Some(told.stiffness);

@@ -231,7 +231,7 @@ pub(crate) mod tests {
         record_with(deflection.map(Bristle::Dahl).as_ref())
     }
 
-    fn record_with(bristle: Option<&Bristle>) -> Record {
+    pub(crate) fn record_with(bristle: Option<&Bristle>) -> Record {
         let bare = made::record(1.0e-3, made::two_sines(3000));
         let motion = Kinematics::new(&declared(bare.clone()), &bare).unwrap();
         let seen = bristle.map(|bristle| bristle.motion(&motion));

@@ -155,7 +155,7 @@ fn of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'static str, 
         ),
     ];
     own.extend(told.gap.map(|gap| ("backlash_gap", estimate(gap, length))));
-    let deflection = told.motor_side.map(|motor| motor.deflection);
+    let deflection = told.motor_side.and_then(|motor| motor.deflection);
     own.extend(deflection.map(|deflection| ("motor_deflection", estimate(deflection, length))));
     own.extend(bristle_of_the_load(findings, told));
     own.extend(asymmetry_of_the_load(findings, told));
@@ -206,7 +206,10 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     let mut own = Vec::new();
     if fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
         let velocity = estimate(told.velocity, &format!("{length}/s"));
-        own.push(("stribeck_excess", estimate(told.excess, effort)));
+        // What the motor's side has of it only the effort knows, beside the law of the load.
+        if told.motor_side.is_none() || !told.is_law_of(fitted.model()) {
+            own.push(("stribeck_excess", estimate(told.excess, effort)));
+        }
         own.push(("stribeck_velocity", velocity));
         let lag = told.lag.map(|lag| ("stribeck_lag", estimate(lag, "s")));
         let exponent = told.exponent;

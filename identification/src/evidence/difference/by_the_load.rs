@@ -19,8 +19,12 @@ use super::motor_side::{self, MotorSide, Stiffness};
 use super::refined::stepped;
 use super::rubbing::{ALIKE, LoadFriction};
 use super::slipping;
+use super::spring::Spring;
 use crate::evidence::reversal::slip::Elements;
 use crate::evidence::thresholds::METHOD;
+use crate::model::effects::Effect;
+use crate::model::effects::stribeck::{self, GAUSS};
+use crate::model::inverse::{Model, Part};
 
 /// What the load's motion tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,12 +104,14 @@ pub(super) fn told(
     ways: &[Way],
     place: usize,
     smallest: Smallest,
+    spring: Option<Spring>,
 ) -> Option<ByTheLoad> {
     let Some(Way::Carried(carried)) = ways.get(place).copied() else {
         return None;
     };
     let apart = apart.where_known(ways);
     let stiffness = motor_side::stiffness(&apart, carried, smallest.motor_count)?;
+    let stiffness = stiffness.or_on_moving_rows(spring);
     let apart = where_the_load_moves(apart, smallest.velocity);
     let apart = apart.without_strikes(ways);
     let turning = |counts: f64| {
@@ -187,6 +193,25 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
 }
 
 impl ByTheLoad {
+    /// The form of its fall, where it falls.
+    pub(crate) fn form(&self) -> Option<&'static dyn Effect> {
+        let value = |known: Option<Known>, usual: f64| known.map_or(usual, |known| known.value);
+        let form = stribeck::nearest(value(self.exponent, GAUSS), value(self.lag, 0.0));
+        let form = form
+            .lag_growing(value(self.lag_growth, 0.0))
+            .unwrap_or(form);
+        (self.excess.value > 0.0).then_some(form)
+    }
+
+    /// Whether a model's friction falls by this law.
+    pub(crate) fn is_law_of(&self, model: &Model) -> bool {
+        let is_own = |part: &Part| {
+            let falls_as = |form: &dyn Effect| part.effect.fall() == form.fall();
+            part.parameter == self.velocity.value && self.form().is_some_and(falls_as)
+        };
+        model.parts.iter().any(is_own)
+    }
+
     /// The same, with forces that are known in time to so much.
     fn within(self, time_s: f64) -> Self {
         let bristle = self.coulomb.value / self.deflection.value;
@@ -276,6 +301,35 @@ fn gap(others: &[Way], known: &[Known]) -> Option<Known> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl ByTheLoad {
+        /// Elements that slip, and nothing else.
+        pub(crate) fn of_elements(elements: Elements) -> Self {
+            let none = Known::new(0.0, 0.0);
+            Self {
+                stiffness: none,
+                damping: none,
+                mass: none,
+                unrubbed: none,
+                motor_side: None,
+                more: More::default(),
+                coulomb: none,
+                viscous: none,
+                viscous_asymmetry: None,
+                coulomb_asymmetry: None,
+                deflection: elements.known_deflection(),
+                elements: Some(elements),
+                bristle_damping: none,
+                excess: none,
+                velocity: none,
+                lag: None,
+                lag_growth: None,
+                exponent: None,
+                gap: None,
+            }
+        }
+    }
+
     use crate::evidence::difference::carried::instead;
     use crate::evidence::difference::carried::tests::{
         FRICTION, STIFFNESS, UNIT, WAYS, apart, axis,
@@ -293,7 +347,7 @@ mod tests {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
         let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
-        let told = told(&apart, &ways, 1, SMALLEST).unwrap();
+        let told = told(&apart, &ways, 1, SMALLEST, None).unwrap();
         let wanted = [
             (told.unrubbed, STIFFNESS, 0.005),
             (told.coulomb, 25.0, 0.01),
@@ -334,8 +388,8 @@ mod tests {
     fn only_a_wind_up_that_the_load_asks_for_tells() {
         let axis = axis(|_| 0.0);
         let apart = apart(&axis);
-        assert_eq!(told(&apart, &WAYS, 1, SMALLEST), None);
-        assert_eq!(told(&apart, &WAYS, 7, SMALLEST), None);
+        assert_eq!(told(&apart, &WAYS, 1, SMALLEST, None), None);
+        assert_eq!(told(&apart, &WAYS, 7, SMALLEST, None), None);
     }
 
     #[test]

@@ -12,7 +12,6 @@ use super::{Difference, Known, is_clear, slipping};
 use crate::evidence::selection::Scored;
 use crate::evidence::thresholds::WRONG_IN_FORM;
 use crate::fit::blocks::Gain;
-use crate::model::effects::stribeck::{self, GAUSS};
 use crate::model::inverse::Part;
 use crate::motion::kinematics::Kinematics;
 use axis_model::EffectName;
@@ -44,12 +43,8 @@ impl Difference {
             accepted,
             round: 0,
         });
-        let value = |known: Option<Known>, usual: f64| known.map_or(usual, |known| known.value);
-        let exponent = value(told.exponent, GAUSS);
-        let form = stribeck::nearest(exponent, value(told.lag, 0.0));
-        let growth = value(told.lag_growth, 0.0);
-        let form = form.lag_growing(growth).unwrap_or(form);
-        accepted.then(|| Part::found(form, velocity))
+        let form = told.form().filter(|_| accepted)?;
+        Some(Part::found(form, velocity))
     }
 
     /// Whether the load's motion has a fall beyond its interval and a trifle of the level.

@@ -25,11 +25,13 @@
 
 use std::ops::RangeInclusive;
 
+use super::METHOD_OF_STIFFNESS;
 use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
 use super::rubbing::Law;
+use super::spring::Spring;
 use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::rows::Rows;
@@ -56,6 +58,8 @@ const MOST_OPEN: f64 = 0.8;
 /// itself in the statistical interval and less (2026-11-27; 2.1 % without noise of the effort). Why
 /// is not known.
 const APART: f64 = 0.04;
+/// A stiffness is not known from this half width on, as a share of it.
+const VAGUE: f64 = 0.5;
 /// Part of the motor's friction, and of what it does to the stiffness, that is open where friction
 /// has elements that slip.
 const OPEN_BY_ELEMENTS: f64 = 0.5;
@@ -84,11 +88,29 @@ pub(crate) struct MotorSide {
     /// Coulomb friction.
     pub coulomb: Known,
     /// Deflection of its bristle, or that by which its elements are scaled: Coulomb level over
-    /// stiffness at standstill.
-    pub deflection: Known,
+    /// stiffness at standstill. `None` where it turns over before anything is seen of it.
+    pub deflection: Option<Known>,
 }
 
 impl Stiffness {
+    /// The same, or what the rows in which the motor moves tell, where all rows do not know it: the
+    /// bearings of a motor may turn over at once, and no bend of theirs is as short.
+    pub(super) fn or_on_moving_rows(self, spring: Option<Spring>) -> Self {
+        let is_vague = self.known.half_width > VAGUE * self.known.value;
+        let Some(spring) = spring.filter(|_| is_vague) else {
+            return self;
+        };
+        let rubs = spring.motor_coulomb.value > spring.motor_coulomb.half_width;
+        Self {
+            known: spring.stiffness.within_share(METHOD_OF_STIFFNESS),
+            motor_side: rubs.then_some(MotorSide {
+                coulomb: spring.motor_coulomb,
+                deflection: None,
+            }),
+            ..self
+        }
+    }
+
     /// What levels of the load's friction over the stiffness have to be multiplied with to be those
     /// of both sides, where the load has such a Coulomb level over the stiffness.
     pub(super) fn of_both(&self, coulomb: Known) -> Known {
@@ -254,11 +276,13 @@ impl Rubbing<'_> {
         let apart = (free_stiffness.value - stiffness.value).abs();
         let contradicts = apart > free_stiffness.half_width;
         let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
-        let deflection = if contradicts || !is_inside {
-            Known::new(deflection.value, MOST_OPEN * deflection.value)
-        } else {
-            deflection
-        };
+        let deflection = deflection.map(|deflection| {
+            if contradicts || !is_inside {
+                Known::new(deflection.value, MOST_OPEN * deflection.value)
+            } else {
+                deflection
+            }
+        });
         if contradicts {
             let coulomb = free_coulomb;
             return (
@@ -306,7 +330,8 @@ impl Rubbing<'_> {
         let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
         let [viscous, stiffness, coulomb] = [VISCOUS, STIFFNESS, COULOMB].map(known);
         let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
-        let deflection = Known::new(1.0, share).of(deflection * self.carried.friction.deflection);
+        let deflection = Known::new(deflection, deflection * share);
+        let deflection = Some(deflection.of(self.carried.friction.deflection));
         ByLaw {
             fit,
             viscous,
@@ -352,7 +377,7 @@ mod tests {
         for (known, truth) in [
             (told.known, STIFFNESS),
             (seen.coulomb, 15.0),
-            (seen.deflection, motor.deflection),
+            (seen.deflection.unwrap(), motor.deflection),
         ] {
             let off = (known.value - truth).abs();
             assert!(off < 0.1 * truth && off < known.half_width, "{known:?}");
@@ -371,6 +396,43 @@ mod tests {
         // Without it the spring would be as much stiffer as the load has less of all friction.
         let stiffer = told.unrubbed.value / STIFFNESS;
         assert!((stiffer / (40.0 / 25.0) - 1.0).abs() < 0.1, "{stiffer}");
+    }
+
+    #[test]
+    fn moving_rows_tell_what_all_rows_do_not_know() {
+        let spring = Spring {
+            stiffness: Known::new(4.0e6, 3.0e4),
+            motor_coulomb: Known::new(12.0, 2.0),
+        };
+        let of_all = |half_width: f64| Stiffness {
+            known: Known::new(5.0e6, half_width),
+            unrubbed: Known::new(6.0e6, 1.0e5),
+            motor_side: None,
+        };
+        let stiffness = |half_width: f64, spring: Option<Spring>| {
+            of_all(half_width).or_on_moving_rows(spring).known.value
+        };
+        assert_eq!(stiffness(2.0e6, Some(spring)), 5.0e6);
+        assert_eq!(stiffness(3.0e6, None), 5.0e6);
+        let told = of_all(3.0e6).or_on_moving_rows(Some(spring));
+        assert_eq!(
+            told.known,
+            spring.stiffness.within_share(METHOD_OF_STIFFNESS)
+        );
+        let motor = told.motor_side.unwrap();
+        assert_eq!(
+            (motor.coulomb, motor.deflection),
+            (spring.motor_coulomb, None)
+        );
+        // A friction that may be none is none.
+        let unsure = Spring {
+            motor_coulomb: Known::new(2.0, 3.0),
+            ..spring
+        };
+        assert_eq!(
+            of_all(3.0e6).or_on_moving_rows(Some(unsure)).motor_side,
+            None
+        );
     }
 
     #[test]

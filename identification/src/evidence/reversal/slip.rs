@@ -42,6 +42,15 @@ pub(crate) struct Fall {
 }
 
 impl Fall {
+    /// By so much at rest, in Coulomb levels, of such a law.
+    pub(crate) const fn by(rise: f64, velocity: f64, law: Stribeck) -> Self {
+        Self {
+            rise,
+            velocity,
+            law: Some(law),
+        }
+    }
+
     /// Of a model as it was fitted; without a Stribeck fall the level is the same at all
     /// velocities.
     pub(super) fn of(fitted: &Fitted) -> Self {
@@ -113,6 +122,24 @@ impl Elements {
             without_folds: without_folds.collect::<Option<Vec<_>>>()?,
             fall: Fall::default(),
         })
+    }
+
+    /// The same under such a level.
+    pub(crate) fn under(self, fall: Fall) -> Self {
+        Self { fall, ..self }
+    }
+
+    /// The same beside one more, whose share is that of all.
+    pub(crate) fn beside(mut self, other: Element) -> Self {
+        let all = std::iter::once(&mut self.in_turn).chain(&mut self.without_folds);
+        for elements in all {
+            for element in elements.iter_mut() {
+                element.share *= 1.0 - other.share;
+            }
+            elements.push(other);
+            elements.sort_by(|a, b| a.deflection.total_cmp(&b.deflection));
+        }
+        self
     }
 
     /// From the first one that slips to the last.
@@ -280,6 +307,19 @@ pub(crate) mod tests {
         assert!((two.deflection() - 1.0 / 0.75).abs() < 1.0e-12);
         assert!((two.scaled(3.0).deflection() - 4.0).abs() < 1.0e-12);
         assert!((two.known_force(1.5).value - 0.875).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn one_more_element_takes_its_share_of_all() {
+        let two = elements(2.0, &[(0.5, 0.5), (1.0, 0.5)]);
+        let three = two.beside(Element {
+            deflection: 1.5,
+            share: 0.2,
+        });
+        let own = three.elements().iter();
+        let own: Vec<(f64, f64)> = own.map(|own| (own.deflection, own.share)).collect();
+        assert_eq!(own, [(1.0, 0.4), (1.5, 0.2), (2.0, 0.4)]);
+        assert!(three.known_deflection().half_width < 1.0e-12);
     }
 
     #[test]
