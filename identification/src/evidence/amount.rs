@@ -139,6 +139,7 @@ mod tests {
                 .bench()
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
             bristle: None,
+            by_the_load: None,
         }
     }
 

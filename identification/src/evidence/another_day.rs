@@ -162,6 +162,7 @@ mod tests {
                 .bench()
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
             bristle: None,
+            by_the_load: None,
         };
         OnBoth::of(&first.dataset, [&first.motion, &other.motion], &fitted)
     }

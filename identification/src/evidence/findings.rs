@@ -224,6 +224,7 @@ pub(crate) mod tests {
         InverseDynamics {
             fitted: Bench::new(&scene.dataset, &scene.motion).fit(&model),
             bristle: None,
+            by_the_load: None,
         }
     }
 

@@ -3,13 +3,16 @@
 //! The effort shows a law through its noise, the load's motion through a spring and some counts.
 //! The columns of the effort are those of that law then: the form and the velocity of the fall, and
 //! the bristle or the elements. Coefficients stay the effort's own. Friction of the motor's side is
-//! one more element beside those of the load.
+//! one more element beside those of the load. A bristle of the load beside such a friction, and a
+//! fall that the effort has not, are not put in.
 
 use crate::evidence::difference::ByTheLoad;
 use crate::evidence::inverse_dynamics::InverseDynamics;
 use crate::evidence::reversal::bristle::Bristle;
 use crate::evidence::reversal::slip::{Element, Elements, Fall};
 use crate::fit::bench::Bench;
+use crate::fit::fitted::Fitted;
+use crate::fit::told;
 use crate::model::inverse::Model;
 
 /// Deflection of a friction of the motor's side that turns over at once, in those of the load's.
@@ -31,7 +34,7 @@ pub(crate) fn or_by_the_load(
         let left = structures.map(|own| own.refitted(dataset, motion).on(dataset, motion));
         let [before, after] = left;
         let moving = after.force_percent / before.force_percent;
-        moving < 1.0 && moving * after.reversal_rms < before.reversal_rms
+        moving < 1.0 && moving * after.reversal_rms <= before.reversal_rms
     };
     if leaves_less(own) && leaves_less(other) {
         changed
@@ -48,34 +51,41 @@ fn by_the_load(
     told: &ByTheLoad,
 ) -> Option<InverseDynamics> {
     before.bristle.as_ref()?;
-    let (model, fall) = falling(before.fitted.model(), told);
+    let (model, fall) = falling(&before.fitted, told);
     let elements = told.elements.clone().map(|elements| elements.under(fall));
     let bristle = match (elements, told.motor_side.is_some()) {
         (Some(elements), _) => Bristle::Slip(beside_the_motor(elements, told)),
-        (None, false) => Bristle::Dahl(told.deflection.value),
+        (None, false) => Bristle::Dahl(fall.at_rest() * told.deflection.value),
         (None, true) => return None,
     };
     let seen = bristle.motion(bench.motion);
+    let bench = Bench::new(bench.dataset, &seen);
     Some(InverseDynamics {
-        fitted: Bench::new(bench.dataset, &seen).fit(&model),
+        fitted: bench.fit(&told::of_the_others(&bench, model)),
         bristle: Some(bristle),
+        by_the_load: Some(told.deflection),
     })
 }
 
-/// A model whose friction falls as that of the load, where both fall; and the fall.
-fn falling(model: &Model, told: &ByTheLoad) -> (Model, Fall) {
+/// A model whose friction falls as that of the load, where both fall, by direction where it did;
+/// and the fall.
+fn falling(fitted: &Fitted, told: &ByTheLoad) -> (Model, Fall) {
+    let model = fitted.model();
     let mut falls = model.parts.iter();
     let place = falls.position(|part| part.effect.fall().is_some());
-    let Some((place, form)) = place.zip(told.form()) else {
-        return (model.clone(), Fall::default());
+    let law = told.form().and_then(|form| Some((form, form.fall()?)));
+    let Some((place, (form, law))) = place.zip(law) else {
+        return (model.clone(), Fall::of(fitted));
     };
+    let by_direction = form
+        .by_direction()
+        .filter(|_| model.parts[place].width() > 1);
+    let model = model.with_form(place, by_direction.unwrap_or(form));
     let velocity = told.velocity.value;
     let rise = told.excess.value / told.coulomb.value;
-    let fall = form.fall().map(|law| Fall::by(rise, velocity, law));
-    let model = model.with_form(place, form);
     (
         model.with_parameter(place, velocity),
-        fall.unwrap_or_default(),
+        Fall::by(rise, velocity, law),
     )
 }
 
@@ -97,36 +107,87 @@ mod tests {
 
     use super::*;
     use crate::evidence::difference::{Known, MotorSide};
-    use crate::evidence::inverse_dynamics::tests::{DEFLECTION_M, declared, record_with};
+    use crate::evidence::inverse_dynamics::tests::{
+        DEFLECTION_M, LAG_S, declared, lagging, record_with,
+    };
     use crate::evidence::reversal::slip::tests::elements;
     use crate::motion::kinematics::Kinematics;
+    use crate::record::dataset::Dataset;
 
-    /// What a record of such elements becomes where the load's motion tells others, and friction of
-    /// the motor's side.
-    fn with(of_load: &[(f64, f64)], motor: Option<f64>) -> InverseDynamics {
-        let whole = [(0.001, 0.2), (0.3, 0.4), (1.2, 0.4)];
-        let whole = Bristle::Slip(elements(DEFLECTION_M, &whole));
-        let dataset = declared(record_with(Some(&whole)));
-        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
-        let bench = Bench::new(&dataset, &motion);
+    /// What a dataset becomes from a bristle half as deep as its own and such a model, where the
+    /// load's motion tells this.
+    fn with(dataset: &Dataset, model: &Model, told: &ByTheLoad) -> InverseDynamics {
+        let motion = Kinematics::new(dataset, &dataset.train).unwrap();
+        let bench = Bench::new(dataset, &motion);
         let dahl = Bristle::Dahl(0.5 * DEFLECTION_M);
         let seen = dahl.motion(&motion);
         let before = InverseDynamics {
-            fitted: Bench::new(&dataset, &seen).fit(&Model::declared(&dataset)),
+            fitted: Bench::new(dataset, &seen).fit(model),
             bristle: Some(dahl),
+            by_the_load: None,
         };
+        or_by_the_load(before, [&bench, &bench], Some(told))
+    }
+
+    /// What a record of elements and friction of the motor becomes where the load's motion tells
+    /// others, and as much friction of the motor's side.
+    fn of_elements(of_load: &[(f64, f64)], motor: Option<f64>) -> InverseDynamics {
+        let whole = [(0.001, 0.2), (0.3, 0.4), (1.2, 0.4)];
+        let whole = Bristle::Slip(elements(DEFLECTION_M, &whole));
+        let dataset = declared(record_with(Some(&whole)));
         let mut told = ByTheLoad::of_elements(elements(DEFLECTION_M, of_load));
         told.coulomb = Known::new(300.0, 1.0);
         told.motor_side = motor.map(|coulomb| MotorSide {
             coulomb: Known::new(coulomb, 1.0),
             deflection: None,
         });
-        or_by_the_load(before, [&bench, &bench], Some(&told))
+        with(&dataset, &Model::declared(&dataset), &told)
+    }
+
+    /// A load's bristle under a fall that lags, as deep as the Coulomb level says.
+    fn lagging_bristle() -> ByTheLoad {
+        let at = DEFLECTION_M * 300.0 / 500.0;
+        let mut told = ByTheLoad::of_elements(elements(at, &[(1.0, 1.0)]));
+        told.elements = None;
+        told.coulomb = Known::new(300.0, 1.0);
+        told.excess = Known::new(200.0, 1.0);
+        told.velocity = Known::new(0.01, 1.0e-4);
+        told.lag = Some(Known::new(LAG_S, 1.0e-4));
+        told
+    }
+
+    #[test]
+    fn a_bristle_of_the_load_turns_over_by_the_level_at_rest_and_falls_by_direction_where_it_did() {
+        let (dataset, told) = (lagging(), lagging_bristle());
+        let plain = Model::declared(&dataset);
+        let by_direction = plain.parts[3].effect.by_direction().unwrap();
+        for (model, sizes) in [(plain.clone(), 1), (plain.with_form(3, by_direction), 2)] {
+            let found = with(&dataset, &model, &told);
+            assert_eq!(found.by_the_load, Some(told.deflection));
+            let deflection = found.bristle.as_ref().unwrap().deflection();
+            assert!((deflection / DEFLECTION_M - 1.0).abs() < 1.0e-9);
+            let fall = found.fitted.terms().last().unwrap();
+            assert_eq!(fall.own.len(), sizes);
+            assert!((fall.own[0] - 200.0).abs() < 0.2, "{:?}", fall.own);
+            let coulomb = found.fitted.of(Coulomb).unwrap()[0];
+            assert!((coulomb - 300.0).abs() < 0.3, "{coulomb}");
+        }
+    }
+
+    #[test]
+    fn a_bristle_of_the_load_beside_friction_of_the_motor_is_not_put_in() {
+        let (dataset, mut told) = (lagging(), lagging_bristle());
+        told.motor_side = Some(MotorSide {
+            coulomb: Known::new(60.0, 1.0),
+            deflection: None,
+        });
+        let found = with(&dataset, &Model::declared(&dataset), &told);
+        assert_eq!(found.by_the_load, None);
     }
 
     #[test]
     fn the_law_of_the_load_stands_beside_the_motors_friction_where_it_leaves_less() {
-        let right = with(&[(0.3, 0.5), (1.2, 0.5)], Some(60.0));
+        let right = of_elements(&[(0.3, 0.5), (1.2, 0.5)], Some(60.0));
         let Some(Bristle::Slip(own)) = &right.bristle else {
             panic!("elements");
         };
@@ -134,7 +195,7 @@ mod tests {
         let coulomb = right.fitted.of(Coulomb).unwrap()[0];
         assert!((coulomb / 300.0 - 1.0).abs() < 0.002, "{coulomb}");
         // Ten times as deep they leave more than a bristle.
-        let wrong = with(&[(3.0, 0.5), (12.0, 0.5)], None);
-        assert!(matches!(wrong.bristle, Some(Bristle::Dahl(_))));
+        let wrong = of_elements(&[(3.0, 0.5), (12.0, 0.5)], None);
+        assert_eq!(wrong.by_the_load, None);
     }
 }

@@ -269,6 +269,7 @@ mod tests {
             let model = InverseDynamics {
                 fitted: Bench::new(&dataset, &motion).fit(&model),
                 bristle: None,
+                by_the_load: None,
             };
             reason(&dataset, [&motion, &other], &model, error_percent).is_some()
         };

@@ -109,6 +109,7 @@ mod tests {
         let model = InverseDynamics {
             fitted: axis.bench().fit(&model(names)),
             bristle: None,
+            by_the_load: None,
         };
         let reason = reasons(&axis.dataset, &axis.motion, &model);
         assert!(reason.iter().all(|reason| reason.counts));

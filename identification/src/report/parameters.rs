@@ -207,7 +207,8 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     if fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
         let velocity = estimate(told.velocity, &format!("{length}/s"));
         // What the motor's side has of it only the effort knows, beside the law of the load.
-        if told.motor_side.is_none() || !told.is_law_of(fitted.model()) {
+        let is_its_law = findings.models.extended.by_the_load.is_some();
+        if told.motor_side.is_none() || !is_its_law {
             own.push(("stribeck_excess", estimate(told.excess, effort)));
         }
         own.push(("stribeck_velocity", velocity));

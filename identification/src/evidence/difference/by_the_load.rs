@@ -17,14 +17,13 @@ use super::linearised::Linearised;
 use super::load::{Carried, More, where_it_moves};
 use super::motor_side::{self, MotorSide, Stiffness};
 use super::refined::stepped;
-use super::rubbing::{ALIKE, LoadFriction};
+use super::rubbing::{ALIKE, LoadFriction, MOST_GROWTH};
 use super::slipping;
 use super::spring::Spring;
 use crate::evidence::reversal::slip::Elements;
 use crate::evidence::thresholds::METHOD;
 use crate::model::effects::Effect;
 use crate::model::effects::stribeck::{self, GAUSS};
-use crate::model::inverse::{Model, Part};
 
 /// What the load's motion tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,27 +113,31 @@ pub(super) fn told(
     let stiffness = stiffness.or_on_moving_rows(spring);
     let apart = where_the_load_moves(apart, smallest.velocity);
     let apart = apart.without_strikes(ways);
-    let turning = |counts: f64| {
-        let mut turning = ways.to_vec();
-        turning[place] = Way::Carried(Carried {
-            smallest_turn: counts * smallest.count,
+    let turned = |counts: f64| {
+        let smallest_turn = counts * smallest.count;
+        let turning = Carried {
+            smallest_turn,
             ..carried
-        });
-        let turning = stepped(&apart, turning, place);
-        near(&apart, &turning, place, stiffness)
+        };
+        stepped(&apart, slipping::instead(ways, place, turning), place)
     };
+    let turning = |counts: f64| near(&apart, &turned(counts), place, stiffness);
     let told = turning(SMALLEST_TURN)?;
     let mut others = OTHER_TURNS.into_iter();
     let told = others.try_fold(told, |told, counts| Some(told.beside(&turning(counts)?)))?;
-    // A lag that is the same at all velocities, where one that grows leaves as little.
-    let open = slipping::with_a_growing_lag(&apart, ways, place);
-    let open = open.and_then(|open| near(&apart, &open, place, stiffness));
-    let told = match open {
+    let open = with_a_lag_as_good(&apart, &turned(SMALLEST_TURN), place);
+    let told = match open.and_then(|open| near(&apart, &open, place, stiffness)) {
         Some(open) => told.beside(&open),
         None => told,
     };
     let told = told.within(TIMING * apart.motion.period_s).by_method();
     Some(told.slipping(slipping::elements(&apart, ways, place)))
+}
+
+/// The same ways with a lag that grows, where theirs does not and leaves no less.
+fn with_a_lag_as_good(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Way>> {
+    let growing = slipping::with_a_growing_lag(apart, ways, place)?;
+    (!slipping::is_better(apart, &growing, ways)).then_some(growing)
 }
 
 /// The same, judged where the load does not rest.
@@ -186,7 +189,8 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         excess: rise.times(coulomb).within_share(unlike),
         velocity: of_friction(friction.velocity, 2)?,
         lag: of_friction(friction.lag_s, LoadFriction::LAG),
-        lag_growth: of_friction(friction.lag_growth.into(), LoadFriction::LAG_GROWTH),
+        lag_growth: of_friction(friction.lag_growth.into(), LoadFriction::LAG_GROWTH)
+            .map(|growth| Known::new(growth.value.min(MOST_GROWTH), growth.half_width)),
         exponent: of_friction(friction.exponent, LoadFriction::EXPONENT),
         gap: gap(&linearised.others, &known[linearised.others_from()..]),
     })
@@ -201,15 +205,6 @@ impl ByTheLoad {
             .lag_growing(value(self.lag_growth, 0.0))
             .unwrap_or(form);
         (self.excess.value > 0.0).then_some(form)
-    }
-
-    /// Whether a model's friction falls by this law.
-    pub(crate) fn is_law_of(&self, model: &Model) -> bool {
-        let is_own = |part: &Part| {
-            let falls_as = |form: &dyn Effect| part.effect.fall() == form.fall();
-            part.parameter == self.velocity.value && self.form().is_some_and(falls_as)
-        };
-        model.parts.iter().any(is_own)
     }
 
     /// The same, with forces that are known in time to so much.

@@ -32,7 +32,7 @@ use super::known::Known;
 use super::load::{Carried, LoadMotion};
 use super::rubbing::Law;
 use super::spring::Spring;
-use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE};
+use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE, WRONG_IN_FORM};
 use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::{descend, smallest};
@@ -58,8 +58,9 @@ const MOST_OPEN: f64 = 0.8;
 /// itself in the statistical interval and less (2026-11-27; 2.1 % without noise of the effort). Why
 /// is not known.
 const APART: f64 = 0.04;
-/// A stiffness is not known from this half width on, as a share of it.
-const VAGUE: f64 = 0.5;
+/// A stiffness is not known from this half width on, as a share of it: half of it, once the report
+/// has made it wider.
+const VAGUE: f64 = 0.5 / WRONG_IN_FORM;
 /// Part of the motor's friction, and of what it does to the stiffness, that is open where friction
 /// has elements that slip.
 const OPEN_BY_ELEMENTS: f64 = 0.5;
@@ -96,8 +97,9 @@ impl Stiffness {
     /// The same, or what the rows in which the motor moves tell, where all rows do not know it: the
     /// bearings of a motor may turn over at once, and no bend of theirs is as short.
     pub(super) fn or_on_moving_rows(self, spring: Option<Spring>) -> Self {
-        let is_vague = self.known.half_width > VAGUE * self.known.value;
-        let Some(spring) = spring.filter(|_| is_vague) else {
+        let is_known = |known: Known| known.half_width < VAGUE * known.value;
+        let is_asked = !is_known(self.known);
+        let Some(spring) = spring.filter(|spring| is_asked && is_known(spring.stiffness)) else {
             return self;
         };
         let rubs = spring.motor_coulomb.value > spring.motor_coulomb.half_width;
@@ -118,7 +120,12 @@ impl Stiffness {
             return self.unrubbed;
         };
         let both = self.known.value + motor.coulomb.value / coulomb.value;
-        Known::new(1.0, self.unrubbed.half_width / self.unrubbed.value).of(both)
+        let both = Known::new(1.0, self.unrubbed.half_width / self.unrubbed.value).of(both);
+        // What moving rows tell is not of the rows that tell the whole.
+        match motor.deflection {
+            Some(_) => both,
+            None => both.beside(self.unrubbed),
+        }
     }
 
     /// What is not known of a friction of both sides whose motor's part is taken for the load's, as

@@ -74,7 +74,7 @@ pub(super) const ALIKE: f32 = 1.0;
 /// Range of an exponent that is searched.
 const EXPONENTS: (f64, f64) = (0.4, 2.5);
 /// Largest growth of a lag that is searched: that of a breakaway of five times the Coulomb level.
-const MOST_GROWTH: f32 = 4.0;
+pub(super) const MOST_GROWTH: f64 = 4.0;
 /// Range of a level forward that is searched.
 const FORWARD: (f64, f64) = (0.1, 1.9);
 
@@ -155,7 +155,7 @@ impl LoadFriction {
             rise: self.rise * rise,
             velocity: self.velocity * velocity,
             lag_s: self.lag_s * lag,
-            lag_growth: (self.lag_growth * growth as f32).min(MOST_GROWTH),
+            lag_growth: (f64::from(self.lag_growth) * growth).min(MOST_GROWTH) as f32,
             exponent: (self.exponent * exponent).clamp(EXPONENTS.0, EXPONENTS.1),
             forward: (f64::from(self.forward) * forward).clamp(FORWARD.0, FORWARD.1) as f32,
             law: self.law,
@@ -173,6 +173,7 @@ impl LoadFriction {
 
     /// The same with a lag that grows by so much, and is the same halfway down the fall.
     pub(super) fn lag_growing(self, growth: f64) -> Self {
+        let growth = growth.min(MOST_GROWTH);
         let halfway = |growth: f64| 1.0 + 0.5 * growth;
         Self {
             lag_s: self.lag_s * halfway(self.lag_growth.into()) / halfway(growth),

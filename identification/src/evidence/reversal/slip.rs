@@ -51,9 +51,14 @@ impl Fall {
         }
     }
 
+    /// The level at rest, in Coulomb levels.
+    pub(crate) const fn at_rest(self) -> f64 {
+        1.0 + self.rise
+    }
+
     /// Of a model as it was fitted; without a Stribeck fall the level is the same at all
     /// velocities.
-    pub(super) fn of(fitted: &Fitted) -> Self {
+    pub(crate) fn of(fitted: &Fitted) -> Self {
         let first = |name| fitted.of(name).and_then(<[f64]>::first).copied();
         let coulomb = first(EffectName::Coulomb).filter(|level| *level > 0.0);
         let mut terms = fitted.terms();
