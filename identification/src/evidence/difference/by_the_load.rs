@@ -121,12 +121,13 @@ pub(super) fn told(
         };
         stepped(&apart, slipping::instead(ways, place, turning), place)
     };
-    let turning = |counts: f64| near(&apart, &turned(counts), place, stiffness);
-    let told = turning(SMALLEST_TURN)?;
-    let mut others = OTHER_TURNS.into_iter();
-    let told = others.try_fold(told, |told, counts| Some(told.beside(&turning(counts)?)))?;
-    let open = with_a_lag_as_good(&apart, &turned(SMALLEST_TURN), place);
-    let told = match open.and_then(|open| near(&apart, &open, place, stiffness)) {
+    let near = |ways: &[Way]| near(&apart, ways, place, stiffness);
+    let own = turned(SMALLEST_TURN);
+    let told = near(&own)?;
+    let mut others = OTHER_TURNS.into_iter().map(turned);
+    let told = others.try_fold(told, |told, other| Some(told.beside(&near(&other)?)))?;
+    let open = with_a_lag_as_good(&apart, &own, place);
+    let told = match open.and_then(|open| near(&open)) {
         Some(open) => told.beside(&open),
         None => told,
     };
