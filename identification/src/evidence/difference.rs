@@ -13,6 +13,7 @@
 //! crosses it ([`crate::simulate::load`]). A gap beside wind-up is judged by the motor's balance of
 //! forces ([`flanks`]), because motor − load alone shows a spring that is too soft as well.
 
+mod beside;
 mod between_rows;
 mod by_the_load;
 mod carried;

@@ -38,12 +38,23 @@ impl Steps {
         self.steps.len()
     }
 
-    /// A state at the rows that goes on by step and velocity of each part.
-    pub(super) fn followed(&self, mut on: impl FnMut(f64, f64) -> f64) -> Vec<f64> {
-        let mut state = 0.0;
-        let rows = self.steps.iter().map(|steps| {
-            for step in steps {
-                state = on(*step, step / self.part_s);
+    /// Velocity in each part of each row.
+    pub(super) fn velocities(&self) -> impl Iterator<Item = f64> {
+        let steps = self.steps.iter().flatten();
+        steps.map(|step| step / self.part_s)
+    }
+
+    /// A state at the rows that goes on by the step of each part and a value that belongs to it.
+    pub(super) fn followed<T: Copy + Default>(
+        &self,
+        by_part: &[f64],
+        mut on: impl FnMut(f64, f64) -> T,
+    ) -> Vec<T> {
+        let mut state = T::default();
+        let rows = self.steps.iter().zip(by_part.as_chunks::<PARTS>().0);
+        let rows = rows.map(|(steps, values)| {
+            for (step, value) in steps.iter().zip(values) {
+                state = on(*step, *value);
             }
             state
         });
@@ -146,7 +157,8 @@ mod tests {
         }
         // A state that adds up all steps is the path itself.
         let mut sum = 0.0;
-        let summed = steps.followed(|step, velocity| {
+        let velocities: Vec<f64> = steps.velocities().collect();
+        let summed = steps.followed(&velocities, |step, velocity| {
             assert!((velocity * PERIOD_S - step * PARTS as f64).abs() < 1.0e-12);
             sum += step;
             sum

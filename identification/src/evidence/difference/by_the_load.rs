@@ -11,6 +11,7 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
+use super::beside::Beside;
 use super::columns::{Apart, Way};
 use super::known::Known;
 use super::linearised::Linearised;
@@ -153,7 +154,8 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
     let Some(Way::Carried(carried)) = ways.get(place) else {
         return None;
     };
-    let linearised = Linearised::of(apart, ways, place)?;
+    let beside = Beside::of(apart, ways, place)?;
+    let linearised = Linearised::about(&beside, &beside.as_it_was());
     let known = linearised.known();
     let friction = linearised.friction();
     let searched = friction.searched();
@@ -193,7 +195,7 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         lag_growth: of_friction(friction.lag_growth.into(), LoadFriction::LAG_GROWTH)
             .map(|growth| Known::new(growth.value.min(MOST_GROWTH), growth.half_width)),
         exponent: of_friction(friction.exponent, LoadFriction::EXPONENT),
-        gap: gap(&linearised.others, &known[linearised.others_from()..]),
+        gap: gap(linearised.others(), &known[linearised.others_from()..]),
     })
 }
 

@@ -241,7 +241,8 @@ pub(super) mod tests {
         let load = two_sines(6000);
         let of = |x: &[f64]| Derivatives::new(x, 1.0e-3, EffortHold::Instant);
         let moved = of(&load);
-        let bend = friction.bend(&Steps::of(&load, &moved.velocity, 1.0e-3));
+        let steps = Steps::of(&load, &moved.velocity, 1.0e-3);
+        let bend = friction.bend(&steps, &friction.fall(&steps));
         let force = |row: usize| {
             let rubs = of_velocity(moved.velocity[row]) + 25.0 * bend[row];
             60.0 * moved.acceleration[row] + rubs
@@ -251,7 +252,8 @@ pub(super) mod tests {
         let apart = wound.zip(&bend).map(|(wound, bend)| wound + more(*bend));
         let at: Vec<f64> = load.iter().zip(apart).map(|(x, apart)| x + apart).collect();
         let pushed = of(&at);
-        let own = motor.bend(&Steps::of(&at, &pushed.velocity, 1.0e-3));
+        let steps = Steps::of(&at, &pushed.velocity, 1.0e-3);
+        let own = motor.bend(&steps, &motor.fall(&steps));
         let noise = |row: usize| 4.0 * (1.7 * (row * row % 1013) as f64).sin();
         let effort = force.iter().enumerate().map(|(row, force)| {
             let own = motor_coulomb * own[row] + of_size * pushed.velocity[row].abs();

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use axis_model::EffectName;
 
 use super::edges::Flanks;
-use super::load::Carried;
+use super::load::{Carried, weighted};
 use crate::fit::blocks::{Blocks, Fit};
 use crate::model::name::Called;
 use crate::motion::bodies::minus;
@@ -331,12 +331,7 @@ impl<'a> Apart<'a> {
 
     /// What a way with such coefficients makes of motor − load.
     pub(crate) fn predicted(&self, way: Way, own: &[f64]) -> Vec<f64> {
-        let mut predicted = vec![0.0; self.target.len()];
-        for (column, coefficient) in self.columns(way).iter().zip(own) {
-            let pairs = predicted.iter_mut().zip(column);
-            pairs.for_each(|(sum, value)| *sum += coefficient * value);
-        }
-        predicted
+        weighted(&self.columns(way), own.iter().copied())
     }
 
     /// What fitted ways leave of each sample.

@@ -69,13 +69,43 @@ impl LoadMotion {
 
     /// The bend and its rate, low-passed.
     pub(super) fn rubbed(&self, motion: &Kinematics, friction: LoadFriction) -> Vec<Vec<f64>> {
-        let of_piece = |steps: &Steps| {
-            let bend = friction.bend(steps);
-            let rate = slope(&bend, motion.period_s);
-            (bend, rate)
+        with_rate(motion, &self.bent(friction, &self.fallen(friction)))
+    }
+
+    /// By how much bend and rate differ between two frictions, low-passed; with the fall of a third
+    /// one, which is theirs where they fall as it does.
+    pub(super) fn rubbed_apart(
+        &self,
+        motion: &Kinematics,
+        [up, down]: [LoadFriction; 2],
+        usual: &Fallen,
+    ) -> Vec<Vec<f64>> {
+        let bent = |friction: LoadFriction| {
+            if friction.falls_as(usual.friction) {
+                return self.bent(friction, usual);
+            }
+            self.bent(friction, &self.fallen(friction))
         };
-        let (bend, rate): (Vec<_>, Vec<_>) = self.steps.iter().map(of_piece).unzip();
-        motion.all_low_passed(&[bend.concat(), rate.concat()])
+        let pairs = bent(up).into_iter().zip(bent(down));
+        let apart = pairs.map(|(up, down)| minus(&up, &down));
+        with_rate(motion, &apart.collect::<Vec<_>>())
+    }
+
+    /// The fall of a friction.
+    pub(super) fn fallen(&self, friction: LoadFriction) -> Fallen {
+        let pieces = self.steps.iter();
+        Fallen {
+            friction,
+            by_piece: pieces.map(|steps| friction.fall(steps)).collect(),
+        }
+    }
+
+    /// The bend, piece by piece.
+    fn bent(&self, friction: LoadFriction, fallen: &Fallen) -> Vec<Vec<f64>> {
+        let pieces = self.steps.iter().zip(&fallen.by_piece);
+        pieces
+            .map(|(steps, fall)| friction.bend(steps, fall))
+            .collect()
     }
 
     /// The bend of each element of a grid, under the level of a friction, low-passed.
@@ -99,6 +129,30 @@ impl LoadMotion {
     pub(super) fn plain(&self) -> [Vec<f64>; 3] {
         [&self.acceleration, &self.velocity, &self.rate].map(Clone::clone)
     }
+}
+
+/// The fall of a friction's level along a path, piece by piece: it takes most of the time of a
+/// bend, and few of a friction's parameters change it.
+pub(super) struct Fallen {
+    friction: LoadFriction,
+    by_piece: Vec<Vec<f64>>,
+}
+
+/// A bend and its rate, low-passed.
+fn with_rate(motion: &Kinematics, by_piece: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let rates = by_piece.iter().map(|bend| slope(bend, motion.period_s));
+    let rates: Vec<Vec<f64>> = rates.collect();
+    motion.all_low_passed(&[by_piece.concat(), rates.concat()])
+}
+
+/// The sum of columns, each times a coefficient.
+pub(super) fn weighted(columns: &[Vec<f64>], by: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (column, coefficient) in columns.iter().zip(by) {
+        let pairs = sum.iter_mut().zip(column);
+        pairs.for_each(|(sum, value)| *sum += coefficient * value);
+    }
+    sum
 }
 
 /// A derivative of a signal, piece by piece and low-passed.
@@ -210,9 +264,31 @@ impl Carried {
         apart: &[f64],
     ) -> Vec<Vec<f64>> {
         let load = self.load(motion, position, apart);
-        let rubbed = load.rubbed(motion, self.friction);
-        let more = self.more.columns(motion, &load, &rubbed[0]);
-        load.plain().into_iter().chain(rubbed).chain(more).collect()
+        let rubbed = self.rubbed(motion, &load);
+        load.plain().into_iter().chain(rubbed).collect()
+    }
+
+    /// Its columns without those that do not depend on its friction's parameters.
+    pub(super) fn rubbed(self, motion: &Kinematics, load: &LoadMotion) -> Vec<Vec<f64>> {
+        let mut rubbed = load.rubbed(motion, self.friction);
+        let more = self.more.columns(motion, load, &rubbed[0]);
+        rubbed.extend(more);
+        rubbed
+    }
+
+    /// What changes with a bend and its rate, which are low-passed and change by so much; with the
+    /// coefficients of its columns.
+    pub(super) fn changed(
+        self,
+        motion: &Kinematics,
+        mut rubbed: Vec<Vec<f64>>,
+        own: &[f64],
+    ) -> Vec<f64> {
+        let along = self.more.along(motion, &rubbed[0]);
+        rubbed.extend(along);
+        let with_bend = [Self::FRICTION, Self::BENDING].into_iter();
+        let places = with_bend.chain(self.more.along_from()..);
+        weighted(&rubbed, places.map(|place| own[place]))
     }
 
     /// Columns of a friction of the motor's own side, low-passed. It follows the law of the load's,
@@ -320,19 +396,30 @@ impl More {
         if self.by_direction {
             columns.push(load.velocity.iter().map(|v| v.abs()).collect());
         }
-        if self.over_position {
-            let (low, high) = motion.span();
-            let place = |x: &f64| 2.0 * (x - low) / (high - low) - 1.0;
-            let along = |power: i32| {
-                let rows = bend.iter().zip(&motion.position_lp);
-                rows.map(|(bend, x)| bend * place(x).powi(power)).collect()
-            };
-            columns.extend([along(1), along(2)]);
-        }
+        columns.extend(self.along(motion, bend));
         if self.squared {
             columns.push(load.velocity.iter().map(|v| v * v.abs()).collect());
         }
         columns
+    }
+
+    /// Those of them that go with a bend.
+    fn along(self, motion: &Kinematics, bend: &[f64]) -> Vec<Vec<f64>> {
+        if !self.over_position {
+            return Vec::new();
+        }
+        let (low, high) = motion.span();
+        let place = |x: &f64| 2.0 * (x - low) / (high - low) - 1.0;
+        let along = |power: i32| {
+            let rows = bend.iter().zip(&motion.position_lp);
+            rows.map(|(bend, x)| bend * place(x).powi(power)).collect()
+        };
+        vec![along(1), along(2)]
+    }
+
+    /// Place of the first of these in the columns of [`Carried::columns`].
+    const fn along_from(self) -> usize {
+        Carried::BENDING + 1 + self.by_direction as usize
     }
 }
 
@@ -372,7 +459,8 @@ mod tests {
         let path: Vec<f64> = there.iter().copied().chain(back).collect();
         let bend = |period_s: f64| {
             let velocity = slope(&path, period_s);
-            FRICTION.bend(&Steps::of(&path, &velocity, period_s))
+            let steps = Steps::of(&path, &velocity, period_s);
+            FRICTION.bend(&steps, &FRICTION.fall(&steps))
         };
         let (slow, fast) = (bend(1.0), bend(1.0e-6));
         assert!((slow[399] - 1.4).abs() < 1.0e-4 && (fast[399] - 1.0).abs() < 1.0e-4);

@@ -3,6 +3,7 @@
 
 use axis_model::EffectName;
 
+use super::beside::Beside;
 use super::columns::{Apart, Way};
 use super::linearised::Linearised;
 use super::load::Carried;
@@ -46,24 +47,24 @@ pub(super) fn between_refined_flanks(apart: &Apart<'_>, mut ways: Vec<Way>) -> V
 /// The same ways with the bristle that leaves least (Gauss and Newton): a descent of one parameter
 /// after the other ends early where rise and velocity go together.
 pub(super) fn stepped(apart: &Apart<'_>, mut ways: Vec<Way>, place: usize) -> Vec<Way> {
-    let apart = &apart.where_known(&ways);
-    let left = |ways: &[Way]| apart.blocks(ways).fit().sse;
-    let mut before = left(&ways);
+    let Some(beside) = Beside::of(&apart.where_known(&ways), &ways, place) else {
+        return ways;
+    };
+    let mut best = beside.as_it_was();
     for _ in 0..MOST_STEPS {
-        let Some(moved) = Linearised::of(apart, &ways, place).and_then(|near| near.step()) else {
+        let Some(moved) = Linearised::about(&beside, &best).step() else {
             break;
         };
-        let mut changed = ways.clone();
-        changed[place] = Way::Carried(moved);
-        let after = left(&changed);
-        if after >= before {
+        let moved = beside.with(moved);
+        if moved.left >= best.left {
             break;
         }
-        let is_settled = after > SETTLED * before;
-        (ways, before) = (changed, after);
+        let is_settled = moved.left > SETTLED * best.left;
+        best = moved;
         if is_settled {
             break;
         }
     }
+    ways[place] = Way::Carried(best.carried);
     ways
 }

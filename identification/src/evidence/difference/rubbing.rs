@@ -22,6 +22,9 @@ use crate::simulate::friction::bend_after;
 /// Most elements.
 const ELEMENTS: usize = 15;
 
+/// Elements that go along a path beside each other.
+const LANES: usize = 8;
+
 /// An element with a smaller share of the level is none: a share of a two-thousandth that slips
 /// after a twentieth of the others' ways would make a hundredth of the stiffness.
 const SMALLEST_SHARE: f64 = 5.0e-3;
@@ -98,15 +101,16 @@ impl Left {
         }
     }
 
-    /// Levels amid a part of a row at a velocity and at its end, in Coulomb levels; goes on there.
-    fn levels(&mut self, velocity: f64) -> [f64; 2] {
+    /// Levels amid a part of a row and at its end, in Coulomb levels, where so much of the rise is
+    /// left in the end; goes on there.
+    fn levels(&mut self, end: f64) -> [f64; 2] {
         let LoadFriction {
             lag_s,
             lag_growth,
             rise,
             ..
         } = self.friction;
-        let (before, end) = (self.state, self.friction.left(velocity));
+        let before = self.state;
         let kept = if lag_growth > 0.0 {
             kept(self.part_s, lag_s * (1.0 + f64::from(lag_growth) * end))
         } else {
@@ -228,31 +232,39 @@ impl LoadFriction {
             .collect()
     }
 
-    /// What is left of the rise at a velocity in the end.
-    fn left(self, velocity: f64) -> f64 {
-        stribeck::left(velocity / self.velocity, self.exponent)
+    /// What is left of the rise in the end, in each part of each row of a path.
+    pub(super) fn fall(self, path: &Steps) -> Vec<f64> {
+        let left = |velocity: f64| stribeck::left(velocity / self.velocity, self.exponent);
+        path.velocities().map(left).collect()
     }
 
-    /// The bend along a path, in Coulomb levels.
-    pub(super) fn bend(self, path: &Steps) -> Vec<f64> {
+    /// Whether another one falls as this does, lag and rise apart.
+    pub(super) fn falls_as(self, other: Self) -> bool {
+        self.velocity == other.velocity && self.exponent == other.exponent
+    }
+
+    /// The bend along a path with its fall, in Coulomb levels.
+    pub(super) fn bend(self, path: &Steps, fall: &[f64]) -> Vec<f64> {
         if self.law == Law::Dahl {
-            return self.bristle(path);
+            return self.bristle(path, fall);
         }
         let mut sum = vec![0.0; path.len()];
-        let levels = self.levels(path);
-        for (at, share) in self.elements() {
-            let own = self.element(path, &levels, at);
-            sum.iter_mut()
-                .zip(own)
-                .for_each(|(sum, own)| *sum += share * own);
+        let levels = self.levels(path, fall);
+        for elements in self.elements().chunks(LANES) {
+            let at = elements.iter().map(|(at, _)| *at);
+            let bends = self.side_by_side(path, &levels, at);
+            for (sum, bends) in sum.iter_mut().zip(bends) {
+                let forces = elements.iter().zip(bends);
+                *sum += forces.map(|((_, share), bend)| share * bend).sum::<f64>();
+            }
         }
         sum
     }
 
-    fn bristle(self, path: &Steps) -> Vec<f64> {
+    fn bristle(self, path: &Steps, fall: &[f64]) -> Vec<f64> {
         let (mut bend, mut left) = (0.0_f64, Left::along(self, path));
-        path.followed(|step, velocity| {
-            let [level, _] = left.levels(velocity);
+        path.followed(fall, |step, end| {
+            let [level, _] = left.levels(end);
             let level = level * self.towards(step);
             if step != 0.0 {
                 bend = level * bend_after(bend / level, step, self.deflection * level);
@@ -263,36 +275,55 @@ impl LoadFriction {
 
     /// Bends of elements that slip after such ways, in Coulomb levels.
     pub(super) fn bends(self, path: &Steps, at: &[f64]) -> Vec<Vec<f64>> {
-        let levels = self.levels(path);
-        at.iter()
-            .map(|at| self.element(path, &levels, *at))
-            .collect()
+        let levels = self.levels(path, &self.fall(path));
+        let of_some = |at: &[f64]| {
+            let bends = self.side_by_side(path, &levels, at.iter().copied());
+            let lane = |lane: usize| bends.iter().map(|bends| bends[lane]).collect();
+            (0..at.len()).map(lane).collect::<Vec<_>>()
+        };
+        at.chunks(LANES).flat_map(of_some).collect()
     }
 
     /// Levels at the end of each part of each row, in Coulomb levels: they are the same for all
-    /// elements, and take most of the time.
-    fn levels(self, path: &Steps) -> Vec<f64> {
-        let (mut levels, mut left) = (Vec::new(), Left::along(self, path));
-        path.followed(|_, velocity| {
-            let [_, level] = left.levels(velocity);
-            levels.push(level);
-            level
-        });
-        levels
+    /// elements.
+    fn levels(self, path: &Steps, fall: &[f64]) -> Vec<f64> {
+        let mut left = Left::along(self, path);
+        let levels = fall.iter().map(|end| left.levels(*end)[1]);
+        levels.collect()
     }
 
-    /// Bend of one element that slips after a way under such levels, in Coulomb levels.
-    fn element(self, path: &Steps, levels: &[f64], at: f64) -> Vec<f64> {
+    /// Bends of at most [`LANES`] elements that slip after such ways under such levels, in Coulomb
+    /// levels; zero where there are fewer. Each bend waits for the one before it, so they go along
+    /// the path beside each other.
+    fn side_by_side(
+        self,
+        path: &Steps,
+        levels: &[f64],
+        at: impl Iterator<Item = f64>,
+    ) -> Vec<[f64; LANES]> {
         let [up, down] = [1.0, -1.0].map(|step| self.towards(step));
-        let (mut bend, mut levels) = (0.0_f64, levels.iter());
-        path.followed(|step, _| {
-            let level = levels.next().copied().unwrap_or(1.0);
+        let (mut bends, mut per_way) = ([0.0; LANES], [0.0; LANES]);
+        per_way
+            .iter_mut()
+            .zip(at)
+            .for_each(|(per_way, at)| *per_way = 1.0 / at);
+        path.followed(levels, |step, level| {
             if step != 0.0 {
-                bend = (bend + step / at).clamp(-level * down, level * up);
+                let (low, high) = (-level * down, level * up);
+                for (bend, per_way) in bends.iter_mut().zip(&per_way) {
+                    *bend = within(*bend + step * per_way, [low, high]);
+                }
             }
-            bend
+            bends
         })
     }
+}
+
+/// A value within limits, without a branch.
+#[inline]
+fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
+    let value = if value < low { low } else { value };
+    if value > high { high } else { value }
 }
 
 #[cfg(test)]
@@ -309,6 +340,10 @@ mod tests {
         forward: ALIKE,
         law: Law::Dahl,
     };
+
+    fn along(friction: LoadFriction, path: &Steps) -> Vec<f64> {
+        friction.bend(path, &friction.fall(path))
+    }
 
     #[test]
     fn elements_have_the_stiffness_of_all_and_shares_of_one() {
@@ -341,7 +376,7 @@ mod tests {
         };
         // Much faster than the level falls: the bristle is bent to it all the time.
         let path: Vec<f64> = (0..=40).map(|row| 1.0e3 * f64::from(row)).collect();
-        let bend = lagging.bend(&Steps::of(&path, &vec![1.0e3; path.len()], 1.0));
+        let bend = along(lagging, &Steps::of(&path, &vec![1.0e3; path.len()], 1.0));
         for row in [20, 40] {
             // Amid the last of four parts.
             let wanted = 1.0 + 0.5 * (-(row as f64 - 0.125) / 20.0).exp();
@@ -355,7 +390,7 @@ mod tests {
         let there: Vec<f64> = (0..=10).map(f64::from).collect();
         let back = there.iter().rev().skip(1).copied();
         let path: Vec<f64> = there.iter().copied().chain(back).collect();
-        let bend = slipping.bend(&Steps::of(&path, &vec![0.0; path.len()], 1.0));
+        let bend = along(slipping, &Steps::of(&path, &vec![0.0; path.len()], 1.0));
         let near = |row: usize, wanted: f64| {
             assert!((bend[row] - wanted).abs() < 1.0e-6, "{row}: {}", bend[row]);
         };

@@ -4,14 +4,15 @@
 //! linear. Level and scale of the grid follow by steps of Gauss and Newton, in turn with it, and
 //! the grid becomes finer about the elements that have a share.
 
+use super::beside::Beside;
 use super::columns::{Apart, Way};
 use super::is_clear;
-use super::linearised::Linearised;
+use super::linearised;
 use super::load::Carried;
 use super::refined::{between_refined_flanks, stepped};
 use super::rubbing::{ALIKE, LoadFriction};
 use crate::evidence::reversal::slip::{Elements, grid_about};
-use crate::fit::blocks::{Blocks, Gain};
+use crate::fit::blocks::Gain;
 use crate::model::effects::geometric;
 use crate::model::effects::stribeck::GAUSS;
 
@@ -261,11 +262,12 @@ fn with_elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<Vec<Wa
     let mut grid = geometric(FROM * about, TO * about, GRID);
     for ratio in RATIOS {
         let own = carried(&changed, place)?;
-        let (blocks, free) = blocks(apart, &changed, place, &grid)?;
+        let beside = Beside::of(&apart.where_known(&changed), &changed, place)?;
+        let (free, blocks) = beside.slipped(&grid);
         let parts = blocks.non_negative_beside(free);
         let friction = own.friction.slipping(&grid, &parts)?;
         changed = instead(&changed, place, Carried { friction, ..own });
-        let moved = Linearised::of(&apart.where_known(&changed), &changed, place)?.step();
+        let moved = linearised::step(&apart.where_known(&changed), &changed, place);
         let moved = moved.unwrap_or(Carried { friction, ..own });
         changed = instead(&changed, place, moved);
         grid = grid_about(&moved.friction.elements(), ratio);
@@ -280,23 +282,9 @@ pub(super) fn elements(apart: &Apart<'_>, ways: &[Way], place: usize) -> Option<
         return None;
     }
     let grid = grid_about(&own, FINEST);
-    let (blocks, free) = blocks(apart, ways, place, &grid)?;
+    let beside = Beside::of(&apart.where_known(ways), ways, place)?;
+    let (free, blocks) = beside.slipped(&grid);
     Elements::of(&grid, &blocks.non_negative_beside_without_folds(free), &own)
-}
-
-/// Gram matrices of all that is free beside the elements of a grid, then of these; and how many
-/// columns are free.
-fn blocks(apart: &Apart<'_>, ways: &[Way], place: usize, grid: &[f64]) -> Option<(Blocks, usize)> {
-    let carried = carried(ways, place)?;
-    let mut design = apart.columns(Way::Carried(carried));
-    design.remove(Carried::FRICTION);
-    let others = ways.iter().enumerate().filter(|(other, _)| *other != place);
-    design.extend(others.flat_map(|(_, way)| apart.columns(*way)));
-    let free = design.len();
-    let load = carried.load(apart.motion, apart.path.position, apart.raw);
-    design.extend(load.slipped(apart.motion, carried.friction, grid));
-    let apart = apart.where_known(ways);
-    Some((apart.blocks_of(&design, &apart.target), free))
 }
 
 #[cfg(test)]
