@@ -61,6 +61,12 @@ impl Blocks {
         Self::of(rows.grams_with(more), rows.width() + more.len())
     }
 
+    /// Blocks of rows with another target.
+    #[must_use]
+    pub(crate) fn toward(rows: &Rows, target: &[f64]) -> Self {
+        Self::of(rows.grams_toward(target), rows.width())
+    }
+
     /// Blocks by the Gram matrices of so many columns, the target's last.
     fn of(mut grams: Vec<DMatrix<f64>>, size: usize) -> Self {
         grams.retain(|gram| gram[(size - 1, size - 1)] > 0.0);

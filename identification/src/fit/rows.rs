@@ -89,6 +89,25 @@ impl Rows {
             })
             .collect()
     }
+
+    /// Gram matrices of the columns and another target, one per block.
+    #[must_use]
+    pub(crate) fn grams_toward(&self, target: &[f64]) -> Vec<DMatrix<f64>> {
+        let last = self.columns.len() - 1;
+        let target = gathered(&[target], &self.places);
+        let pairs = self.blocks.iter().zip(&self.grams);
+        pairs
+            .map(|(block, gram)| {
+                let beside = products(&target, &self.columns[..last], block, self.weight);
+                let own = products(&target, &target, block, self.weight);
+                DMatrix::from_fn(last + 1, last + 1, |i, j| match (i == last, j == last) {
+                    (false, false) => gram[(i, j)],
+                    (true, true) => own[(0, 0)],
+                    _ => beside[(0, i.min(j))],
+                })
+            })
+            .collect()
+    }
 }
 
 /// The rows that are fitted, of those in a row one of so many, and which are those of each block.
@@ -157,6 +176,8 @@ mod tests {
         let mask: Vec<bool> = (0..3000).map(|row| row % 7 != 0).collect();
         let all = Rows::new(&[&a, &b, &c], &target, &mask, 1.0e-3);
         let some = Rows::new(&[&a], &target, &mask, 1.0e-3);
+        let astray = Rows::new(&[&a, &b, &c], &a, &mask, 1.0e-3);
+        assert_eq!(astray.grams_toward(&target), all.grams());
         assert_eq!(some.grams_with(&[b, c]), all.grams());
         assert_eq!(some.grams_with(&[]), some.grams());
         // By hand: the first block without 20 rows at each end.

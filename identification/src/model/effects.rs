@@ -38,7 +38,7 @@ pub(crate) mod torque_constant_ripple;
 pub(crate) mod torque_ripple;
 pub(crate) mod torque_saturation;
 pub(crate) mod trend;
-mod turning;
+pub(crate) mod turning;
 pub(crate) mod viscous;
 pub(crate) mod viscous_asymmetry;
 pub(crate) mod wave;

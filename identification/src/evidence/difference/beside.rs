@@ -46,14 +46,11 @@ impl<'a> Beside<'a> {
         others.remove(place);
         let load = carried.load(apart.motion, apart.path.position, apart.raw);
         let columns = load.plain().into_iter().chain(apart.design(&others));
-        let columns: Vec<Vec<f64>> = columns.collect();
-        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let (target, mask) = (&apart.target, &apart.mask);
         Some(Self {
             motion: apart.motion,
             carried,
             load,
-            rows: Rows::new(&columns, target, mask, apart.motion.period_s),
+            rows: apart.rows_of(&columns.collect::<Vec<_>>()),
             others,
         })
     }

@@ -19,7 +19,6 @@ use super::refined::{between_refined_flanks, stepped};
 use super::rubbing::{ALIKE, Law, LoadFriction};
 use super::slipping::by_another_law;
 use crate::fit::blocks::{Blocks, Gain};
-use crate::fit::rows::Rows;
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
 use crate::model::effects::geometric;
@@ -52,10 +51,7 @@ fn best(apart: &Apart<'_>, others: &[Way], unit: f64) -> Carried {
     let flanks = others.iter().find_map(is_flanks);
     let load = LoadMotion::of(apart.motion, apart.path.position, apart.raw, flanks, 0.0);
     let design = apart.design(others).into_iter().chain(load.plain());
-    let design: Vec<Vec<f64>> = design.collect();
-    let columns: Vec<&[f64]> = design.iter().map(Vec::as_slice).collect();
-    let (target, mask) = (&apart.target, &apart.mask);
-    let rows = Rows::new(&columns, target, mask, apart.motion.period_s);
+    let rows = apart.rows_of(&design.collect::<Vec<_>>());
     let left = |friction: LoadFriction| {
         let rubbed = load.rubbed(apart.motion, friction);
         Blocks::with(&rows, &rubbed).fit().sse

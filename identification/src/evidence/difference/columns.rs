@@ -21,6 +21,7 @@ use axis_model::EffectName;
 use super::edges::Flanks;
 use super::load::{Carried, weighted};
 use crate::fit::blocks::{Blocks, Fit};
+use crate::fit::rows::Rows;
 use crate::model::name::Called;
 use crate::motion::bodies::minus;
 use crate::motion::kinematics::Kinematics;
@@ -314,6 +315,12 @@ impl<'a> Apart<'a> {
     pub(super) fn blocks_of(&self, columns: &[Vec<f64>], target: &[f64]) -> Blocks {
         let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         Blocks::new(&columns, target, &self.mask, self.motion.period_s)
+    }
+
+    /// Any columns at the samples that are judged.
+    pub(super) fn rows_of(&self, columns: &[Vec<f64>]) -> Rows {
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        Rows::new(&columns, &self.target, &self.mask, self.motion.period_s)
     }
 
     /// Errors on blocks that were held out of the fit.

@@ -6,11 +6,14 @@ use super::columns::{Apart, FittedWays, Way};
 use crate::evidence::few_periods::degree_beside;
 use crate::evidence::selection::is_certain;
 use crate::evidence::thresholds::{DIFFERENCE_SHARE, FEWEST_COUNTS};
-use crate::fit::blocks::Gain;
+use crate::fit::blocks::{Blocks, Gain};
 use crate::fit::plain::Plain;
+use crate::fit::rows::Rows;
 use crate::fit::search::{descend, smallest};
-use crate::model::effects::wave::{self, Weight};
+use crate::model::effects::turning::strongest;
+use crate::model::effects::wave;
 use crate::model::effects::{geometric, polynomial};
+use crate::motion::bodies::minus;
 use crate::simulate::load::Behind;
 
 /// Widths that are tried, between the smallest that counts and a hundred times that, or a
@@ -49,7 +52,8 @@ impl Trial {
 pub(crate) fn best_gap(apart: &Apart<'_>, ways: &[Way], count: f64) -> Way {
     let narrowest = FEWEST_COUNTS * count;
     let plain = Plain::fit(apart.motion);
-    let sse = |trial: Trial| left_by(apart, ways, trial.behind(&plain));
+    let rows = apart.rows_of(&apart.design(ways));
+    let sse = |trial: Trial| left_by(apart, &rows, trial.behind(&plain));
     let mut best = Trial {
         gap: narrowest,
         share: SHARES[2],
@@ -116,16 +120,13 @@ fn improved(
     best
 }
 
-/// Sum of squares beside a gap. A gap is as wide as it is: its lag is subtracted, not scaled.
-fn left_by(apart: &Apart<'_>, ways: &[Way], behind: Behind) -> f64 {
+/// Sum of squares beside a gap, of the rows of other ways. A gap is as wide as it is: its lag is
+/// subtracted, not scaled.
+fn left_by(apart: &Apart<'_>, others: &Rows, behind: Behind) -> f64 {
     let lag = apart.columns(Way::Play(behind)).concat();
-    let pairs = apart.target.iter().zip(lag);
-    let without = Apart {
-        target: pairs.map(|(target, lag)| target - lag).collect(),
-        mask: apart.mask.clone(),
-        ..*apart
-    };
-    without.blocks(ways).fit().sse
+    Blocks::toward(others, &minus(&apart.target, &lag))
+        .fit()
+        .sse
 }
 
 /// Every so many samples are scanned for a pitch error.
@@ -149,10 +150,9 @@ pub(crate) fn best_pitch(apart: &Apart<'_>, fitted: &FittedWays) -> Option<Way> 
     let samples: Vec<(f64, f64)> = inside
         .map(|row| (apart.path.position[row], residual[row]))
         .collect();
-    let coarse = half_periods(high - low).map(|i| step * i as f64);
-    let best = strongest(&samples, coarse)?;
-    let fine = (-8..=8).map(|i| best + step / 8.0 * f64::from(i));
-    let per_length = strongest(&samples, fine)?;
+    let scanned = half_periods(high - low);
+    let best = strongest(&samples, step * scanned.start as f64, step, scanned.len())?;
+    let per_length = strongest(&samples, best - step, step / 8.0, 17)?;
     Some(Way::Pitch { per_length })
 }
 
@@ -191,19 +191,6 @@ fn smooth(apart: &Apart<'_>, degree: usize) -> Vec<Vec<f64>> {
 fn half_periods(travel: f64) -> Range<usize> {
     let most = ((HALF_PERIODS_PER_LENGTH * travel) as usize).min(MOST_HALF_PERIODS);
     FEWEST_HALF_PERIODS..most.max(FEWEST_HALF_PERIODS + 1)
-}
-
-/// The wave number with the largest amplitude in samples over position.
-fn strongest(samples: &[(f64, f64)], wave_numbers: impl Iterator<Item = f64>) -> Option<f64> {
-    let amplitude = |k: f64| {
-        let (re, im) = samples.iter().fold((0.0, 0.0), |(re, im), (x, left)| {
-            let [cos, sin] = Weight::PLAIN.at(k, *x);
-            (re + cos * left, im + sin * left)
-        });
-        re.hypot(im)
-    };
-    let all = wave_numbers.map(|k| (amplitude(k), k));
-    all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
 }
 
 #[cfg(test)]
@@ -274,7 +261,8 @@ mod tests {
         let position = axis(usual).dataset.train.position;
         let axis = apart_by(behind(20.0e-6).follow(&position, 1.0e-3));
         let apart = apart(&axis);
-        let left = |gap: f64| left_by(&apart, &[Way::Constant], behind(gap));
+        let others = apart.rows_of(&apart.design(&[Way::Constant]));
+        let left = |gap: f64| left_by(&apart, &others, behind(gap));
         let all = apart.blocks(&[Way::Constant]).fit().sse;
         assert!(left(20.0e-6) < 1.0e-9 * all);
         // Half the width leaves about a quarter of the squares, twice the width all of them.
@@ -324,22 +312,6 @@ mod tests {
         assert_eq!(half_periods(0.5), 8..2000);
         assert_eq!(half_periods(2.0), 8..4000);
         assert_eq!(half_periods(1.0e-3), 8..9);
-    }
-
-    #[test]
-    fn the_strongest_wave_is_found_whatever_its_phase() {
-        for phase in [0.0, 0.4, 1.6, 3.0] {
-            let wave = |x: f64| {
-                (
-                    x,
-                    (TAU * 3.0 * x + phase).cos() + 0.5 * (TAU * 5.0 * x).sin(),
-                )
-            };
-            let samples: Vec<(f64, f64)> = (0..100).map(|i| wave(0.01 * f64::from(i))).collect();
-            let found = strongest(&samples, (1..9).map(f64::from));
-            assert_eq!(found, Some(3.0), "{phase}");
-        }
-        assert_eq!(strongest(&[(0.0, 1.0)], std::iter::empty()), None);
     }
 
     #[test]

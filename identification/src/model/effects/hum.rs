@@ -3,8 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::turning::{RENEWED, Turning};
-use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting};
+use super::{Action, Against, Effect, Instant, Kinematics, Named, Naming, Setting, turning};
 use crate::model::name::Called;
 use crate::record::dataset::Dataset;
 
@@ -112,31 +111,6 @@ fn samples(motion: &Kinematics, setting: &Setting<'_>, rows: usize) -> Vec<(f64,
 
 /// The frequency with the strongest component within a band.
 fn strongest(samples: &[(f64, f64)], from: f64, to: f64, step: f64) -> f64 {
-    let turning = samples.iter().map(|(t, e)| (Turning::new(*t, step), *e));
-    let mut turning: Vec<(Turning, f64)> = turning.collect();
     let count = ((to - from) / step).clamp(0.0, 20_000.0) as usize;
-    let powers = (0..count).map(|i| {
-        let hz = from + step * i as f64;
-        if i % RENEWED == 0 {
-            for (wave, _) in &mut turning {
-                wave.renew(hz);
-            }
-        }
-        (power(&mut turning), hz)
-    });
-    powers
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(1.0, |(_, hz)| hz)
-}
-
-/// Size of the component at a frequency; the samples go on to the next one.
-fn power(samples: &mut [(Turning, f64)]) -> f64 {
-    let (mut re, mut im) = (0.0, 0.0);
-    for (wave, e) in samples {
-        let [cos, sin] = wave.at;
-        wave.turn();
-        re += cos * *e;
-        im += sin * *e;
-    }
-    f64::hypot(re, im)
+    turning::strongest(samples, from, step, count).unwrap_or(1.0)
 }

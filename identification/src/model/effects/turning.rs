@@ -59,6 +59,36 @@ impl Turning {
     }
 }
 
+/// Of so many evenly spaced k the one whose wave is the strongest component of values over their
+/// places.
+pub(crate) fn strongest(samples: &[(f64, f64)], from: f64, step: f64, count: usize) -> Option<f64> {
+    let turning = samples.iter().map(|(x, e)| (Turning::new(*x, step), *e));
+    let mut turning: Vec<(Turning, f64)> = turning.collect();
+    let sizes = (0..count).map(|i| {
+        let k = from + step * i as f64;
+        if i % RENEWED == 0 {
+            for (wave, _) in &mut turning {
+                wave.renew(k);
+            }
+        }
+        (size(&mut turning), k)
+    });
+    let largest = sizes.max_by(|a, b| a.0.total_cmp(&b.0));
+    largest.map(|(_, k)| k)
+}
+
+/// Size of the component of a k; the samples go on to the next one.
+fn size(samples: &mut [(Turning, f64)]) -> f64 {
+    let (mut re, mut im) = (0.0, 0.0);
+    for (wave, e) in samples {
+        let [cos, sin] = wave.at;
+        wave.turn();
+        re += cos * *e;
+        im += sin * *e;
+    }
+    f64::hypot(re, im)
+}
+
 /// Cosine and sine of `2π k x`.
 #[inline]
 #[must_use]
@@ -106,5 +136,21 @@ mod tests {
                 turning.turn();
             }
         }
+    }
+
+    #[test]
+    fn the_strongest_wave_is_found_whatever_its_phase() {
+        for phase in [0.0, 0.4, 1.6, 3.0] {
+            let at = |x: f64| {
+                (
+                    x,
+                    (TAU * 3.0 * x + phase).cos() + 0.5 * (TAU * 5.0 * x).sin(),
+                )
+            };
+            let samples: Vec<(f64, f64)> = (0..100).map(|i| at(0.01 * f64::from(i))).collect();
+            let found = strongest(&samples, 1.0, 1.0, 8);
+            assert_eq!(found, Some(3.0), "{phase}");
+        }
+        assert_eq!(strongest(&[(0.0, 1.0)], 1.0, 1.0, 0), None);
     }
 }
