@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `cargo quick` | [`Scope::Quick`] | one row, seed or record of each table: the everyday loop |
 //! | `cargo test` | [`Scope::Test`] | every claim, with at least one row, seed or machine of each |
-//! | with `QUADRANT_SCOPE=landing` | [`Scope::Landing`] | other rows of the longest table, for CI |
+//! | with `QUADRANT_SCOPE=landing` | [`Scope::Landing`] | more of what is longest, for CI |
 //! | `cargo certify` | [`Scope::Certify`] | everything: all rows, all seeds, millions of ticks |
 //!
 //! The alias sets `PROPTEST_CASES` (32 and 10 000 random cases; without it proptest takes its own
@@ -38,7 +38,8 @@ pub enum Scope {
     Quick,
     /// `cargo test`: every claim, with at least one row, seed or machine of each.
     Test,
-    /// As [`Self::Test`], but for the longest tables: other rows, for what runs both.
+    /// As [`Self::Test`], but for what is longest: other rows of tables, whole runs; for what runs
+    /// both.
     Landing,
     /// `cargo certify`: the full tables.
     Certify,

@@ -112,7 +112,9 @@ impl<'a> Beside<'a> {
             let both = [at(parameter, step), at(parameter, -step)];
             let apart = self.load.rubbed_apart(self.motion, both, &fallen);
             let mut change = carried.changed(self.motion, apart, &about.own);
-            change.iter_mut().for_each(|change| *change /= 2.0 * step);
+            for change in &mut change {
+                *change /= 2.0 * step;
+            }
             change
         };
         carried.friction.searched().into_iter().map(of).collect()
