@@ -526,9 +526,10 @@ struct Cable {
 
 fn over_cable(faults: Option<&str>) -> Cable {
     let (machine, _nodes) = (noisy_axis(), Nodes::start(faults));
-    let link = Interfaces::open(&machine, "vcan0")
+    let mut link = Interfaces::open(&machine, "vcan0")
         .unwrap()
         .with_pace(Pace::Lockstep { deadline: DEADLINE });
+    link.start_log();
     let mut master = Master::start(link, &machine).unwrap();
     master
         .configure(&machine, &[AxisCompensation::default()])

@@ -145,6 +145,10 @@ impl<'a, L: Link> Session<'a, L> {
         log: Option<&Path>,
         work: impl FnOnce(&mut Self) -> Outcome<T>,
     ) -> Outcome<T> {
+        // Every frame stays in memory until it is written: hours of tuning would fill it.
+        if log.is_some() {
+            self.master.link_mut().start_log();
+        }
         let outcome = self.ready(compensation).and_then(|()| work(&mut self));
         // A machine that has never cycled has nothing to disable and nothing to tell.
         if self.master.cycles() == 0 {

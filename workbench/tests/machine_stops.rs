@@ -16,6 +16,7 @@ use workbench::compensation::AxisCompensation;
 use workbench::error::Failure;
 use workbench::interrupt::Interrupt;
 use workbench::network::in_process::InProcess;
+use workbench::network::link::Link;
 use workbench::session::Session;
 
 /// Places on the bus of an axis.
@@ -269,6 +270,26 @@ fn an_axis_is_enabled_where_the_encoder_of_its_loop_stands() {
             way_m.abs() < 1.0e-6,
             "enabling moved the table by {way_m} m"
         );
+    }
+}
+
+#[test]
+fn frames_are_kept_where_they_are_to_be_written_and_nowhere_else() {
+    let machine = quiet();
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    for (log, is_kept) in [(None, false), (Some(log.as_path()), true)] {
+        let link = InProcess::new(&machine, 0).unwrap();
+        let session = Session::on(link, &machine, &Interrupt::never()).unwrap();
+        let logs = session.perform(&[], log, |session| {
+            Ok(session.master_mut().link_mut().take_logs())
+        });
+        let frames = logs
+            .unwrap()
+            .iter()
+            .map(|log| log.frames().len())
+            .sum::<usize>();
+        assert_eq!(frames > 0, is_kept, "{frames} frames, log {log:?}");
     }
 }
 

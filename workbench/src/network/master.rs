@@ -91,9 +91,8 @@ impl<L: Link> Master<L> {
     ///
     /// # Errors
     /// Beyond 16 axes.
-    pub fn on(mut link: L, machine: &Machine) -> Outcome<Self> {
+    pub fn on(link: L, machine: &Machine) -> Outcome<Self> {
         let axes = AxisLink::of_machine(machine, &link)?;
-        link.start_log();
         Ok(Self {
             link,
             axes,
@@ -132,7 +131,7 @@ impl<L: Link> Master<L> {
         self.link.follows_clock()
     }
 
-    /// The link, for tests that pull plugs.
+    /// The link.
     pub fn link_mut(&mut self) -> &mut L {
         &mut self.link
     }
