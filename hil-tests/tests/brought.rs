@@ -30,7 +30,7 @@ enum End {
     Creeps(f64),
 }
 
-const BROUGHT: [Brought; 11] = [
+const BROUGHT: [Brought; 12] = [
     Brought {
         name: "desktop stage",
         change: |machine| machine.axes.iter_mut().for_each(desktop),
@@ -110,6 +110,16 @@ const BROUGHT: [Brought; 11] = [
         name: "heavy table behind a gap, which shakes when it moves fast",
         change: |machine| machine.axes.iter_mut().for_each(shaking),
         ends: End::Unfit("the loop oscillates on its records"),
+    },
+    Brought {
+        name: "motor encoder of 4096 counts beside a scale of 50 nm",
+        change: |machine| {
+            for axis in &mut machine.axes {
+                axis.actual.motor_encoder_counts_per_rev = 4096;
+                axis.actual.load_encoder_resolution_m = 5.0e-8;
+            }
+        },
+        ends: End::Left(0.3),
     },
 ];
 

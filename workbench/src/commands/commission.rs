@@ -200,7 +200,7 @@ fn after_recording(
         circle,
         oscillations,
         results: &results,
-        feeds: feeds::run(stand, [&before, &after], circle, &trials.taken)?,
+        feeds: trials.feeds.clone().and([&before, &after]),
         before: &before,
         trials: &trials,
         after: &after,

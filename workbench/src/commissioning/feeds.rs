@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::circle_test::{self, CircleRun};
 use crate::compensation::AxisCompensation;
 use crate::console::print_table;
-use crate::error::Outcome;
+use crate::error::{Failure, Outcome};
 use crate::presentation::plots::{Curve, Ink, Plot, curves};
 use crate::presentation::result_tables::{TextTable, head};
 use crate::say;
@@ -71,44 +71,113 @@ pub struct Feeds {
     pub run: Vec<AtFeed>,
     /// A sentence on each feed at which a circle broke off.
     pub broke_off: Vec<String>,
+    /// Whether one broke off with the compensation that did not without it.
+    breaks_off: bool,
 }
 
-/// The circle that was run, and those at other feeds within the limits of the machine. One that
-/// breaks off, where a motor is too weak for its limits, is told.
-///
-/// # Errors
-/// Where the operator interrupts.
-pub fn run(
-    stand: &Stand<'_>,
-    known: [&CircleRun; 2],
-    circle: &Circle,
-    compensation: &[AxisCompensation],
-) -> Outcome<Feeds> {
-    let mut feeds = vec![AtFeed::of(known)];
-    let mut broke_off = Vec::new();
-    let others = OTHERS.into_iter();
-    for other in others.filter_map(|share| at_share_of_feed(stand.machine, circle, share)) {
-        let run = |own: &[AxisCompensation]| circle_test::run(stand, &other, own, None);
-        let pair = run(&stand.uncompensated())
-            .map_err(|why| ("without compensation", why))
-            .and_then(|before| {
-                let after = run(compensation).map_err(|why| ("with the compensation", why))?;
-                Ok(AtFeed::of([&before, &after]))
-            });
-        stand.interrupt.check()?;
-        match pair {
-            Ok(at) => feeds.push(at),
-            Err((which, why)) => broke_off.push(format!(
-                "F {:.0} mm/min: the circle {which} broke off: {why}",
-                6.0e4 * other.feed_m_per_s
-            )),
+/// Circles at other feeds than one, within the limits of the machine, without compensation.
+pub struct OtherFeeds<'a> {
+    stand: &'a Stand<'a>,
+    before: Vec<(Circle, Outcome<CircleRun>)>,
+}
+
+impl<'a> OtherFeeds<'a> {
+    /// Runs them. One that breaks off, where a motor is too weak for its limits, is told.
+    ///
+    /// # Errors
+    /// Where the operator interrupts.
+    pub fn run(stand: &'a Stand<'a>, circle: &Circle) -> Outcome<Self> {
+        let others = OTHERS.into_iter();
+        let others = others.filter_map(|share| at_share_of_feed(stand.machine, circle, share));
+        let mut before = Vec::new();
+        for other in others {
+            let run = circle_test::run(stand, &other, &stand.uncompensated(), None);
+            stand.interrupt.check()?;
+            before.push((other, run));
         }
+        Ok(Self { stand, before })
     }
-    feeds.sort_by(|one, other| one.feed_mm_min.total_cmp(&other.feed_mm_min));
-    Ok(Feeds {
-        run: feeds,
-        broke_off,
-    })
+
+    /// The same with a compensation.
+    ///
+    /// # Errors
+    /// Where the operator interrupts.
+    pub fn with(&self, compensation: &[AxisCompensation]) -> Outcome<Feeds> {
+        let mut feeds = Feeds::default();
+        for (circle, before) in &self.before {
+            let broke_off = |which: &str, why: &Failure| {
+                let feed_mm_min = 6.0e4 * circle.feed_m_per_s;
+                format!("F {feed_mm_min:.0} mm/min: the circle {which} broke off: {why}")
+            };
+            let before = match before {
+                Ok(before) => before,
+                Err(why) => {
+                    feeds.broke_off.push(broke_off("without compensation", why));
+                    continue;
+                }
+            };
+            let after = circle_test::run(self.stand, circle, compensation, None);
+            self.stand.interrupt.check()?;
+            match after {
+                Ok(after) => feeds.run.push(AtFeed::of([before, &after])),
+                Err(why) => {
+                    feeds.breaks_off = true;
+                    feeds
+                        .broke_off
+                        .push(broke_off("with the compensation", &why));
+                }
+            }
+        }
+        Ok(feeds)
+    }
+}
+
+/// A circle becomes worse with a compensation where spike or circular deviation grow by more than
+/// this share of them and this much, µm: noise alone does as much.
+const WORSE: (f64, f64) = (0.1, 0.2);
+
+impl Feeds {
+    /// The same with the circle itself, without and with it.
+    #[must_use]
+    pub fn and(mut self, known: [&CircleRun; 2]) -> Self {
+        self.run.push(AtFeed::of(known));
+        let feed = |at: &AtFeed| at.feed_mm_min;
+        self.run
+            .sort_by(|one, other| feed(one).total_cmp(&feed(other)));
+        self
+    }
+
+    /// In a sentence at which feed a circle is worse than without; `None` where none is.
+    #[must_use]
+    pub fn harm(&self) -> Option<String> {
+        if self.breaks_off {
+            return self.broke_off.last().cloned();
+        }
+        let mut run = self.run.iter();
+        run.find_map(AtFeed::harm)
+    }
+}
+
+impl AtFeed {
+    fn harm(&self) -> Option<String> {
+        let is_worse = |before: f64, after: f64| after > (1.0 + WORSE.0) * before + WORSE.1;
+        let both = [
+            ("reversal spike", self.spike_before_um, self.spike_after_um),
+            (
+                "circular deviation G",
+                self.circular_deviation_g_before_um,
+                self.circular_deviation_g_after_um,
+            ),
+        ];
+        let mut both = both.into_iter();
+        let (what, before, after) = both.find(|(_, before, after)| is_worse(*before, *after))?;
+        Some(format!(
+            "at F {:.0} mm/min the {what} would be {} instead of {} µm",
+            self.feed_mm_min,
+            figures::error(after),
+            figures::error(before)
+        ))
+    }
 }
 
 /// Circles at several feeds.
@@ -174,5 +243,25 @@ pub fn print(feeds: &Feeds) {
     print_table(&table(feeds));
     for sentence in &feeds.broke_off {
         say!("{sentence}");
+    }
+}
+
+#[cfg(test)]
+impl Feeds {
+    /// One feed, with such a spike without and with a compensation, µm.
+    pub(super) fn with_spike([spike_before_um, spike_after_um]: [f64; 2]) -> Self {
+        let at = AtFeed {
+            feed_mm_min: 500.0,
+            burst_before_um: spike_before_um,
+            burst_after_um: spike_after_um,
+            spike_before_um,
+            spike_after_um,
+            circular_deviation_g_before_um: 10.0,
+            circular_deviation_g_after_um: 11.0,
+        };
+        Self {
+            run: vec![at],
+            ..Self::default()
+        }
     }
 }

@@ -10,7 +10,7 @@ use super::program::program;
 use super::result::Commissioned;
 use super::reversal_curves::{ReversalRun, six_curves};
 use super::reversal_run::reversal_rows;
-use super::trials::{DECLARED, SELF_TUNED};
+use super::trials::{DECLARED, EXTENDED, SELF_TUNED, not_taken};
 use crate::error::Outcome;
 use crate::presentation::certificate::Certificate;
 use crate::presentation::circle_pictures::{Shown, circles};
@@ -92,7 +92,7 @@ impl Commissioned<'_> {
         let [before, after] = [self.before, self.after].map(|run| run.report.spike_um());
         if self.trials.method == "none" {
             return format!(
-                "Largest reversal spike of the circle: {before:.2}\u{a0}µm; nothing that was tried makes it smaller, so nothing is compensated."
+                "Largest reversal spike of the circle: {before:.2}\u{a0}µm; nothing that was tried makes it smaller without making another circle worse, so nothing is compensated."
             );
         }
         format!(
@@ -219,9 +219,12 @@ impl Commissioned<'_> {
             page.key(&worth);
         }
         page.paragraph(
-            "What was tried on the circle, by its largest burst (from the median of the whole circle, so squareness and scaling are in it). The one that leaves least is in the drives and in compensation.toml; a model that the drives refine is kept where it leaves at most 0.2 µm more, since it follows slow change.",
+            "What was tried on the circle, by its largest burst (from the median of the whole circle, so squareness and scaling are in it). The one that leaves least, and makes no circle at another feed worse, is in the drives and in compensation.toml; a model with what was found is kept where it leaves at most 2 % more, since errors of pitch hide what is left of friction, and one that the drives refine where it leaves another 0.2 µm more, since it follows slow change.",
         );
         page.table(&self.trials_table());
+        for (method, harm) in &self.trials.harmful {
+            page.paragraph(&not_taken(in_words(method), harm));
+        }
         page.pictures(&[feeds::picture(&self.feeds), self.circle_after_picture()]);
         for sentence in &self.feeds.broke_off {
             page.paragraph(sentence);
@@ -274,7 +277,7 @@ impl Commissioned<'_> {
                 .find(|own| own.method == method)
                 .map(|own| own.burst_after_um)
         };
-        let (declared, extended) = (left(DECLARED)?, left("model")?);
+        let (declared, extended) = (left(DECLARED)?, left(EXTENDED)?);
         let found = self.found();
         Some(format!(
             "With the declared model in the drives a burst of {declared:.2}\u{a0}µm is left on the circle, with {} added {extended:.2}\u{a0}µm: what was found is worth {:.2}\u{a0}µm.",

@@ -1,9 +1,10 @@
-//! What is tried against the burst on the circle, and what of it is taken: the best, and nothing
-//! where nothing helps.
+//! What is tried against the burst on the circle, and what of it is taken: the best that makes no
+//! circle at another feed worse, and nothing where nothing helps.
 
 use identification::Identification;
 use serde::Serialize;
 
+use super::feeds::{Feeds, OtherFeeds};
 use crate::compensation::AxisCompensation;
 use crate::console;
 use crate::error::Outcome;
@@ -44,6 +45,10 @@ pub struct Trials {
     pub taken: Vec<AxisCompensation>,
     /// Its name; `none` where nothing helps.
     pub method: &'static str,
+    /// Circles at other feeds with it.
+    pub feeds: Feeds,
+    /// What leaves less of the circle, but makes it worse at another feed: names and sentences.
+    pub harmful: Vec<(&'static str, String)>,
 }
 
 impl Trials {
@@ -80,6 +85,28 @@ pub fn run(
     declared: &[Identification],
     results: &[Identification],
 ) -> Outcome<Trials> {
+    let all = tried(stand, circle, declared, results)?;
+    progress::step("circles at other feeds");
+    let others = OtherFeeds::run(stand, circle)?;
+    let trials = chosen(all, stand.uncompensated(), |own| others.with(own))?;
+    for (method, harm) in &trials.harmful {
+        say!("{}", not_taken(method, harm));
+    }
+    Ok(trials)
+}
+
+/// Why a method is not taken, in a sentence.
+#[must_use]
+pub fn not_taken(method: &str, harm: &str) -> String {
+    format!("{method} is not taken: {harm}")
+}
+
+fn tried(
+    stand: &Stand<'_>,
+    circle: &Circle,
+    declared: &[Identification],
+    results: &[Identification],
+) -> Outcome<Vec<Trial>> {
     let mut all = Vec::new();
     progress::step("tuning the pulse on circles");
     if let Some(tuned) = tuning::pulse(stand, circle, 0.0)? {
@@ -101,7 +128,7 @@ pub fn run(
         progress::step("the drives refine the model on circles at several feeds");
         let refined = tuning::self_tuning::refined(stand, circle, &tuned)?;
         all.push(Trial {
-            method: "model",
+            method: EXTENDED,
             tuned,
         });
         all.extend(refined.map(|tuned| Trial {
@@ -113,9 +140,11 @@ pub fn run(
         say!("{}:", trial.method);
         console::print_tuned(&stand.axis_names(), &trial.tuned);
     }
-    Ok(chosen(all, stand.uncompensated()))
+    Ok(all)
 }
 
+/// The name of the model with what was found.
+pub const EXTENDED: &str = "model";
 /// The name of the model without what was found.
 pub const DECLARED: &str = "model, declared";
 /// The name of a model that the drives refine.
@@ -124,33 +153,62 @@ pub const SELF_TUNED: &str = "model + self-tuning";
 /// A model that the drives refine follows slow change, and may leave so much more than the best,
 /// µm.
 const WORTH_UM: f64 = 0.2;
+/// A model with what was found may leave so much more than one without, as a share: pitch errors
+/// and squareness are in a burst as well, and hide what is left of friction.
+const ALIKE: f64 = 0.02;
 
 /// What leaves more than this share of the burst does not help: noise alone does as much.
 const LEFT_AT_MOST: f64 = 0.9;
 
-/// The one that leaves the smallest burst, where there is one and it leaves less of it; a model
-/// that is refined may leave a little more.
-fn chosen(all: Vec<Trial>, nothing: Vec<AxisCompensation>) -> Trials {
+/// The one that leaves the smallest burst, where there is one that leaves less of it and makes no
+/// other feed worse; a model that is refined may leave a little more.
+fn chosen(
+    all: Vec<Trial>,
+    nothing: Vec<AxisCompensation>,
+    at_other_feeds: impl Fn(&[AxisCompensation]) -> Outcome<Feeds>,
+) -> Outcome<Trials> {
+    let mut harmful = Vec::new();
+    for trial in by_what_is_left(&all) {
+        let taken = trial.tuned.compensation.clone();
+        let feeds = at_other_feeds(&taken)?;
+        let Some(harm) = feeds.harm() else {
+            let method = trial.method;
+            return Ok(Trials {
+                all,
+                taken,
+                method,
+                feeds,
+                harmful,
+            });
+        };
+        harmful.push((trial.method, harm));
+    }
+    Ok(Trials {
+        all,
+        feeds: at_other_feeds(&nothing)?,
+        taken: nothing,
+        method: "none",
+        harmful,
+    })
+}
+
+/// Those that help, the best first.
+fn by_what_is_left(all: &[Trial]) -> Vec<&Trial> {
     let helps = |trial: &&Trial| {
         let [before, after] = trial.tuned.largest_um();
         before >= LEAST_PEAK_UM && after < LEFT_AT_MOST * before
     };
-    let left = |trial: &&Trial| {
-        let worth_um = if trial.method == SELF_TUNED {
-            WORTH_UM
-        } else {
-            0.0
-        };
-        trial.tuned.largest_um()[1] - worth_um
+    let left = |trial: &Trial| {
+        let [_, left_um] = trial.tuned.largest_um();
+        match trial.method {
+            SELF_TUNED => (1.0 - ALIKE) * left_um - WORTH_UM,
+            EXTENDED => (1.0 - ALIKE) * left_um,
+            _ => left_um,
+        }
     };
-    let best = all
-        .iter()
-        .filter(helps)
-        .min_by(|one, other| left(one).total_cmp(&left(other)));
-    let (taken, method) = best.map_or((nothing, "none"), |trial| {
-        (trial.tuned.compensation.clone(), trial.method)
-    });
-    Trials { all, taken, method }
+    let mut helping: Vec<&Trial> = all.iter().filter(helps).collect();
+    helping.sort_by(|one, other| left(one).total_cmp(&left(other)));
+    helping
 }
 
 #[cfg(test)]
@@ -174,21 +232,64 @@ mod tests {
         }
     }
 
+    /// What is taken of trials that do no harm at other feeds.
+    fn taken_of(all: Vec<Trial>, nothing: Vec<AxisCompensation>) -> Trials {
+        chosen(all, nothing, |_| Ok(Feeds::default())).unwrap()
+    }
+
     #[test]
     fn the_best_is_taken_and_nothing_where_nothing_helps() {
         let two = vec![trial("pulse", 1.0, 4.0), trial("model", 2.0, 3.0)];
-        let trials = chosen(two, Vec::new());
+        let trials = taken_of(two, Vec::new());
         assert_eq!(trials.method, "model");
         assert_eq!(trials.taken, trials.all[1].tuned.compensation);
         assert_eq!(trials.circles(), 4);
         for (refined_um, method) in [(3.1, SELF_TUNED), (3.3, "model")] {
             let both = vec![trial("model", 1.0, 3.0), trial(SELF_TUNED, 2.0, refined_um)];
-            assert_eq!(chosen(both, Vec::new()).method, method);
+            assert_eq!(taken_of(both, Vec::new()).method, method);
         }
+        let beside_pitch = vec![
+            trial(DECLARED, 1.0, 7.22),
+            trial(EXTENDED, 2.0, 7.3),
+            trial("pulse", 3.0, 7.2),
+        ];
+        assert_eq!(taken_of(beside_pitch, Vec::new()).method, EXTENDED);
         let worse = vec![trial("pulse", 1.0, 9.5), trial("model", 2.0, 30.0)];
         let nothing = vec![AxisCompensation::default()];
-        let trials = chosen(worse, nothing.clone());
+        let trials = taken_of(worse, nothing.clone());
         assert_eq!(trials.summaries()[1].burst_after_um, 30.0);
         assert_eq!((trials.method, trials.taken), ("none", nothing));
+    }
+
+    #[test]
+    fn what_makes_another_feed_worse_is_not_taken() {
+        let nothing = vec![AxisCompensation::default()];
+        let taken_with = |harmful: &'static [&'static str]| {
+            let two = vec![trial("pulse", 1.0, 2.0), trial("model", 2.0, 3.0)];
+            let harm = two.clone().into_iter();
+            let harm: Vec<_> = harm
+                .filter(|own| harmful.contains(&own.method))
+                .map(|own| own.tuned.compensation)
+                .collect();
+            let at_other_feeds = |own: &[AxisCompensation]| {
+                let is_harmful = harm.iter().any(|harm| harm == own);
+                Ok(Feeds::with_spike([8.0, if is_harmful { 9.1 } else { 8.9 }]))
+            };
+            chosen(two, nothing.clone(), at_other_feeds).unwrap()
+        };
+        for (harmful, method) in [
+            ([].as_slice(), "pulse"),
+            (&["pulse"], "model"),
+            (&["pulse", "model"], "none"),
+        ] {
+            let trials = taken_with(harmful);
+            assert_eq!(trials.method, method);
+            let names: Vec<&str> = trials.harmful.iter().map(|(name, _)| *name).collect();
+            assert_eq!(names, harmful);
+            for (_, harm) in &trials.harmful {
+                let said = "at F 500 mm/min the reversal spike would be 9.10 instead of 8.00 µm";
+                assert_eq!(harm, said);
+            }
+        }
     }
 }
