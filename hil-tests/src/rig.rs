@@ -154,7 +154,15 @@ pub fn dry_friction() -> Machine {
 /// # Errors
 /// Where the machine does not come up.
 pub fn enabled(machine: &Machine) -> Outcome<Master<InProcess>> {
-    let mut master = Master::start(InProcess::new(machine, 0)?, machine)?;
+    enabled_on(InProcess::new(machine, 0)?, machine)
+}
+
+/// The same on a link to it.
+///
+/// # Errors
+/// Where the machine does not come up.
+pub fn enabled_on(link: InProcess, machine: &Machine) -> Outcome<Master<InProcess>> {
+    let mut master = Master::start(link, machine)?;
     master.configure(
         machine,
         &vec![AxisCompensation::default(); machine.axes.len()],

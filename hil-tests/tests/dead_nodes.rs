@@ -5,7 +5,7 @@
 //! `golden/silence.md`.
 
 use bus::FaultPlan;
-use hil_tests::rig::{PLANT, SERVO, enabled, one_axis};
+use hil_tests::rig::{PLANT, SERVO, enabled, enabled_on, one_axis};
 use protocol::cob::FrameKind;
 use protocol::states::DriveState;
 use protocol::{AxisIds, Fault, Message, message};
@@ -209,7 +209,9 @@ fn two_runs_say_the_same_byte_for_byte() {
     let run = || {
         let mut machine = one_axis();
         machine.axes[0].actual.force_noise_n = 4.5;
-        let mut master = enabled(&machine).unwrap();
+        let mut link = InProcess::new(&machine, 0).unwrap();
+        link.start_log();
+        let mut master = enabled_on(link, &machine).unwrap();
         (0..3000).for_each(|cycle| master.cycle(&[path(cycle)]).unwrap());
         let cycles = master.cycles();
         (master.into_link().take_logs().remove(0), cycles)

@@ -16,7 +16,9 @@ use workbench::network::link::Link;
 use workbench::network::master::Master;
 
 fn configured(machine: &Machine) -> Master<InProcess> {
-    let mut master = Master::start(InProcess::new(machine, 0).unwrap(), machine).unwrap();
+    let mut link = InProcess::new(machine, 0).unwrap();
+    link.start_log();
+    let mut master = Master::start(link, machine).unwrap();
     master
         .configure(machine, &[AxisCompensation::default()])
         .unwrap();

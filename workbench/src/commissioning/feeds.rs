@@ -1,4 +1,4 @@
-//! Circles at other feeds, without and with what was taken: a compensation is worth what it is at
+//! Circles at other feeds, without and with what is tried: a compensation is worth what it is at
 //! every feed.
 
 use identification::figures;
@@ -71,8 +71,8 @@ pub struct Feeds {
     pub run: Vec<AtFeed>,
     /// A sentence on each feed at which a circle broke off.
     pub broke_off: Vec<String>,
-    /// Whether one broke off with the compensation that did not without it.
-    breaks_off: bool,
+    /// That of the first one that broke off with the compensation and not without it.
+    breaks_off: Option<String>,
 }
 
 /// Circles at other feeds than one, within the limits of the machine, without compensation.
@@ -121,10 +121,9 @@ impl<'a> OtherFeeds<'a> {
             match after {
                 Ok(after) => feeds.run.push(AtFeed::of([before, &after])),
                 Err(why) => {
-                    feeds.breaks_off = true;
-                    feeds
-                        .broke_off
-                        .push(broke_off("with the compensation", &why));
+                    let sentence = broke_off("with the compensation", &why);
+                    feeds.breaks_off.get_or_insert_with(|| sentence.clone());
+                    feeds.broke_off.push(sentence);
                 }
             }
         }
@@ -150,17 +149,18 @@ impl Feeds {
     /// In a sentence at which feed a circle is worse than without; `None` where none is.
     #[must_use]
     pub fn harm(&self) -> Option<String> {
-        if self.breaks_off {
-            return self.broke_off.last().cloned();
-        }
-        let mut run = self.run.iter();
-        run.find_map(AtFeed::harm)
+        let worse = || self.run.iter().find_map(AtFeed::harm);
+        self.breaks_off.clone().or_else(worse)
     }
 }
 
 impl AtFeed {
     fn harm(&self) -> Option<String> {
-        let is_worse = |before: f64, after: f64| after > (1.0 + WORSE.0) * before + WORSE.1;
+        // What is lost, where it was there without, may be anything.
+        let is_worse = |before: f64, after: f64| {
+            let is_lost = after.is_nan() && !before.is_nan();
+            is_lost || after > (1.0 + WORSE.0) * before + WORSE.1
+        };
         let both = [
             ("reversal spike", self.spike_before_um, self.spike_after_um),
             (
@@ -263,5 +263,40 @@ impl Feeds {
             run: vec![at],
             ..Self::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_circle_that_is_worse_or_lost_is_harm_and_one_that_was_lost_before_is_not() {
+        let said = |spikes_um| Feeds::with_spike(spikes_um).harm();
+        for harmless in [[8.0, 8.9], [0.1, 0.3], [8.0, 0.2], [f64::NAN, 9.0]] {
+            assert_eq!(said(harmless), None);
+        }
+        for harmful in [[8.0, 9.1], [0.1, 0.4], [8.0, f64::NAN]] {
+            let harm = said(harmful).unwrap();
+            let begin = "at F 500 mm/min the reversal spike would be ";
+            assert!(harm.starts_with(begin), "{harm}");
+        }
+    }
+
+    #[test]
+    fn a_circle_that_breaks_off_with_a_compensation_alone_is_harm() {
+        let own = "F 500 mm/min: the circle with the compensation broke off";
+        let other = "F 8000 mm/min: the circle without compensation broke off";
+        let feeds = Feeds {
+            broke_off: vec![own.into(), other.into()],
+            breaks_off: Some(own.into()),
+            ..Feeds::default()
+        };
+        assert_eq!(feeds.harm().as_deref(), Some(own));
+        let feeds = Feeds {
+            broke_off: vec![other.into()],
+            ..Feeds::default()
+        };
+        assert_eq!(feeds.harm(), None);
     }
 }

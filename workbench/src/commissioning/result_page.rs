@@ -219,7 +219,7 @@ impl Commissioned<'_> {
             page.key(&worth);
         }
         page.paragraph(
-            "What was tried on the circle, by its largest burst (from the median of the whole circle, so squareness and scaling are in it). The one that leaves least, and makes no circle at another feed worse, is in the drives and in compensation.toml; a model with what was found is kept where it leaves at most 2 % more, since errors of pitch hide what is left of friction, and one that the drives refine where it leaves another 0.2 µm more, since it follows slow change.",
+            "What was tried on the circle, by its largest burst (from the median of the whole circle, so squareness and scaling are in it). The one that leaves least, and makes no circle at another feed worse, is in the drives and in compensation.toml; the model by all that is known is kept where it leaves at most 2 % more, since errors of pitch hide what is left of friction, and one that the drives refine where it leaves another 0.2 µm more, since it follows slow change.",
         );
         page.table(&self.trials_table());
         for (method, harm) in &self.trials.harmful {

@@ -34,6 +34,9 @@ pub struct TrialSummary {
     pub burst_after_um: f64,
     /// Circles that it took.
     pub circles: u32,
+    /// Why it was not taken where it makes a circle at another feed worse.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub harm: Option<String>,
 }
 
 /// What was tried and what was taken.
@@ -57,7 +60,10 @@ impl Trials {
     pub fn summaries(&self) -> Vec<TrialSummary> {
         let of = |trial: &Trial| {
             let [burst_before_um, burst_after_um] = trial.tuned.largest_um();
+            let mut harmful = self.harmful.iter();
+            let harm = harmful.find(|(method, _)| *method == trial.method);
             TrialSummary {
+                harm: harm.map(|(_, harm)| harm.clone()),
                 method: trial.method,
                 burst_before_um,
                 burst_after_um,
@@ -143,19 +149,18 @@ fn tried(
     Ok(all)
 }
 
-/// The name of the model with what was found.
+/// The name of the model with what was found, where anything was.
 pub const EXTENDED: &str = "model";
 /// The name of the model without what was found.
 pub const DECLARED: &str = "model, declared";
 /// The name of a model that the drives refine.
 pub const SELF_TUNED: &str = "model + self-tuning";
 
-/// A model that the drives refine follows slow change, and may leave so much more than the best,
-/// µm.
-const WORTH_UM: f64 = 0.2;
-/// A model with what was found may leave so much more than one without, as a share: pitch errors
-/// and squareness are in a burst as well, and hide what is left of friction.
+/// A model by all that is known of the axis may leave so much more than anything else, as a share:
+/// pitch errors and squareness are in a burst as well, and hide what is left of friction.
 const ALIKE: f64 = 0.02;
+/// One that the drives refine follows slow change, and may leave so much more beyond that, µm.
+const WORTH_UM: f64 = 0.2;
 
 /// What leaves more than this share of the burst does not help: noise alone does as much.
 const LEFT_AT_MOST: f64 = 0.9;
@@ -248,12 +253,14 @@ mod tests {
             let both = vec![trial("model", 1.0, 3.0), trial(SELF_TUNED, 2.0, refined_um)];
             assert_eq!(taken_of(both, Vec::new()).method, method);
         }
-        let beside_pitch = vec![
-            trial(DECLARED, 1.0, 7.22),
-            trial(EXTENDED, 2.0, 7.3),
-            trial("pulse", 3.0, 7.2),
-        ];
-        assert_eq!(taken_of(beside_pitch, Vec::new()).method, EXTENDED);
+        for (extended_um, method) in [(7.3, EXTENDED), (7.5, "pulse")] {
+            let beside_pitch = vec![
+                trial(DECLARED, 1.0, 7.22),
+                trial(EXTENDED, 2.0, extended_um),
+                trial("pulse", 3.0, 7.2),
+            ];
+            assert_eq!(taken_of(beside_pitch, Vec::new()).method, method);
+        }
         let worse = vec![trial("pulse", 1.0, 9.5), trial("model", 2.0, 30.0)];
         let nothing = vec![AxisCompensation::default()];
         let trials = taken_of(worse, nothing.clone());
@@ -284,6 +291,9 @@ mod tests {
         ] {
             let trials = taken_with(harmful);
             assert_eq!(trials.method, method);
+            let summaries = trials.summaries().into_iter();
+            let told = summaries.filter(|own| own.harm.is_some()).count();
+            assert_eq!(told, harmful.len());
             let names: Vec<&str> = trials.harmful.iter().map(|(name, _)| *name).collect();
             assert_eq!(names, harmful);
             for (_, harm) in &trials.harmful {

@@ -1,7 +1,7 @@
 //! A wind-up by the load's motion beside other ways, while its friction is searched.
 //!
-//! A search tries hundreds of frictions. The load's motion, the other ways and the products of all
-//! that with each other are the same every time: they are made once.
+//! A search tries tens of frictions. The load's motion, the other ways and the products of all that
+//! with each other are the same every time: they are made once.
 
 use super::columns::{Apart, Way};
 use super::load::{Carried, LoadMotion};
