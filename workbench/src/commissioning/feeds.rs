@@ -171,12 +171,13 @@ impl AtFeed {
         ];
         let mut both = both.into_iter();
         let (what, before, after) = both.find(|(_, before, after)| is_worse(*before, *after))?;
-        Some(format!(
-            "at F {:.0} mm/min the {what} would be {} instead of {} µm",
-            self.feed_mm_min,
-            figures::error(after),
-            figures::error(before)
-        ))
+        let feed = format!("at F {:.0} mm/min the {what}", self.feed_mm_min);
+        let before = figures::error(before);
+        if after.is_nan() {
+            return Some(format!("{feed} is lost, {before} µm without"));
+        }
+        let after = figures::error(after);
+        Some(format!("{feed} would be {after} instead of {before} µm"))
     }
 }
 
@@ -276,10 +277,13 @@ mod tests {
         for harmless in [[8.0, 8.9], [0.1, 0.3], [8.0, 0.2], [f64::NAN, 9.0]] {
             assert_eq!(said(harmless), None);
         }
-        for harmful in [[8.0, 9.1], [0.1, 0.4], [8.0, f64::NAN]] {
-            let harm = said(harmful).unwrap();
-            let begin = "at F 500 mm/min the reversal spike would be ";
-            assert!(harm.starts_with(begin), "{harm}");
+        for (harmful, told) in [
+            ([8.0, 9.1], "would be 9.10 instead of 8.00 µm"),
+            ([0.1, 0.4], "would be 0.400 instead of 0.100 µm"),
+            ([8.0, f64::NAN], "is lost, 8.00 µm without"),
+        ] {
+            let wanted = format!("at F 500 mm/min the reversal spike {told}");
+            assert_eq!(said(harmful), Some(wanted));
         }
     }
 

@@ -104,7 +104,7 @@ pub fn run(
 /// Why a method is not taken, in a sentence.
 #[must_use]
 pub fn not_taken(method: &str, harm: &str) -> String {
-    format!("{method} is not taken: {harm}")
+    format!("Not taken: {method}; {harm}.")
 }
 
 fn tried(

@@ -23,11 +23,11 @@ pub fn in_words(reversal: &Compensation) -> String {
             span(1.0e3, &own.accelerations_m_per_s2()),
         ),
         Compensation::Model(model) => format!(
-            "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {:.1} N/µm{}",
+            "model of {:.1} N ({:.0} N at standstill), viscous {:.0} N s/m, screw {}{}",
             model.level_n(),
             model.level_n() * model.factor[0],
             model.viscous_n_s_per_m,
-            1.0e-6 * model.stiffness_n_per_m,
+            screw(model.stiffness_n_per_m, " N/µm"),
             on_motor(model)
         ),
     }
@@ -40,6 +40,15 @@ fn on_motor(model: &Model) -> String {
         format!(", {share:.0} % of the friction on the motor's side")
     } else {
         String::new()
+    }
+}
+
+/// The stiffness of a screw in N/µm, with its unit; a model that knows none winds nothing up.
+fn screw(stiffness_n_per_m: f64, unit: &str) -> String {
+    if stiffness_n_per_m.is_finite() {
+        format!("{:.1}{unit}", 1.0e-6 * stiffness_n_per_m)
+    } else {
+        "taken for rigid".into()
     }
 }
 
@@ -92,10 +101,7 @@ fn of_model(model: &Model) -> Vec<(&'static str, String)> {
             "viscous friction, N s/m",
             format!("{:.0}", model.viscous_n_s_per_m),
         ),
-        (
-            "screw stiffness, N/µm",
-            format!("{:.1}", 1.0e-6 * model.stiffness_n_per_m),
-        ),
+        ("screw stiffness, N/µm", screw(model.stiffness_n_per_m, "")),
     ];
     let more = [
         (
@@ -136,4 +142,15 @@ fn of_model(model: &Model) -> Vec<(&'static str, String)> {
         values.push(("refined by the drive while it moves", "yes".to_owned()));
     }
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_screw_without_a_stiffness_is_said_to_be_rigid() {
+        assert_eq!(screw(1.2e8, " N/µm"), "120.0 N/µm");
+        assert_eq!(screw(f64::INFINITY, " N/µm"), "taken for rigid");
+    }
 }
