@@ -43,12 +43,7 @@ const BROUGHT: [Brought; 12] = [
     },
     Brought {
         name: "coarse encoders",
-        change: |machine| {
-            for axis in &mut machine.axes {
-                axis.actual.motor_encoder_counts_per_rev = 10_000;
-                axis.actual.load_encoder_resolution_m = 1.0e-6;
-            }
-        },
+        change: |machine| with_encoders(machine, 10_000, 1.0e-6),
         ends: End::Left(0.2),
     },
     Brought {
@@ -113,15 +108,17 @@ const BROUGHT: [Brought; 12] = [
     },
     Brought {
         name: "motor encoder of 4096 counts beside a scale of 50 nm",
-        change: |machine| {
-            for axis in &mut machine.axes {
-                axis.actual.motor_encoder_counts_per_rev = 4096;
-                axis.actual.load_encoder_resolution_m = 5.0e-8;
-            }
-        },
+        change: |machine| with_encoders(machine, 4096, 5.0e-8),
         ends: End::Left(0.3),
     },
 ];
+
+fn with_encoders(machine: &mut Machine, motor_counts_per_rev: u32, load_resolution_m: f64) {
+    for axis in &mut machine.axes {
+        axis.actual.motor_encoder_counts_per_rev = motor_counts_per_rev;
+        axis.actual.load_encoder_resolution_m = load_resolution_m;
+    }
+}
 
 /// 8 kg on the motor's side and a table of 2 kg, lead 2 mm, 4096 counts, 200 N.
 fn desktop(axis: &mut MachineAxis) {

@@ -17,6 +17,7 @@ use crate::model::effects::torque_saturation::Saturation;
 use crate::model::effects::{Effect, Instant, Stage};
 use crate::model::inverse::{Beside, Model, Part, saturation};
 use crate::model::name::Called;
+use crate::motion::bodies::add;
 use crate::motion::filter::fit_cutoff_hz;
 use crate::motion::kinematics::Kinematics;
 use crate::motion::shift::{all_shifted, shifted};
@@ -627,15 +628,6 @@ fn neighbours(
     let place = what.place(effect).unwrap_or(0);
     let at = |place: usize| choices.get(place).copied().unwrap_or(effect);
     (at(place.saturating_sub(1)), at(place + 1))
-}
-
-/// Adds weighted columns to a sum.
-fn add(sum: &mut [f64], columns: &[Vec<f64>], weights: &[f64]) {
-    for (column, weight) in columns.iter().zip(weights) {
-        sum.iter_mut()
-            .zip(column)
-            .for_each(|(sum, value)| *sum += weight * value);
-    }
 }
 
 fn multiply(column: &mut [f64], by: &[f64]) {

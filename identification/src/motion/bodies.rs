@@ -65,6 +65,15 @@ impl Bodies {
     }
 }
 
+/// Adds weighted signals to a sum.
+pub(crate) fn add(sum: &mut [f64], signals: &[Vec<f64>], weights: &[f64]) {
+    for (signal, weight) in signals.iter().zip(weights) {
+        sum.iter_mut()
+            .zip(signal)
+            .for_each(|(sum, value)| *sum += weight * value);
+    }
+}
+
 /// One signal without another.
 #[must_use]
 pub(crate) fn minus(one: &[f64], other: &[f64]) -> Vec<f64> {

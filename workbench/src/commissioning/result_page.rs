@@ -372,7 +372,7 @@ fn in_words(method: &str) -> &str {
     match method {
         "pulse" => "the tuned pulse",
         DECLARED => "the declared model of friction",
-        "model" => "the model of friction",
+        EXTENDED => "the model of friction",
         SELF_TUNED => "the model of friction, refined by the drives",
         other => other,
     }

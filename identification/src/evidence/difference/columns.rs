@@ -19,11 +19,11 @@ use std::f64::consts::TAU;
 use axis_model::EffectName;
 
 use super::edges::Flanks;
-use super::load::{Carried, weighted};
+use super::load::Carried;
 use crate::fit::blocks::{Blocks, Fit};
 use crate::fit::rows::Rows;
 use crate::model::name::Called;
-use crate::motion::bodies::minus;
+use crate::motion::bodies::{add, minus};
 use crate::motion::kinematics::Kinematics;
 use crate::record::scale_error::{ScaleError, along};
 use crate::record::units::EffortHold;
@@ -338,7 +338,9 @@ impl<'a> Apart<'a> {
 
     /// What a way with such coefficients makes of motor − load.
     pub(crate) fn predicted(&self, way: Way, own: &[f64]) -> Vec<f64> {
-        weighted(&self.columns(way), own.iter().copied())
+        let mut predicted = vec![0.0; self.target.len()];
+        add(&mut predicted, &self.columns(way), own);
+        predicted
     }
 
     /// What fitted ways leave of each sample.

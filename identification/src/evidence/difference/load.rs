@@ -16,7 +16,7 @@ use super::between_rows::{Steps, without_small_turns};
 use super::edges::Flanks;
 use super::rubbing::{ALIKE, Law, LoadFriction};
 use crate::model::effects::stribeck::GAUSS;
-use crate::motion::bodies::minus;
+use crate::motion::bodies::{add, minus};
 use crate::motion::kinematics::Kinematics;
 use crate::motion::mask::{unless_few, widened, without};
 
@@ -143,16 +143,6 @@ fn with_rate(motion: &Kinematics, by_piece: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let rates = by_piece.iter().map(|bend| slope(bend, motion.period_s));
     let rates: Vec<Vec<f64>> = rates.collect();
     motion.all_low_passed(&[by_piece.concat(), rates.concat()])
-}
-
-/// The sum of columns, each times a coefficient.
-pub(super) fn weighted(columns: &[Vec<f64>], by: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
-    for (column, coefficient) in columns.iter().zip(by) {
-        let pairs = sum.iter_mut().zip(column);
-        pairs.for_each(|(sum, value)| *sum += coefficient * value);
-    }
-    sum
 }
 
 /// A derivative of a signal, piece by piece and low-passed.
@@ -288,7 +278,10 @@ impl Carried {
         rubbed.extend(along);
         let with_bend = [Self::FRICTION, Self::BENDING].into_iter();
         let places = with_bend.chain(self.more.along_from()..);
-        weighted(&rubbed, places.map(|place| own[place]))
+        let own = rubbed.iter().zip(places).map(|(_, place)| own[place]);
+        let mut change = vec![0.0; motion.len()];
+        add(&mut change, &rubbed, &own.collect::<Vec<_>>());
+        change
     }
 
     /// Columns of a friction of the motor's own side, low-passed. It follows the law of the load's,
