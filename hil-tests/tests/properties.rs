@@ -774,6 +774,7 @@ impl Chaos {
             (Parameter::FRICTION_ON_MOTOR[0], 0.0, 1.0e6),
             (Parameter::GapWidth, 0.0, 5.0e5),
             (Parameter::GapTorque, 1.0e4, 5.0e5),
+            (Parameter::GapVelocity, 0.0, 1.0e4),
             (Parameter::TableInertia, 0.0, 1.0e7),
             (Parameter::TableTorque, -5.0e5, 5.0e5),
             (Parameter::RippleTorque1, 0.0, 5.0e5),

@@ -80,6 +80,10 @@ pub struct Model {
     /// Force within which it is crossed, to either side.
     #[serde(default = "crossing_force_n")]
     pub gap_force_n: f64,
+    /// Velocity from which on it is that force; in proportion below, an eighth at least. Zero:
+    /// always.
+    #[serde(default)]
+    pub gap_velocity_m_per_s: f64,
     /// What of the inertia is behind the gap.
     #[serde(default)]
     pub table_mass_kg: f64,
@@ -210,6 +214,7 @@ impl Model {
         stiffness_n_per_m: f64::INFINITY,
         gap_m: 0.0,
         gap_force_n: crossing_force_n(),
+        gap_velocity_m_per_s: 0.0,
         table_mass_kg: 0.0,
         table_force_n: 0.0,
         motor_inertia_kg: 0.0,
@@ -461,6 +466,13 @@ fn check_screw(model: &Model) -> Result<(), Wrong> {
     each("gap_m", "0 to 1e-3 m", &[model.gap_m], GAPS_M)?;
     let force = model.gap_force_n;
     each("gap_force_n", "1 to 1e6 N", &[force], 1.0..=1.0e6)?;
+    let velocity = model.gap_velocity_m_per_s;
+    each(
+        "gap_velocity_m_per_s",
+        "0 to 10 m/s",
+        &[velocity],
+        0.0..=10.0,
+    )?;
     let (table, motor) = (model.table_mass_kg, model.motor_inertia_kg);
     each("table_mass_kg", "0 to 1e6 kg", &[table], 0.0..=1.0e6)?;
     let force = model.table_force_n;
@@ -589,6 +601,10 @@ mod tests {
             (
                 model(|model| model.stiffness_n_per_m = 0.0),
                 "stiffness_n_per_m",
+            ),
+            (
+                model(|model| model.gap_velocity_m_per_s = -1.0),
+                "gap_velocity_m_per_s",
             ),
             (
                 model(|model| model.windup_ahead_s = f64::NAN),

@@ -395,6 +395,11 @@ impl Set {
                 model.gap_force_n * per_newton,
             ),
             (
+                Parameter::GapVelocity,
+                "model gap_velocity_m_per_s",
+                model.gap_velocity_m_per_s,
+            ),
+            (
                 Parameter::TableInertia,
                 "model table_mass_kg",
                 model.table_mass_kg * per_newton,

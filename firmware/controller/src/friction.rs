@@ -14,8 +14,8 @@
 //!
 //! **Wind-up.** The screw transmits the friction of the table and is wound up by it, `F / K`; that
 //! of the motor's own side winds nothing up. When friction changes sign the motor has to go that
-//! way in addition, and across the gap where there is one ([`Screw`]): its change belongs to the
-//! speed setpoint, in time with the encoders, and its acceleration takes torque.
+//! way in addition, and across the gap where there is one ([`Screw`], [`Gap`]): its change belongs
+//! to the speed setpoint, in time with the encoders, and its acceleration takes torque.
 //!
 //! **Time.** The elements stand at x(k+1), the newest setpoint. What acts later, from k + 1 to
 //! k + 2 and after the lag of the current loop, is taken from a look ahead along the reference's
@@ -31,6 +31,7 @@ use crate::units::{
 
 mod by_direction;
 mod element;
+mod gap;
 mod levels;
 mod path;
 mod place;
@@ -41,6 +42,7 @@ pub use by_direction::ByDirection;
 use by_direction::of_direction;
 use element::Bends;
 pub use element::{ELEMENTS, STIFFNESS_BITS, SlipWays, Stiffnesses};
+pub use gap::Gap;
 use levels::{Factor, HIGHEST, times, within_way};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
 pub use path::Ahead;
@@ -348,7 +350,7 @@ impl Stand {
         let table = self.held.table.saturating_add(viscous);
         Push {
             all: self.held.all.saturating_add(viscous),
-            ahead: config.screw.way(table, cycle.beside),
+            ahead: config.screw.way(table, cycle.beside, velocity),
         }
     }
 }

@@ -13,7 +13,7 @@
 //! most, so that takes 50 days at 84 m/s). Products of two 32-bit fixed-point numbers are taken in
 //! 64 bits, where they cannot overflow, and saturate only when they are brought back to 32 bits.
 
-use fixed::types::{I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};
+use fixed::types::{I4F28, I8F24, I20F12, I24F8, I30F2, I32F32, I40F24, I56F8};
 
 /// Position at the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -377,6 +377,13 @@ impl AccelerationGain {
         let product = self.0.wide_mul(acceleration.0).to_bits();
         Coarse::from_bits(narrowed::<18>(product))
     }
+}
+
+/// A way per torque times a torque, rounded down and saturated.
+pub(crate) fn way_by(per_torque: I4F28, torque: Coarse) -> Velocity {
+    // 4.28 times 30.2 bits are 34.30 bits, of which 12 fractional ones stay.
+    let product = per_torque.wide_mul(torque).to_bits();
+    Velocity(I20F12::from_bits(narrowed::<18>(product)))
 }
 
 /// A product without its last 1 to 31 bits, rounded down and saturated: what the fixed crate's

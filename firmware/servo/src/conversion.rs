@@ -20,7 +20,7 @@ use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
-    Ahead, ByDirection, FrictionConfig, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
+    Ahead, ByDirection, FrictionConfig, Gap, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
     STIFFNESS_BITS, Screw, SlipWays, Stiffnesses,
 };
 use controller::reference::{Ramp, ReferenceConfig};
@@ -622,30 +622,63 @@ impl Reading<'_> {
         self.signed(phase, i32::from_le_bytes([a, b, c, d]))
     }
 
-    /// Counts of 10 nm, and counts per µN·m. Below 2³¹ · 10⁸ · 2²⁸ and 2²⁴ · 10⁸ · 2²⁸.
+    /// Counts per µN·m. Below 2³¹ · 10⁸ · 2²⁸.
     fn screw(&self) -> Result<Screw, SetError> {
-        let (windup, width, torque) =
-            (Parameter::Windup, Parameter::GapWidth, Parameter::GapTorque);
+        let windup = Parameter::Windup;
         let compliance = Self::held(
             windup,
             &[self.steps(windup), COUNTS_PER_M, Q28],
             &[windup.unit().per_si, MICROS],
         )?;
-        let gap_per_torque = Self::held(
-            width,
-            &[self.steps(width), COUNTS_PER_M, Q28],
-            &[width.unit().per_si, 2, self.steps(torque)],
-        )?;
         Ok(Screw {
             compliance: I4F28::from_bits(compliance),
-            half_gap: I20F12::saturating_from_num(self.length(width, 2)?.0),
-            gap_per_torque: I4F28::from_bits(gap_per_torque),
+            gap: self.gap()?,
             table_inertia: AccelerationGain(I24F8::from_bits(
                 self.inertia_gain(Parameter::TableInertia, (1, 1))?,
             )),
             table_micro_nm: self.raw(Parameter::TableTorque),
             acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
         })
+    }
+
+    /// Counts of 10 nm, and counts per µN·m. Below 2²⁴ · 10⁸ · 2²⁸.
+    fn gap(&self) -> Result<Gap, SetError> {
+        let (width, torque) = (Parameter::GapWidth, Parameter::GapTorque);
+        let per_torque = Self::held(
+            width,
+            &[self.steps(width), COUNTS_PER_M, Q28],
+            &[width.unit().per_si, 2, self.steps(torque)],
+        )?;
+        Ok(Gap {
+            half: I20F12::saturating_from_num(self.length(width, 2)?.0),
+            per_half: self.per_half_gap(),
+            per_torque: I4F28::from_bits(per_torque),
+            per_velocity: self.per_crossing_velocity()?,
+        })
+    }
+
+    /// As much as there is room for where the gap is less than 0.2 nm.
+    fn per_half_gap(&self) -> I8F24 {
+        let width = Parameter::GapWidth;
+        let numerator = [width.unit().per_si, 2, Q24];
+        let bits = Fraction::new(&numerator, &[self.steps(width), COUNTS_PER_M]);
+        let bits = bits.and_then(Fraction::nearest);
+        let bits = bits.and_then(|bits| i32::try_from(bits).ok());
+        bits.map_or(I8F24::MAX, I8F24::from_bits)
+    }
+
+    /// One over a velocity, per count and cycle.
+    fn per_crossing_velocity(&self) -> Result<I8F24, SetError> {
+        let velocity = Parameter::GapVelocity;
+        if self.steps(velocity) == 0 {
+            return Ok(I8F24::ZERO);
+        }
+        let bits = Self::held(
+            velocity,
+            &[velocity.unit().per_si, MICROS, Q24],
+            &[self.steps(velocity), self.period_us, COUNTS_PER_M],
+        )?;
+        Ok(I8F24::from_bits(bits))
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {
@@ -1104,6 +1137,40 @@ mod tests {
         }
         let stiff = element(250_000_000, 100).unwrap_err();
         assert_eq!(stiff, SetError::TooLarge(Parameter::FrictionLevel1));
+    }
+
+    #[test]
+    fn a_gap_has_half_its_width_and_a_velocity_from_which_on_its_band_is_wide() {
+        let gap = |width: i32, velocity: i32, period_us: i32| {
+            let set = with(&[
+                (Parameter::CyclePeriod, period_us),
+                (Parameter::FrictionLevel1, 100_000),
+                (Parameter::GapWidth, width),
+                (Parameter::GapTorque, 50_000),
+                (Parameter::GapVelocity, velocity),
+            ]);
+            set.settings().unwrap().config.friction.unwrap().screw.gap
+        };
+        // 6 µm in tenths of a nanometre, 1.5 mm/s in µm/s: 150 counts per ms.
+        for (period_us, counts) in [(1000, 150.0), (250, 37.5)] {
+            let own = gap(60_000, 1500, period_us);
+            assert_eq!(own.half.to_num::<f64>(), 300.0);
+            let [per_half, per_torque, per_velocity]: [f64; 3] = [
+                own.per_half.to_num(),
+                own.per_torque.to_num(),
+                own.per_velocity.to_num(),
+            ];
+            assert!((per_half * 300.0 - 1.0).abs() < 1.0e-5, "{per_half}");
+            assert!((per_torque * 50_000.0 / 300.0 - 1.0).abs() < 1.0e-5);
+            assert!(
+                (per_velocity * counts - 1.0).abs() < 1.0e-5,
+                "{per_velocity}"
+            );
+        }
+        // None at any velocity, and a gap that is less than one over it can hold.
+        assert_eq!(gap(60_000, 0, 1000).per_velocity, I8F24::ZERO);
+        assert_eq!(gap(1, 0, 1000).per_half, I8F24::MAX);
+        assert_eq!(gap(0, 0, 1000).half, I20F12::ZERO);
     }
 
     #[test]

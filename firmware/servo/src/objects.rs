@@ -425,6 +425,7 @@ parameters! {
     GapTorque = (0x2156, 4), "torque within which it is crossed, to either side", MICRO_NM, (1, TORQUE), 100_000;
     TableInertia = (0x2156, 5), "inertia of the table alone, for the gap", INERTIA, POSITIVE, 0;
     TableTorque = (0x2156, 6), "constant torque of the table, as a weight, for the gap", MICRO_NM, SIGNED_TORQUE, 0;
+    GapVelocity = (0x2156, 7), "velocity from which on it is that torque; in proportion below, an eighth at least (0: always)", MICROMETRE_PER_S, POSITIVE, 0;
     LevelSlope = (0x2158, 1), "friction levels change along the travel, per way from position zero", MILLIONTH_PER_M, SLOPE, 0;
     LevelBend = (0x2158, 2), "and per square of that way", MILLIONTH_PER_M2, (-i32::MAX, i32::MAX), 0;
     LevelTuning = (0x2159, 1), "share of what a turn tells that the friction level is refined by (0 off)", MILLIONTH, (0, 1_000_000), 0;

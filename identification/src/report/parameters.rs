@@ -29,6 +29,9 @@ const DEFLECTION: &str = "presliding_deflection";
 /// What the vocabulary calls Coulomb friction by direction.
 pub(crate) const COULOMB_ASYMMETRY: &str = "coulomb_asymmetry";
 
+/// What falls with the speed, in the table.
+const EXCESS: &str = "stribeck_excess";
+
 /// A parameter with its name.
 type Entry = (String, Estimate);
 
@@ -63,8 +66,12 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
     let difference = stages.difference.as_ref();
     if let Some(told) = difference.and_then(|difference| difference.by_the_load.as_ref()) {
         parameters.without_shape_of_fall(told);
+        // What the motor's side has of a fall the effort alone shows, beside the law of the load.
+        let has_both = findings.models.extended.by_the_load.is_some() && told.motor_side.is_some();
         for (name, estimate) in of_the_load(findings, told) {
-            parameters.replace(name, estimate);
+            if !(has_both && name == EXCESS && parameters.knows_better(name, &estimate)) {
+                parameters.replace(name, estimate);
+            }
         }
     }
     if let Some(motor) = difference.and_then(|difference| difference.motor_coulomb) {
@@ -127,6 +134,12 @@ impl Parameters {
         let load = about(whole.value - motor.value, half_width, motor.unit.clone());
         self.replace("motor_coulomb", motor);
         self.replace("load_coulomb", load);
+    }
+
+    /// Whether it is in a narrower interval already.
+    fn knows_better(&self, name: &str, estimate: &Estimate) -> bool {
+        let own = self.estimates.get(name);
+        own.is_some_and(|own| own.half_width() > 0.0 && own.half_width() < estimate.half_width())
     }
 
     /// A parameter by motion of the load, which knows it better than any output before.
@@ -206,11 +219,7 @@ fn sliding_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     let mut own = Vec::new();
     if fitted.of(EffectName::Stribeck).is_some() && told.excess.value > 0.0 {
         let velocity = estimate(told.velocity, &format!("{length}/s"));
-        // What the motor's side has of it only the effort knows, beside the law of the load.
-        let is_its_law = findings.models.extended.by_the_load.is_some();
-        if told.motor_side.is_none() || !is_its_law {
-            own.push(("stribeck_excess", estimate(told.excess, effort)));
-        }
+        own.push((EXCESS, estimate(told.excess, effort)));
         own.push(("stribeck_velocity", velocity));
         let lag = told.lag.map(|lag| ("stribeck_lag", estimate(lag, "s")));
         let exponent = told.exponent;
@@ -476,6 +485,18 @@ mod tests {
             half_width,
             unit: "N".into(),
         }
+    }
+
+    #[test]
+    fn the_narrower_interval_is_the_better_one_and_none_is_no_interval() {
+        let knows_better = |half_width: f64| {
+            let own = (EXCESS.to_owned(), about(120.0, half_width, "N".into()));
+            let parameters = table([(ranking::EFFORT, vec![own])]);
+            parameters.knows_better(EXCESS, &about(142.0, 57.0, "N".into()))
+        };
+        assert!(knows_better(56.0));
+        assert!(!knows_better(57.0) && !knows_better(113.0));
+        assert!(!knows_better(0.0));
     }
 
     #[test]

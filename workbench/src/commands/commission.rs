@@ -17,6 +17,7 @@ use crate::commissioning::identified_axes;
 use crate::commissioning::program::now;
 use crate::commissioning::result::{Commissioned, burst_reduction_percent};
 use crate::commissioning::run_folder::circle_csv;
+use crate::commissioning::steep_fall;
 use crate::commissioning::trials::{self, Trials};
 use crate::commissioning::unfit;
 use crate::compensation::{self, AxisCompensation};
@@ -195,12 +196,14 @@ fn after_recording(
         trials.method,
         after.report.figures.peak_max_um
     );
+    let feeds = trials.feeds.clone().and([&before, &after]);
     let commissioned = Commissioned {
         stand,
         circle,
         oscillations,
+        steep_falls: steep_fall::of(stand.machine, &trials.taken, &feeds),
         results: &results,
-        feeds: trials.feeds.clone().and([&before, &after]),
+        feeds,
         before: &before,
         trials: &trials,
         after: &after,
@@ -209,6 +212,9 @@ fn after_recording(
         is_simulation: !wanted.are_real_axes,
     };
     feeds::print(&commissioned.feeds);
+    for own in &commissioned.steep_falls {
+        say!("{}", own.sentence());
+    }
     if let Some(verdict) = commissioned.verdict() {
         say!("{verdict}");
     }

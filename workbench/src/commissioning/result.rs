@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::feeds::{AtFeed, Feeds, less_percent};
 use super::fitness::Oscillation;
 use super::program::program;
+use super::steep_fall::SteepFall;
 use super::trials::{TrialSummary, Trials};
 use crate::circle_test::{CircleReport, CircleRun, Whole};
 use crate::error::Outcome;
@@ -22,6 +23,8 @@ use crate::trajectory::Circle;
 struct SummaryFile<'a> {
     machine: &'a str,
     oscillations: &'a [Oscillation],
+    #[serde(skip_serializing_if = "<[SteepFall]>::is_empty")]
+    steep_falls: &'a [SteepFall],
     axes: Vec<AxisSummary<'a>>,
     circle_before: &'a CircleReport,
     circle_after: &'a CircleReport,
@@ -59,6 +62,8 @@ pub struct Commissioned<'a> {
     pub circle: &'a Circle,
     /// What the loops do by themselves, too little to end the job.
     pub oscillations: &'a [Oscillation],
+    /// Axes whose friction falls faster than their loops hold against.
+    pub steep_falls: Vec<SteepFall>,
     /// What each axis lacks.
     pub results: &'a [Identification],
     /// The circle without compensation.
@@ -132,6 +137,7 @@ impl Commissioned<'_> {
         SummaryFile {
             machine: &machine.name,
             oscillations: self.oscillations,
+            steep_falls: &self.steep_falls,
             axes: axes
                 .map(|(axis, result)| AxisSummary {
                     name: &axis.name,

@@ -197,6 +197,7 @@ impl Commissioned<'_> {
              deviation that it alone would make, by least squares over both directions outside the spikes. What is not friction or backlash is not corrected by this program.".to_owned()
         });
         notes.extend(self.oscillations.iter().map(|own| own.sentence() + "."));
+        notes.extend(self.steep_falls.iter().map(|own| own.sentence() + "."));
         notes
     }
 

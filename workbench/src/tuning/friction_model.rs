@@ -16,7 +16,7 @@ use axis_model::{
 };
 use identification::{Identification, SlipElement};
 
-use super::crossing::band_n;
+use super::crossing::Crossing;
 use super::springs::{Spring, Springs, of_bristle};
 use crate::compensation::{
     BENDS_PER_M2, GAPS_M, LEVELS, LONGEST_SLIP_M, Model, PERIODS_M, RIPPLES, Ripple,
@@ -180,8 +180,8 @@ pub fn of_effects(
     give_screw(&mut model, &found, known);
     let springs = slipping.unwrap_or_else(|| found.springs(motor));
     give_elements(&mut model, springs);
-    give_gap(&mut model, &found, known);
     give_places(&mut model, &found, known);
+    give_gap(&mut model, &found, known);
     Some(model)
 }
 
@@ -279,16 +279,29 @@ fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
     model.table_mass_kg = load.value;
 }
 
-/// The gap behind the motor. A constant force shifts where it is crossed; one that friction never
-/// comes up to holds the table on one flank. Without a screw the drive does not cross any.
+/// The gap behind the motor. A constant force shifts where it is crossed, and friction of the table
+/// that differs by direction is one beside another that does not, at crossings by its level at
+/// rest. A force that friction never comes up to holds the table on one flank. Without a screw the
+/// drive does not cross any.
 fn give_gap(model: &mut Model, found: &Found<'_>, known: &Known) {
-    let gap_m = found.gap.map_or(0.0, |own| own.gap.value);
-    let table_n = model.table_n();
-    if model.table_mass_kg > 0.0 && GAPS_M.contains(&gap_m) && found.offset_n.abs() < table_n {
-        model.gap_m = gap_m;
-        model.table_force_n = found.offset_n;
-        model.gap_force_n = band_n(model, known.limits.acceleration_m_per_s2).max(1.0);
+    let by_direction_n = found.coulomb_asymmetry * model.table_n();
+    let sliding = Model {
+        gap_m: found.gap.map_or(0.0, |own| own.gap.value),
+        table_force_n: found.offset_n + by_direction_n,
+        ..*model
+    };
+    let is_behind = model.table_mass_kg > 0.0 && GAPS_M.contains(&sliding.gap_m);
+    if !is_behind || sliding.table_force_n.abs() >= model.table_n() {
+        return;
     }
+    let crossing = Crossing::of(&sliding, known.limits.acceleration_m_per_s2);
+    let [at_rest, ..] = model.factor;
+    *model = Model {
+        gap_force_n: crossing.force_n,
+        gap_velocity_m_per_s: crossing.velocity_m_per_s,
+        table_force_n: found.offset_n + at_rest * by_direction_n,
+        ..sliding
+    };
 }
 
 #[cfg(test)]
@@ -342,5 +355,61 @@ mod tests {
         };
         give_slope(&mut steep, &own, 0.0);
         assert_eq!(steep, begin);
+    }
+
+    /// What was identified of a reference axis with friction that differs by direction, a weight
+    /// and a gap.
+    fn behind_a_gap(asymmetry: f64, weight_n: f64) -> Model {
+        let effects = [
+            Effect::Inertia(Inertia {
+                inertia: about(930.0),
+                load: Some(about(300.0)),
+            }),
+            Effect::Coulomb(Coulomb {
+                coulomb: about(400.0),
+            }),
+            Effect::CoulombAsymmetry(axis_model::CoulombAsymmetry {
+                coulomb_asymmetry: about(asymmetry),
+            }),
+            Effect::Offset(axis_model::Offset {
+                offset: about(weight_n),
+            }),
+            Effect::Stribeck(Stribeck {
+                excess: about(120.0),
+                velocity: about(1.5e-3),
+                exponent: None,
+                lag: None,
+                lag_growth: None,
+            }),
+            Effect::Presliding(Presliding {
+                deflection: about(1.0e-5),
+                damping: None,
+            }),
+            Effect::Compliance(Compliance {
+                stiffness: about(1.2e8),
+                damping: None,
+            }),
+            Effect::Backlash(Backlash {
+                gap: about(6.0e-6),
+                motor_friction: None,
+                restitution: None,
+                load_share: None,
+            }),
+        ];
+        let machine = plant_sim::Machine::reference();
+        let known = Known::of_machine(&machine.axes[0], machine.period_s);
+        of_effects(&known, &effects, None, None).unwrap()
+    }
+
+    #[test]
+    fn a_gap_is_crossed_where_weight_and_friction_by_direction_shift_it_and_not_beyond_friction() {
+        let model = behind_a_gap(0.1, 50.0);
+        assert!((model.table_force_n - (50.0 + 1.3 * 40.0)).abs() < 1.0e-9);
+        assert_eq!(model.gap_m, 6.0e-6);
+        assert!(model.gap_velocity_m_per_s > 0.0);
+        // Friction comes up to 400 N that way and to 360 N the other way.
+        assert_eq!(behind_a_gap(0.1, 310.0).gap_m, 6.0e-6);
+        assert_eq!(behind_a_gap(0.1, 365.0).gap_m, 0.0);
+        assert_eq!(behind_a_gap(-0.1, 365.0).gap_m, 6.0e-6);
     }
 }
