@@ -25,8 +25,8 @@ const SHARE: f64 = 0.9;
 /// The band is as wide from this share of the velocity on that the table has after that reversal
 /// where the crossing begins. With a little more than all of it (1.04) the band is narrower there
 /// already, and a copy of the reference machine without Stribeck fall behind a gap of 30 µm was
-/// left 4.3 µm at R 100 F 8000 for 1.6; with two thirds of it six copies with gaps were left 1.3
-/// to 1.9 times as much at F 2000 (2026-11-28).
+/// left 4.3 µm at R 100 F 8000 for 1.6; with two thirds of it copies with gaps of 20 to 40 µm were
+/// left 1.5 to 1.6 times as much at F 2000 (2026-11-28).
 const WIDE_FROM: f64 = 0.85;
 
 /// Where a gap is crossed.
