@@ -428,22 +428,25 @@ impl Reading<'_> {
         Ok(I8F24::from_bits(self.signed(parameter, cycles.to_bits())))
     }
 
-    /// 16 intervals over the span, per count and cycle.
+    /// 16 intervals over the span.
     fn levels(&self) -> Result<LevelCurve, SetError> {
-        let span = Parameter::LevelSpan;
-        let intervals = if self.steps(span) == 0 {
-            0
-        } else {
-            Self::held(
-                span,
-                &[16, span.unit().per_si, MICROS, Q24],
-                &[self.steps(span), self.period_us, COUNTS_PER_M],
-            )?
-        };
         Ok(LevelCurve {
-            intervals_per_velocity: I8F24::from_bits(intervals),
+            intervals_per_velocity: self.per_velocity(16, Parameter::LevelSpan)?,
             factors: self.factors(),
         })
+    }
+
+    /// A number over a velocity, per count and cycle; none where that is zero.
+    fn per_velocity(&self, number: u64, velocity: Parameter) -> Result<I8F24, SetError> {
+        if self.steps(velocity) == 0 {
+            return Ok(I8F24::ZERO);
+        }
+        let bits = Self::held(
+            velocity,
+            &[number, velocity.unit().per_si, MICROS, Q24],
+            &[self.steps(velocity), self.period_us, COUNTS_PER_M],
+        )?;
+        Ok(I8F24::from_bits(bits))
     }
 
     /// How levels lag within a time over some cycles with 24 fractional bits, ten at most: `x = t /
@@ -653,7 +656,7 @@ impl Reading<'_> {
             half: I20F12::saturating_from_num(self.length(width, 2)?.0),
             per_half: self.per_half_gap(),
             per_torque: I4F28::from_bits(per_torque),
-            per_velocity: self.per_crossing_velocity()?,
+            per_velocity: self.per_velocity(1, Parameter::GapVelocity)?,
         })
     }
 
@@ -665,20 +668,6 @@ impl Reading<'_> {
         let bits = bits.and_then(Fraction::nearest);
         let bits = bits.and_then(|bits| i32::try_from(bits).ok());
         bits.map_or(I8F24::MAX, I8F24::from_bits)
-    }
-
-    /// One over a velocity, per count and cycle.
-    fn per_crossing_velocity(&self) -> Result<I8F24, SetError> {
-        let velocity = Parameter::GapVelocity;
-        if self.steps(velocity) == 0 {
-            return Ok(I8F24::ZERO);
-        }
-        let bits = Self::held(
-            velocity,
-            &[velocity.unit().per_si, MICROS, Q24],
-            &[self.steps(velocity), self.period_us, COUNTS_PER_M],
-        )?;
-        Ok(I8F24::from_bits(bits))
     }
 
     fn filter(&self) -> Result<FilterConfig, SetError> {

@@ -65,7 +65,7 @@ fn steeper_than_its_loop(axis: &MachineAxis, model: &Model) -> Option<SteepFall>
 
 /// How fast the levels of a model fall at most with the speed, N s/m, and where, m/s.
 fn steepest_fall(model: &Model) -> Option<(f64, f64)> {
-    let level_n: f64 = model.level_n.iter().sum();
+    let level_n = model.level_n();
     let step_m_per_s = model.span_m_per_s / (model.factor.len() - 1) as f64;
     let of_step = |(place, pair): (usize, &[f64])| {
         let fall = level_n * (pair[0] - pair[1]) / step_m_per_s;
