@@ -187,15 +187,27 @@ impl AxisIds {
     #[must_use]
     pub fn classify(self, id: StandardId) -> Option<FrameKind> {
         let raw = id.as_raw();
+        // What comes in every cycle first.
+        if raw == 0x080 {
+            return Some(FrameKind::Sync);
+        }
+        if raw == 0x180 | node_bits(self.plant) {
+            return Some(FrameKind::Feedback);
+        }
+        if raw == 0x200 | node_bits(self.servo) {
+            return Some(FrameKind::Setpoint);
+        }
+        self.classify_other(raw)
+    }
+
+    #[inline(never)]
+    fn classify_other(self, raw: u16) -> Option<FrameKind> {
         let (code, node) = (raw & FUNCTION_BITS, raw & NODE_BITS);
         let (servo, plant) = (node == node_bits(self.servo), node == node_bits(self.plant));
         match code {
             0x000 if node == 0 => Some(FrameKind::Nmt),
-            0x080 if node == 0 => Some(FrameKind::Sync),
             0x080 if servo => Some(FrameKind::ServoEmergency),
             0x080 if plant => Some(FrameKind::PlantEmergency),
-            0x180 if plant => Some(FrameKind::Feedback),
-            0x200 if servo => Some(FrameKind::Setpoint),
             0x200 if plant => Some(FrameKind::Torque),
             0x280 if plant => Some(FrameKind::PlantStatus),
             0x380 if servo => Some(FrameKind::Status),

@@ -405,7 +405,7 @@ impl Message {
             Self::Torque(torque) => torque.encode(ids),
             Self::Setpoint(setpoint) => CanFrame::full(id, setpoint.bytes()),
             Self::PlantStatus(status) => CanFrame::full(id, status.bytes()),
-            Self::Status(status) => CanFrame::full(id, status.bytes()),
+            Self::Status(status) => status.encode(ids),
             Self::ServoHeartbeat(state) | Self::PlantHeartbeat(state) => {
                 CanFrame::of(id, canopen_rs::nmt::encode_heartbeat(state))
             }
@@ -473,6 +473,12 @@ impl PlantStatus {
 }
 
 impl Status {
+    /// The frame of a status on an axis.
+    #[must_use]
+    pub fn encode(self, ids: AxisIds) -> CanFrame {
+        CanFrame::full(ids.identifier(FrameKind::Status), self.bytes())
+    }
+
     fn bytes(self) -> [u8; 8] {
         let [a, b] = self.status.0.to_le_bytes();
         let [c, d, e] = self.following_error.to_bytes();

@@ -49,6 +49,9 @@ impl SyncTracker {
         let Some(now) = self.now else {
             return self.begin(counter);
         };
+        if counter == now.next() {
+            return self.begin_after(counter, 1);
+        }
         let ahead = counter.cycles_since(now);
         if ahead == 0 {
             return self.present();
@@ -108,6 +111,10 @@ impl SyncTracker {
 
     fn begin(&mut self, counter: SyncCounter) -> SyncEvent {
         let cycles = self.now.map_or(16, |now| counter.cycles_since(now));
+        self.begin_after(counter, cycles)
+    }
+
+    fn begin_after(&mut self, counter: SyncCounter, cycles: u8) -> SyncEvent {
         let without_sync = self
             .without_sync
             .checked_shl(u32::from(cycles))
