@@ -123,7 +123,11 @@ impl Limits {
             low: reference.position_min.0.to_bits(),
             high: reference.position_max.0.to_bits(),
             torque: i64::from(config.cascade.torque_limit.micro_nm()),
-            half_gap: i64::from(config.backlash.half_gap.0.to_bits()),
+            half_gap: i64::from(
+                config
+                    .compensation
+                    .map_or(0, |own| own.backlash.half_gap.0.to_bits()),
+            ),
         })
     }
 }
@@ -233,7 +237,7 @@ impl Witness {
         self.seen.cycles += cycles;
         self.seen.bridged += u64::from(self.servo.bridged() != (0, 0));
         let settings = self.servo.settings();
-        let has_model = settings.is_some_and(|settings| settings.config.friction.is_some());
+        let has_model = settings.is_some_and(|settings| settings.config.friction().is_some());
         self.seen.modelled += u64::from(has_model);
         self.seen.refined += u64::from(self.servo.refined_level_millionths() != 1_000_000);
         if drive == Drive::OperationEnabled {

@@ -602,20 +602,24 @@ mod tests {
         };
         let config = settings(&Machine::reference(), &compensation).config;
         let newton = TAU / 0.010 / 1.0e6;
-        let [none, wave] = config.ripple.waves;
+        let [none, wave] = config.compensation.unwrap().ripple.waves;
         assert_eq!(none.amplitude_micro_nm, 0);
         let amplitude_n = newton * f64::from(wave.amplitude_micro_nm);
         assert!((amplitude_n - 30.0).abs() < newton, "{amplitude_n}");
         let counts = 2.0_f64.powi(48) / wave.per_position as f64;
         assert_same("period", counts * COUNT_M, 0.002);
         assert_eq!(wave.phase, -(1 << 30));
-        let friction = config.friction.unwrap();
+        let friction = config.friction().unwrap();
         let per_velocity = newton * 1.0e-3 / COUNT_M;
         let [forward, backward] = friction.viscous.map(|gain| gain.0.to_num::<f64>());
         let asymmetry = 0.5 * (forward - backward) * per_velocity;
         assert!((asymmetry + 500.0).abs() < 0.02, "{asymmetry}");
-        let [stiffness, of_table] = [friction.stiffnesses[0], friction.of_table[0]].map(f64::from);
-        let way = friction.ways[0].to_num::<f64>() * 4096.0;
+        let [stiffness, of_table] = [
+            friction.elements.stiffnesses[0],
+            friction.elements.of_table[0],
+        ]
+        .map(f64::from);
+        let way = friction.elements.ways[0].to_num::<f64>() * 4096.0;
         let level_n = stiffness * 2.0_f64.powi(-24) * way * newton;
         assert!((level_n - 40.0).abs() < 1.0e-3, "{level_n}");
         assert!((of_table / stiffness - 0.75).abs() < 2.0e-5, "{of_table}");
@@ -676,14 +680,23 @@ mod tests {
             backlash_m: 4.0e-5,
         };
         let config = settings(&Machine::reference(), &compensation).config;
-        assert_same("height", config.pulse.shape.amplitude.0.to_num(), 100.0);
+        let compensation = config.compensation.unwrap();
+        assert_same(
+            "height",
+            compensation.pulse.shape.amplitude.0.to_num(),
+            100.0,
+        );
         assert_same(
             "decay",
-            config.pulse.shape.decay.to_num(),
+            compensation.pulse.shape.decay.to_num(),
             (-0.05_f64).exp(),
         );
-        assert_eq!(config.pulse.shape.start_delay_cycles, 3);
-        assert_same("half gap", config.backlash.half_gap.0.to_num(), 2000.0);
+        assert_eq!(compensation.pulse.shape.start_delay_cycles, 3);
+        assert_same(
+            "half gap",
+            compensation.backlash.half_gap.0.to_num(),
+            2000.0,
+        );
     }
 
     #[test]

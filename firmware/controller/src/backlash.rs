@@ -28,6 +28,14 @@ pub struct BacklashConfig {
     pub acceleration_limit: Velocity,
 }
 
+impl BacklashConfig {
+    /// Whether there is no gap.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        self.half_gap <= PositionError::ZERO
+    }
+}
+
 /// Where the offset stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BacklashState {
@@ -43,6 +51,14 @@ impl BacklashState {
         self.offset
     }
 
+    /// A cycle without an offset.
+    pub fn pass(&mut self, commanded: Velocity) {
+        *self = Self {
+            total: commanded,
+            ..Self::default()
+        };
+    }
+
     /// Advances by one cycle; gives the offset and its velocity.
     pub fn step(
         &mut self,
@@ -50,11 +66,8 @@ impl BacklashState {
         direction: Option<Direction>,
         commanded: Velocity,
     ) -> (PositionError, Velocity) {
-        if config.half_gap <= PositionError::ZERO {
-            *self = Self {
-                total: commanded,
-                ..Self::default()
-            };
+        if config.is_off() {
+            self.pass(commanded);
             return (self.offset, self.velocity);
         }
         let left = remaining(config.half_gap, direction, self.offset);
@@ -90,7 +103,7 @@ impl BacklashState {
 }
 
 fn same_way(one: Velocity, other: Velocity) -> bool {
-    Direction::of(one) == Direction::of(other)
+    one.0.signum() == other.0.signum()
 }
 
 fn remaining(

@@ -17,7 +17,7 @@ use fixed::types::{I2F30, I20F12};
 
 use crate::units::{
     Acceleration, AccelerationGain, PositionError, PositionGain, Torque, TorqueLimit, Velocity,
-    VelocityGain, narrowed,
+    VelocityGain, lower,
 };
 
 /// Gains of the cascade.
@@ -31,7 +31,7 @@ pub struct CascadeConfig {
     pub integral_gain: VelocityGain,
     /// Ja: inertia for acceleration feedforward.
     pub acceleration_gain: AccelerationGain,
-    /// α: share of the new difference in the velocity filter; 1 switches it off.
+    /// α: share of the new difference in the velocity filter, 0 to 1; 1 switches it off.
     pub velocity_filter: I2F30,
     /// Limit of the commanded torque.
     pub torque_limit: TorqueLimit,
@@ -96,6 +96,11 @@ impl CascadeState {
     }
 
     /// First half of a cycle: the torque that is wanted.
+    #[expect(
+        clippy::inline_always,
+        reason = "as the law: the plain one has zeros to add, which fall out"
+    )]
+    #[inline(always)]
     pub fn propose(&mut self, config: &CascadeConfig, input: &CascadeInput) -> Proposal {
         let setpoint = input
             .velocity_setpoint
@@ -111,7 +116,7 @@ impl CascadeState {
             .times(input.acceleration)
             .with(input.friction);
         Proposal {
-            torque: direct.with(integral).with(feedforward),
+            micro_nm: direct.with(integral).with(feedforward).nearest_micro_nm(),
             integral,
             error,
         }
@@ -125,9 +130,12 @@ impl CascadeState {
         proposal: &Proposal,
         commanded_micro_nm: i32,
     ) -> bool {
-        let (high, low) = config
-            .torque_limit
-            .stops(commanded_micro_nm, proposal.torque);
+        let limit = config.torque_limit;
+        if limit.passes(commanded_micro_nm, proposal.micro_nm) {
+            self.integral = proposal.integral;
+            return false;
+        }
+        let (high, low) = limit.stops(commanded_micro_nm, proposal.micro_nm);
         if !(high && proposal.error > Velocity::ZERO || low && proposal.error < Velocity::ZERO) {
             self.integral = proposal.integral;
         }
@@ -138,18 +146,18 @@ impl CascadeState {
 /// What the cascade wants, before limits and filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Proposal {
-    /// Torque without any limit.
-    pub torque: Torque,
+    /// Torque without any limit, in whole µN·m.
+    pub micro_nm: i32,
     integral: Torque,
     error: Velocity,
 }
 
 fn filtered(before: Velocity, new: Velocity, share: I2F30) -> Velocity {
     // 20.12 times 2.30 bits: 22.42 bits, exact, below 2⁶²; to nearest, as in
-    // `PositionGain::times`.
+    // `PositionGain::times`. A share of a difference fits where that does.
     let step = new.minus(before).0.wide_mul(share).to_bits();
     let half = 1_i64 << 29;
-    let step = I20F12::from_bits(narrowed::<30>(step.wrapping_add(half)));
+    let step = I20F12::from_bits(lower(step.wrapping_add(half).wrapping_shr(30)));
     before.plus(Velocity(step))
 }
 
@@ -176,7 +184,7 @@ mod tests {
 
     fn step(state: &mut CascadeState, velocity_setpoint: i32) -> (i32, bool) {
         let proposal = state.propose(&config(), &input(velocity_setpoint));
-        let commanded = config().torque_limit.cut_to_micro_nm(proposal.torque);
+        let commanded = config().torque_limit.cut_micro_nm(proposal.micro_nm);
         (commanded, state.settle(&config(), &proposal, commanded))
     }
 

@@ -48,16 +48,22 @@ impl Direction {
     }
 }
 
-/// Remembers the commanded direction through standstill.
+/// Remembers the commanded direction through standstill: by the last velocity that was one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DirectionMemory(Option<Direction>);
+pub struct DirectionMemory(Velocity);
 
 impl DirectionMemory {
-    /// Takes the commanded velocity; gives the direction last commanded, `None` before the first
-    /// motion.
-    pub fn after(&mut self, commanded: Velocity) -> Option<Direction> {
-        self.0 = Direction::of(commanded).or(self.0);
-        self.0
+    /// Takes the commanded velocity.
+    pub fn take(&mut self, commanded: Velocity) {
+        if commanded != Velocity::ZERO {
+            self.0 = commanded;
+        }
+    }
+
+    /// The direction last commanded, `None` before the first motion.
+    #[must_use]
+    pub fn last(self) -> Option<Direction> {
+        Direction::of(self.0)
     }
 }
 
@@ -120,7 +126,10 @@ mod tests {
     #[test]
     fn the_direction_is_held_through_a_dwell() {
         let mut memory = DirectionMemory::default();
-        let held = [0, 1, 0, -1, 0].map(|v| memory.after(Velocity(I20F12::from_num(v))));
+        let held = [0, 1, 0, -1, 0].map(|v| {
+            memory.take(Velocity(I20F12::from_num(v)));
+            memory.last()
+        });
         let [on, back] = [Direction::Positive, Direction::Negative].map(Some);
         assert_eq!(held, [None, on, on, back, back]);
     }

@@ -94,9 +94,9 @@ impl FilterState {
         }
     }
 
-    /// Filters one torque, cut to a limit before and after; gives whole µN·m.
-    pub fn step(&mut self, config: &FilterConfig, torque: Torque, limit: TorqueLimit) -> i32 {
-        let x0 = limit.cut_to_micro_nm(torque);
+    /// Filters one torque in whole µN·m, cut to a limit before and after.
+    pub fn step(&mut self, config: &FilterConfig, micro_nm: i32, limit: TorqueLimit) -> i32 {
+        let x0 = limit.cut_micro_nm(micro_nm);
         let [x1, x2, y1, y2] = self.past;
         if config.is_off {
             // What the sum below comes to.
@@ -104,10 +104,9 @@ impl FilterState {
             return x0;
         }
         let products = config.coefficients.into_iter().zip([x0, x1, x2, y1, y2]);
-        // 32 times 32 bits in 64 cannot wrap; the sum has the headroom above and saturates all the
-        // same.
+        // 32 times 32 bits in 64 cannot wrap, and the sum has the headroom above.
         let sum = products.fold(self.rest, |sum, (c, v)| {
-            sum.saturating_add(i64::from(c).wrapping_mul(i64::from(v)))
+            sum.wrapping_add(i64::from(c).wrapping_mul(i64::from(v)))
         });
         let y0 = limit.cut_micro_nm(narrowed::<COEFFICIENT_FRACTION_BITS>(sum));
         self.rest = sum & REST_MASK;
@@ -128,11 +127,11 @@ mod tests {
         let mut state = FilterState::default();
         let limit = TorqueLimit::from_micro_nm(1_000_000);
         for torque in [0, 1, -1, 999_999, -1_000_000] {
-            let out = state.step(&FilterConfig::OFF, Torque::from_micro_nm(torque), limit);
+            let out = state.step(&FilterConfig::OFF, torque, limit);
             assert_eq!(out, torque);
         }
-        let beyond = Torque::from_micro_nm(2_000_000);
-        assert_eq!(state.step(&FilterConfig::OFF, beyond, limit), 1_000_000);
+        let beyond = state.step(&FilterConfig::OFF, 2_000_000, limit);
+        assert_eq!(beyond, 1_000_000);
     }
 
     #[test]
@@ -142,7 +141,7 @@ mod tests {
         let mut state = FilterState::default();
         let limit = TorqueLimit::from_micro_nm(TorqueLimit::LARGEST_MICRO_NM);
         let mut out = 0;
-        (0..100).for_each(|_| out = state.step(&config, Torque::from_micro_nm(1_000_000), limit));
+        (0..100).for_each(|_| out = state.step(&config, 1_000_000, limit));
         assert!((out - 1_000_000).abs() <= 1);
     }
 

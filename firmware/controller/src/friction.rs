@@ -40,8 +40,8 @@ mod tuning;
 
 pub use by_direction::ByDirection;
 use by_direction::of_direction;
-use element::Bends;
-pub use element::{ELEMENTS, STIFFNESS_BITS, SlipWays, Stiffnesses};
+use element::{Bends, Force};
+pub use element::{ELEMENTS, Elements, STIFFNESS_BITS, SlipWays, Stiffnesses};
 pub use gap::Gap;
 use levels::{Factor, HIGHEST, times, within_way};
 pub use levels::{LEVELS, LevelCurve, LevelLag};
@@ -55,13 +55,8 @@ pub use tuning::{LevelTuning, Progress};
 /// What the model says of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
-    /// Ways after which elements slip.
-    pub ways: SlipWays,
-    /// Stiffnesses of elements; the sum of their levels, stiffness times way, is the Coulomb
-    /// torque.
-    pub stiffnesses: Stiffnesses,
-    /// What of them is the table's, and winds the screw up.
-    pub of_table: Stiffnesses,
+    /// What holds the axis back.
+    pub elements: Elements,
     /// Levels over the speed.
     pub levels: LevelCurve,
     /// How they fall behind it within a time, over a cycle.
@@ -115,13 +110,6 @@ struct Stand {
     held: Force,
     /// Factor on the levels; `None`: that of the speed.
     factor: Option<Factor>,
-}
-
-/// Friction of both sides of the screw, and what of it is the table's.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Force {
-    all: Coarse,
-    table: Coarse,
 }
 
 /// Friction of both sides, and how much farther than the table the motor stands with it.
@@ -335,12 +323,12 @@ impl Stand {
         let factor = before.passed(look.lag, way, aim);
         self.factor = Some(factor);
         let times = factor.on_levels();
-        self.bends.take(&config.ways, &look.path, times);
-        let all = self.bends.torque(&config.stiffnesses);
+        self.bends.take(&config.elements.ways, &look.path, times);
+        let held = self.bends.force(&config.elements);
         let by_direction = config.by_direction.torque(factor.acting, cycle.at_rest);
         self.held = Force {
-            all: all.saturating_add(by_direction),
-            table: self.bends.torque(&config.of_table),
+            all: held.all.saturating_add(by_direction),
+            ..held
         };
     }
 

@@ -36,9 +36,15 @@ pub struct RippleConfig {
 }
 
 impl RippleConfig {
+    /// Whether no wave has a height.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        self.waves.iter().all(|wave| wave.amplitude_micro_nm == 0)
+    }
+
     /// The torque that overcomes it.
     pub(crate) fn torque(&self, reference: &Reference) -> Torque {
-        if self.waves.iter().all(|wave| wave.amplitude_micro_nm == 0) {
+        if self.is_off() {
             return Torque::ZERO;
         }
         let waves = self

@@ -70,6 +70,14 @@ impl Position {
         PositionError(I24F8::from_bits(saturated(way.to_bits())))
     }
 
+    /// The same where it is within the range of an error.
+    #[must_use]
+    pub fn exact_error_from(self, other: Self) -> Option<PositionError> {
+        let way = self.0.wrapping_sub(other.0).to_bits();
+        let bits = lower(way);
+        (upper(way) == bits.wrapping_shr(31)).then(|| PositionError(I24F8::from_bits(bits)))
+    }
+
     /// Way from `earlier` to `self` within one cycle.
     #[must_use]
     pub fn step_from(self, earlier: Self) -> Velocity {
@@ -231,6 +239,12 @@ impl Torque {
         narrowed::<24>(bits.saturating_add(half(bits)))
     }
 
+    /// The same of a torque of the law, which has room ([`Self::with`]).
+    pub(crate) fn nearest_micro_nm(self) -> i32 {
+        let bits = self.0.to_bits();
+        narrowed::<24>(bits.wrapping_add(half(bits)))
+    }
+
     /// To whole µN·m, rounded down and saturated: in fewer instructions, for torques that are
     /// whole.
     #[must_use]
@@ -299,13 +313,6 @@ impl TorqueLimit {
         torque.min(self.high).max(self.low)
     }
 
-    /// The same in whole µN·m, to nearest; what is amid two goes away from zero.
-    pub(crate) fn cut_to_micro_nm(self, torque: Torque) -> i32 {
-        let bits = self.cut(torque).0.to_bits();
-        // Below 2⁵² of the last bits, and the limit is whole: nothing is lost, and it stays within.
-        lower(bits.wrapping_add(half(bits)).wrapping_shr(24))
-    }
-
     /// Whole µN·m brought within it.
     pub(crate) fn cut_micro_nm(self, micro_nm: i32) -> i32 {
         micro_nm
@@ -313,11 +320,18 @@ impl TorqueLimit {
             .max(self.micro_nm.wrapping_neg())
     }
 
+    /// Whether neither a command is at the limit nor a torque that is wanted beyond it.
+    pub(crate) fn passes(self, commanded_micro_nm: i32, wanted_micro_nm: i32) -> bool {
+        let limit = self.micro_nm.cast_unsigned();
+        commanded_micro_nm.unsigned_abs() < limit && wanted_micro_nm.unsigned_abs() <= limit
+    }
+
     /// Whether a command is at the limit, or a torque that is wanted beyond it: above, below.
-    pub(crate) fn stops(self, commanded_micro_nm: i32, wanted: Torque) -> (bool, bool) {
+    pub(crate) fn stops(self, commanded_micro_nm: i32, wanted_micro_nm: i32) -> (bool, bool) {
+        let low = self.micro_nm.wrapping_neg();
         (
-            commanded_micro_nm >= self.micro_nm || wanted > self.high,
-            commanded_micro_nm <= self.micro_nm.wrapping_neg() || wanted < self.low,
+            commanded_micro_nm >= self.micro_nm || wanted_micro_nm > self.micro_nm,
+            commanded_micro_nm <= low || wanted_micro_nm < low,
         )
     }
 }
@@ -543,7 +557,11 @@ mod tests {
             prop_assert!((0..=TorqueLimit::LARGEST_MICRO_NM).contains(&limit.micro_nm()));
             let cut = torque.0.clamp(-within, within);
             prop_assert_eq!(limit.cut(torque).0, cut);
-            prop_assert_eq!(limit.cut_to_micro_nm(torque), cut.round().to_num::<i32>());
+            if wide.wrapping_shr(small).unsigned_abs() < 1 << 62 {
+                let nearest = torque.nearest_micro_nm();
+                prop_assert_eq!(nearest, torque.to_micro_nm_lossy());
+                prop_assert_eq!(limit.cut_micro_nm(nearest), cut.round().to_num::<i32>());
+            }
         }
 
         #[test]

@@ -4,19 +4,16 @@
 //! rounded to a 64th of the look ahead there too, by the same velocities, since that is the law's
 //! and no rounding of its numbers.
 
-use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
+use controller::compensation::Compensation;
 use controller::filter::FilterConfig;
 use controller::friction::{
-    Ahead, ByDirection, ELEMENTS, Feedforward, FrictionConfig, FrictionState, Gap, LEVELS,
-    LevelCurve, LevelLag, LevelPlace, LevelTuning, STIFFNESS_BITS, Screw, Stiffnesses,
+    Ahead, ByDirection, ELEMENTS, Elements, Feedforward, FrictionConfig, FrictionState, Gap,
+    LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning, STIFFNESS_BITS, Screw, Stiffnesses,
 };
-use controller::pulse::PulseConfig;
 use controller::reference::{Ramp, Reference, ReferenceConfig};
-use controller::ripple::RippleConfig;
 use controller::units::{
-    Acceleration, AccelerationGain, Position, PositionGain, Torque, TorqueLimit, Velocity,
-    VelocityGain,
+    Acceleration, AccelerationGain, Position, PositionGain, TorqueLimit, Velocity, VelocityGain,
 };
 use controller::{Config, Input, PositionSource, State};
 use fixed::types::{I2F30, I4F28, I8F24, I20F12, I24F8, I56F8, U17F15};
@@ -99,9 +96,11 @@ fn stiffnesses(share: f64) -> Stiffnesses {
 
 fn config() -> FrictionConfig {
     FrictionConfig {
-        ways: elements().map(|(_, way)| U17F15::from_num(way)),
-        stiffnesses: stiffnesses(1.0),
-        of_table: stiffnesses(TABLE),
+        elements: Elements {
+            ways: elements().map(|(_, way)| U17F15::from_num(way)),
+            stiffnesses: stiffnesses(1.0),
+            of_table: stiffnesses(TABLE),
+        },
         levels: LevelCurve {
             intervals_per_velocity: I8F24::from_num(PER_VELOCITY),
             factors: factors().map(I8F24::from_num),
@@ -522,7 +521,10 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
     };
     let law = |friction: Option<FrictionConfig>| Config {
         cascade,
-        friction,
+        compensation: friction.map(|model| Compensation {
+            friction: Some(model),
+            ..Compensation::default()
+        }),
         ..plain()
     };
     let mut state = State::default();
@@ -533,10 +535,7 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
             load: reference.position,
             reference,
         };
-        controller::step(config, &mut state, &here)
-            .torque
-            .0
-            .to_num::<f64>()
+        f64::from(controller::step(config, &mut state, &here).micro_nm)
     };
     let on = law(Some(model));
     let before = (2..500).map(|cycle| torque_at(&on, cycle)).last().unwrap();
@@ -563,14 +562,11 @@ fn plain() -> Config {
             slow_down: ramp,
             filter_log2: 0,
             setpoint_cycles: 1,
+            middle: ReferenceConfig::NOWHERE,
         },
         position_source: PositionSource::Load,
         cascade: CascadeConfig::default(),
-        pulse: PulseConfig::default(),
-        backlash: BacklashConfig::default(),
-        coulomb: Torque::ZERO,
-        friction: None,
-        ripple: RippleConfig::default(),
+        compensation: None,
         filter: FilterConfig::OFF,
     }
 }

@@ -35,6 +35,7 @@ fn config() -> ReferenceConfig {
         },
         filter_log2: 0,
         setpoint_cycles: 1,
+        middle: ReferenceConfig::NOWHERE,
     }
 }
 

@@ -1,12 +1,9 @@
 //! The law starts without a kick: at standstill with a torque that holds the axis, and out of
 //! motion.
 
-use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
 use controller::filter::FilterConfig;
-use controller::pulse::PulseConfig;
 use controller::reference::{Mode, Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
-use controller::ripple::RippleConfig;
 use controller::units::{
     AccelerationGain, Position, PositionGain, Torque, TorqueLimit, Velocity, VelocityGain,
 };
@@ -34,6 +31,7 @@ fn config() -> Config {
             slow_down: ramp,
             filter_log2: 0,
             setpoint_cycles: 1,
+            middle: ReferenceConfig::NOWHERE,
         },
         position_source: PositionSource::Load,
         cascade: CascadeConfig {
@@ -44,11 +42,7 @@ fn config() -> Config {
             velocity_filter: I2F30::from_num(0.6),
             torque_limit: TorqueLimit::from_micro_nm(14_323_944),
         },
-        pulse: PulseConfig::default(),
-        backlash: BacklashConfig::default(),
-        coulomb: Torque::ZERO,
-        friction: None,
-        ripple: RippleConfig::default(),
+        compensation: None,
         filter: FilterConfig::new([1 << 27, 0, 0, 3 << 27, 0]).unwrap(),
     }
 }
@@ -79,9 +73,9 @@ fn at_standstill_the_first_torque_is_the_one_that_holds() {
             },
         );
         assert!(
-            (output.torque.to_micro_nm_lossy() - 3_978_873).abs() <= 1,
-            "{:?}",
-            output.torque
+            (output.micro_nm - 3_978_873).abs() <= 1,
+            "{}",
+            output.micro_nm
         );
     }
 }
@@ -104,8 +98,7 @@ fn first_torque_of_a_stop(begun: &State) -> i32 {
             load: here,
         },
     )
-    .torque
-    .to_micro_nm_lossy()
+    .micro_nm
 }
 
 #[test]

@@ -91,12 +91,13 @@ impl Twin {
         let integral_gain: f64 = cascade.integral_gain.0.to_num();
         let acceleration_gain: f64 = cascade.acceleration_gain.0.to_num();
         let share: f64 = cascade.velocity_filter.to_num();
+        let compensation = self.config.compensation.unwrap();
         let (height, decay): (f64, f64) = (
-            self.config.pulse.shape.amplitude.0.to_num(),
-            self.config.pulse.shape.decay.to_num(),
+            compensation.pulse.shape.amplitude.0.to_num(),
+            compensation.pulse.shape.decay.to_num(),
         );
         let limit = f64::from(cascade.torque_limit.micro_nm());
-        let coulomb: f64 = self.config.coulomb.0.to_num();
+        let coulomb: f64 = compensation.coulomb.0.to_num();
         let motor_velocity = motor - self.motor.replace(motor).unwrap_or(motor);
         self.pulse *= decay;
         if path.next_velocity != 0.0 {

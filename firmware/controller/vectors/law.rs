@@ -6,12 +6,11 @@
     reason = "part of two programs, of which each uses what it needs"
 )]
 
-use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
+use controller::compensation::Compensation;
 use controller::filter::FilterConfig;
 use controller::pulse::{PulseConfig, Shape};
 use controller::reference::{Ramp, ReferenceConfig, ReferenceInput, ReferenceState};
-use controller::ripple::RippleConfig;
 use controller::units::{
     AccelerationGain, Position, PositionError, PositionGain, Torque, TorqueLimit, Velocity,
     VelocityGain,
@@ -48,6 +47,7 @@ const UNLIMITED: ReferenceConfig = ReferenceConfig {
     },
     filter_log2: 0,
     setpoint_cycles: 1,
+    middle: ReferenceConfig::NOWHERE,
 };
 
 /// Every part of the base law on, and pulse and Coulomb feedforward.
@@ -63,20 +63,20 @@ pub fn config(source: PositionSource) -> Config {
             velocity_filter: I2F30::from_num(FILTER_SHARE),
             torque_limit: TorqueLimit::from_micro_nm(LIMIT as i32),
         },
-        pulse: PulseConfig {
-            shape: Shape {
-                amplitude: Velocity(I20F12::from_num(PULSE_HEIGHT)),
-                decay: I2F30::from_num(PULSE_DECAY),
-                start_delay_cycles: 0,
+        compensation: Some(Compensation {
+            pulse: PulseConfig {
+                shape: Shape {
+                    amplitude: Velocity(I20F12::from_num(PULSE_HEIGHT)),
+                    decay: I2F30::from_num(PULSE_DECAY),
+                    start_delay_cycles: 0,
+                },
+                schedule: None,
+                shortest_way: PositionError::ZERO,
+                stop_cycles: u16::MAX,
             },
-            schedule: None,
-            shortest_way: PositionError::ZERO,
-            stop_cycles: u16::MAX,
-        },
-        backlash: BacklashConfig::default(),
-        coulomb: Torque::from_micro_nm(COULOMB as i32),
-        friction: None,
-        ripple: RippleConfig::default(),
+            coulomb: Torque::from_micro_nm(COULOMB as i32),
+            ..Compensation::default()
+        }),
         filter: FilterConfig::OFF,
     }
 }
@@ -104,6 +104,5 @@ pub fn torque(
             load,
         },
     )
-    .torque
-    .to_micro_nm_lossy()
+    .micro_nm
 }

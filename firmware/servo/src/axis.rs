@@ -64,8 +64,8 @@ pub struct Axis {
 /// What the last cycle came to, for status frame and readings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Last {
-    /// Commanded torque.
-    pub torque: Torque,
+    /// Commanded torque, µN·m.
+    pub micro_nm: i32,
     /// Reference − measurement.
     pub following_error: PositionError,
     /// The reference, where there is one.
@@ -79,7 +79,8 @@ pub struct Last {
 /// What the node knows beyond the frames of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Circumstances {
-    /// The master's SYNC period is that of the parameter set.
+    /// The master's SYNC period is that of the parameter set, which is asked before there is
+    /// torque.
     pub period_fits: bool,
     /// Control words count (NMT operational, and no way out of it pending).
     pub listens: bool,
@@ -111,7 +112,7 @@ impl Axis {
         self.last.warning |= missed || refused || implausible;
         StageOutput {
             control: self.drive.stage_control(),
-            torque: self.last.torque,
+            micro_nm: self.last.micro_nm,
         }
     }
 
@@ -176,7 +177,7 @@ impl Axis {
 
     /// Other parameters hold from now on; what was refined is of the model before.
     pub(crate) fn begin_set(&mut self, before: Option<&Settings>, now: &Settings) {
-        let same = before.is_some_and(|before| before.config.friction == now.config.friction);
+        let same = before.is_some_and(|before| before.config.friction() == now.config.friction());
         if !same {
             self.law.forget_level();
         }
@@ -368,7 +369,7 @@ impl Axis {
     fn rest(&mut self) {
         self.law = State::default().with_friction(self.law.friction());
         self.track = None;
-        self.last.torque = Torque::ZERO;
+        self.last.micro_nm = 0;
         self.last.reference = None;
         self.last.limited = false;
     }
@@ -448,7 +449,7 @@ impl Axis {
         }
         if before.is_energised() && !self.drive.is_energised() {
             if matches!(before, Drive::Holding(..)) {
-                self.held = Some(self.last.torque);
+                self.held = Some(Torque::from_micro_nm(self.last.micro_nm));
             }
             self.rest();
         }
@@ -467,13 +468,13 @@ impl Axis {
             load: measured.load,
         };
         let Output {
-            torque,
+            micro_nm,
             following_error,
             limited,
         } = controller::step(&settings.config, &mut self.law, &input);
         self.last.following_error = following_error;
         self.last.limited = limited || reference.limited;
-        self.last.torque = torque;
+        self.last.micro_nm = micro_nm;
         if following_error.is_beyond(settings.limits.following_error)
             && self.drive.fault().is_none()
         {

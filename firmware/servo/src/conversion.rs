@@ -18,10 +18,11 @@ mod pulse;
 
 use controller::backlash::BacklashConfig;
 use controller::cascade::CascadeConfig;
+use controller::compensation::Compensation;
 use controller::filter::{FilterConfig, FilterError};
 use controller::friction::{
-    Ahead, ByDirection, FrictionConfig, Gap, LEVELS, LevelCurve, LevelLag, LevelPlace, LevelTuning,
-    STIFFNESS_BITS, Screw, SlipWays, Stiffnesses,
+    Ahead, ByDirection, Elements, FrictionConfig, Gap, LEVELS, LevelCurve, LevelLag, LevelPlace,
+    LevelTuning, STIFFNESS_BITS, Screw,
 };
 use controller::reference::{Ramp, ReferenceConfig};
 use controller::ripple::{RippleConfig, Wave};
@@ -83,10 +84,7 @@ impl ParameterSet {
     /// [`SetError`] where values that are fine one by one do not go together, or do not fit the
     /// machine units.
     pub fn settings(&self) -> Result<Settings, SetError> {
-        let reading = Reading {
-            set: self,
-            period_us: u64::from(self.get(Parameter::CyclePeriod).unsigned_abs()),
-        };
+        let reading = Reading::of(self);
         reading.check_limits()?;
         Ok(Settings {
             period_us: self.get(Parameter::CyclePeriod).unsigned_abs(),
@@ -106,6 +104,13 @@ impl ParameterSet {
 struct Reading<'a> {
     set: &'a ParameterSet,
     period_us: u64,
+}
+
+impl<'a> Reading<'a> {
+    fn of(set: &'a ParameterSet) -> Self {
+        let period_us = u64::from(set.get(Parameter::CyclePeriod).unsigned_abs());
+        Self { set, period_us }
+    }
 }
 
 // Conversions of one value.
@@ -207,13 +212,19 @@ impl Reading<'_> {
                 _ => PositionSource::Load,
             },
             cascade: self.cascade()?,
+            compensation: Some(self.compensation()?).filter(|own| !own.is_off()),
+            filter: self.filter()?,
+            reference: self.reference()?,
+        })
+    }
+
+    fn compensation(&self) -> Result<Compensation, SetError> {
+        Ok(Compensation {
             pulse: self.pulse()?,
             backlash: self.backlash()?,
             coulomb: self.torque(Parameter::CoulombTorque),
             friction: self.friction()?,
             ripple: self.ripple()?,
-            filter: self.filter()?,
-            reference: self.reference()?,
         })
     }
 
@@ -333,13 +344,10 @@ impl Reading<'_> {
         }
         let ahead = self.cycles(Parameter::FrictionAhead)?;
         let torque = ahead.saturating_add(Ahead::HALF_A_CYCLE);
-        let (ways, [stiffnesses, of_table]) = self.elements()?;
         let viscous = self.viscous(Parameter::ViscousTorque)?;
         let asymmetry = self.viscous(Parameter::ViscousAsymmetry)?;
         Ok(Some(FrictionConfig {
-            ways,
-            stiffnesses,
-            of_table,
+            elements: self.elements()?,
             levels: self.levels()?,
             lag: self.level_lag(I8F24::ONE),
             lag_per_way: self.lag_per_way()?,
@@ -358,15 +366,16 @@ impl Reading<'_> {
         }))
     }
 
-    /// Levels and ways of elements become ways and stiffnesses, those of the table last; a level
-    /// that is too low for a stiffness counts as zero.
-    fn elements(&self) -> Result<(SlipWays, [Stiffnesses; 2]), SetError> {
-        let (mut ways, mut stiffnesses, mut of_table) = (
-            SlipWays::default(),
-            Stiffnesses::default(),
-            Stiffnesses::default(),
-        );
-        let each = ways.iter_mut().zip(&mut stiffnesses).zip(&mut of_table);
+    /// Levels and ways of elements become ways and stiffnesses; a level that is too low for a
+    /// stiffness counts as zero.
+    fn elements(&self) -> Result<Elements, SetError> {
+        let mut elements = Elements::default();
+        let Elements {
+            ways,
+            stiffnesses,
+            of_table,
+        } = &mut elements;
+        let each = ways.iter_mut().zip(stiffnesses).zip(of_table);
         for (((level, way), on_motor), ((slips_after, all), table)) in Parameter::FRICTION_LEVELS
             .into_iter()
             .zip(Parameter::FRICTION_WAYS)
@@ -379,7 +388,7 @@ impl Reading<'_> {
             *all = self.stiffness(level, (whole, whole), *slips_after)?;
             *table = self.stiffness(level, (left, whole), *slips_after)?;
         }
-        Ok((ways, [stiffnesses, of_table]))
+        Ok(elements)
     }
 
     /// Below 2²⁴ · 2²⁷ · 2¹⁵.
@@ -721,20 +730,30 @@ impl Reading<'_> {
         if low >= high {
             return Err(SetError::PositionLimitsCrossed(Parameter::PositionMin));
         }
+        let position_min = if low == i32::MIN {
+            Position(I56F8::MIN)
+        } else {
+            Position::from_counts(i64::from(low))
+        };
+        let position_max = if high == i32::MAX {
+            Position(I56F8::MAX)
+        } else {
+            Position::from_counts(i64::from(high))
+        };
+        let (velocity_limit, acceleration_limit) = (
+            self.limit(Parameter::VelocityLimit, 1)?,
+            self.limit(Parameter::AccelerationLimit, 2)?,
+        );
         Ok(ReferenceConfig {
-            velocity_limit: self.limit(Parameter::VelocityLimit, 1)?,
-            acceleration_limit: self.limit(Parameter::AccelerationLimit, 2)?,
+            velocity_limit,
+            acceleration_limit,
             step: self.limit(Parameter::StepJerk, 3)?,
-            position_min: if low == i32::MIN {
-                Position(I56F8::MIN)
-            } else {
-                Position::from_counts(i64::from(low))
-            },
-            position_max: if high == i32::MAX {
-                Position(I56F8::MAX)
-            } else {
-                Position::from_counts(i64::from(high))
-            },
+            position_min,
+            position_max,
+            middle: braking_counts(velocity_limit, acceleration_limit)
+                .map_or(ReferenceConfig::NOWHERE, |way| {
+                    ReferenceConfig::middle_of([position_min, position_max], way)
+                }),
             quick_stop: self.ramp(Parameter::QuickStopDeceleration)?,
             slow_down: self.ramp(Parameter::SlowDownDeceleration)?,
             filter_log2: self.small(Parameter::SetpointFilter),
@@ -894,6 +913,16 @@ impl Reading<'_> {
     }
 }
 
+/// The way of a braking from a velocity in whole counts, `v² / 2 a`; `None` beyond 21 m.
+fn braking_counts(velocity: Velocity, acceleration: Velocity) -> Option<i32> {
+    // As the reference stage has them, to 2⁻⁸ of a count, which a velocity may be above its limit.
+    let [v, a] = [velocity, acceleration]
+        .map(|limit| u64::from(limit.0.to_bits().unsigned_abs().wrapping_shr(4)));
+    let v = v.saturating_add(1);
+    let way = Fraction::new(&[v, v], &[a, 2, Q8]).and_then(Fraction::nearest)?;
+    i32::try_from(way).ok()
+}
+
 #[cfg(test)]
 #[allow(clippy::float_arithmetic, reason = "the reference is a float")]
 mod tests {
@@ -996,15 +1025,21 @@ mod tests {
         ]
     }
 
-    fn held(settings: &Settings) -> Vec<i64> {
+    /// Parts that are off included, which settings are without.
+    fn compensation(set: &ParameterSet) -> Compensation {
+        Reading::of(set).compensation().unwrap()
+    }
+
+    fn held(set: &ParameterSet, settings: &Settings) -> Vec<i64> {
         let (cascade, reference) = (settings.config.cascade, settings.config.reference);
+        let compensation = compensation(set);
         vec![
             i64::from(cascade.position_gain.0.to_bits()),
             i64::from(cascade.velocity_gain.0.to_bits()),
             i64::from(cascade.integral_gain.0.to_bits()),
             i64::from(cascade.acceleration_gain.0.to_bits()),
-            i64::from(settings.config.backlash.half_gap.0.to_bits()),
-            i64::from(settings.config.pulse.shape.amplitude.0.to_bits()),
+            i64::from(compensation.backlash.half_gap.0.to_bits()),
+            i64::from(compensation.pulse.shape.amplitude.0.to_bits()),
             i64::from(reference.velocity_limit.0.to_bits()),
             i64::from(reference.acceleration_limit.0.to_bits()),
             i64::from(reference.quick_stop.deceleration.0.to_bits()),
@@ -1012,9 +1047,24 @@ mod tests {
             i64::from(reference.quick_stop.jerk.0.to_bits()),
             i64::from(reference.step.0.to_bits()),
             (i64::from(settings.way.whole) << 32) + i64::from(settings.way.fraction),
-            i64::from(settings.config.pulse.shape.start_delay_cycles),
-            i64::from(settings.config.pulse.shortest_way.0.to_bits()),
+            i64::from(compensation.pulse.shape.start_delay_cycles),
+            i64::from(compensation.pulse.shortest_way.0.to_bits()),
         ]
+    }
+
+    #[test]
+    fn amid_the_travel_no_cycle_looks_whether_the_axis_can_stop() {
+        let set = with(&[
+            (Parameter::VelocityLimit, 500_000),
+            (Parameter::AccelerationLimit, 5_000_000),
+            (Parameter::PositionMin, -20_000_000),
+            (Parameter::PositionMax, 30_000_000),
+        ]);
+        let middle = set.settings().unwrap().config.reference.middle;
+        // (0.5 m/s)² / (2 · 5 m/s²) are 25 mm of the 200 and 300.
+        let got = middle.map(|position| 1.0e-5 * position.0.to_num::<f64>());
+        let near = |got: f64, wanted: f64| (got - wanted).abs() < 0.01;
+        assert!(near(got[0], -175.0) && near(got[1], 275.0), "{got:?} mm");
     }
 
     /// `exp(−T/τ)` as the settings hold it, and as a real number.
@@ -1027,7 +1077,7 @@ mod tests {
         [
             (1.0 - share, of(Parameter::VelocityFilterTime)),
             (
-                settings.config.pulse.shape.decay.to_num(),
+                compensation(set).pulse.shape.decay.to_num(),
                 of(Parameter::PulseTime),
             ),
         ]
@@ -1041,7 +1091,7 @@ mod tests {
     fn check(set: &ParameterSet) -> Result<(), TestCaseError> {
         match set.settings() {
             Ok(settings) => {
-                for ((parameter, exact), held) in exact(set).into_iter().zip(held(&settings)) {
+                for ((parameter, exact), held) in exact(set).into_iter().zip(held(set, &settings)) {
                     prop_assert!(
                         is_close(held, exact),
                         "{:?}: {} for {}",
@@ -1107,10 +1157,15 @@ mod tests {
         };
         // 0.1 mN·m to 268 N·m, 10 nm to 1 mm, in tenths of a nanometre.
         for (level, way) in [(100, 10_000_000), (100_000, 100), (250_000_000, 10_000_000)] {
-            let friction = element(level, way).unwrap().config.friction.unwrap();
+            let friction = element(level, way)
+                .unwrap()
+                .config
+                .friction()
+                .copied()
+                .unwrap();
             let [counts, stiffness] = [
-                friction.ways[0].to_num::<f64>(),
-                f64::from(friction.stiffnesses[0]) * 2.0_f64.powi(12 - 24),
+                friction.elements.ways[0].to_num::<f64>(),
+                f64::from(friction.elements.stiffnesses[0]) * 2.0_f64.powi(12 - 24),
             ];
             assert!(
                 (counts / (0.01 * f64::from(way)) - 1.0).abs() < 1.0e-4,
@@ -1138,7 +1193,14 @@ mod tests {
                 (Parameter::GapTorque, 50_000),
                 (Parameter::GapVelocity, velocity),
             ]);
-            set.settings().unwrap().config.friction.unwrap().screw.gap
+            set.settings()
+                .unwrap()
+                .config
+                .friction()
+                .copied()
+                .unwrap()
+                .screw
+                .gap
         };
         // 6 µm in tenths of a nanometre, 1.5 mm/s in µm/s: 150 counts per ms.
         for (period_us, counts) in [(1000, 150.0), (250, 37.5)] {
@@ -1176,7 +1238,7 @@ mod tests {
                 (Parameter::FrictionAhead, period_us / 2),
                 (Parameter::ViscousTorque, 1_000_000),
             ]);
-            let friction = set.settings().unwrap().config.friction.unwrap();
+            let friction = set.settings().unwrap().config.friction().copied().unwrap();
             for (lag, cycles) in [
                 (friction.lag, 1.0),
                 (friction.torque.lag, 1.0),
@@ -1197,7 +1259,13 @@ mod tests {
             }
         }
         let without = with(&[(Parameter::ViscousTorque, 1_000_000)]);
-        let friction = without.settings().unwrap().config.friction.unwrap();
+        let friction = without
+            .settings()
+            .unwrap()
+            .config
+            .friction()
+            .copied()
+            .unwrap();
         assert_eq!(friction.lag, LevelLag::NONE);
     }
 

@@ -117,7 +117,7 @@ impl Servo {
         let first = self.timing.began_us().is_none();
         self.timing.begin_by_sync(now_us, counter);
         if first {
-            self.periodic.beat_now(now_us);
+            self.periodic.beat_now(now_us, self.silence_us());
         }
         self.open(counter, true);
     }
@@ -133,6 +133,7 @@ impl Servo {
         }
         self.activate();
         self.inbox.begin(counter);
+        self.timing.open();
         self.in_sync = in_sync;
     }
 
@@ -161,19 +162,17 @@ impl Servo {
         if let Some(settings) = self.committed.take() {
             self.timing.set_period(settings.period_us);
             self.axis.begin_set(self.active.as_ref(), &settings);
+            self.periodic.allow_silence(settings.limits.heartbeat_us);
             self.active = Some(settings);
         }
     }
 
     pub(crate) fn close_if_complete(&mut self) {
-        if !self.inbox.is_complete(false) {
-            return;
-        }
-        let wants_setpoint = self
-            .active
-            .as_ref()
-            .is_none_or(|settings| self.axis.expects_setpoint(settings));
-        if self.inbox.is_complete(wants_setpoint) {
+        let wants_setpoint = || {
+            let settings = self.active.as_ref();
+            settings.is_none_or(|settings| self.axis.expects_setpoint(settings))
+        };
+        if self.inbox.is_complete(true) || self.inbox.is_complete(false) && !wants_setpoint() {
             self.close(false);
         }
     }
@@ -181,6 +180,7 @@ impl Servo {
     /// Closes the cycle: steps the axis and answers.
     fn close(&mut self, by_deadline: bool) {
         self.inbox.close();
+        self.timing.close();
         let stage = self.step_axis(None);
         let late = by_deadline || !self.in_sync;
         let counts = &mut self.axis.watchdog.counts;
@@ -201,7 +201,7 @@ impl Servo {
     /// `instead` of what is in the inbox.
     fn step_axis(&mut self, instead: Option<&Contents>) -> StageOutput {
         let circumstances = Circumstances {
-            period_fits: self.period_fits(),
+            period_fits: self.axis.drive.is_energised() || self.period_fits(),
             listens: self.nmt == NmtState::Operational && self.pending_nmt.is_none(),
             in_sync: self.in_sync,
         };

@@ -187,12 +187,14 @@ impl Followed {
     /// The velocity since the last good position, where the axis can have reached this one; `jump`
     /// is what it may be beside what was expected, for each cycle since then.
     fn reached(&self, position: Position, jump: PositionError) -> Option<Velocity> {
-        let way = position.error_from(self.at);
-        let off = way.minus(self.velocity.way_lossy());
         if self.predicted_cycles == 0 {
             // The last position was good, and this is the way since then.
+            let way = position.exact_error_from(self.at)?;
+            let off = way.minus(self.velocity.way_lossy());
             return (!off.is_beyond(jump)).then(|| way.in_a_cycle());
         }
+        let way = position.error_from(self.at);
+        let off = way.minus(self.velocity.way_lossy());
         let cycles = self.predicted_cycles.saturating_add(1);
         let allowed = PositionError(jump.0.saturating_mul_int(i32::from(cycles)));
         // Both may be at the end of their range.

@@ -91,8 +91,10 @@ impl Servo {
     }
 
     fn take_frame(&mut self, frame: &CanFrame, now_us: u64) {
-        self.start_clock(now_us);
-        self.catch_up(now_us);
+        if !self.timing.is_quiet(now_us) {
+            self.start_clock(now_us);
+            self.catch_up(now_us);
+        }
         if let Some(kind) = message::kind_of(self.ids, frame)
             && let Err(error) = self.on_known(kind, frame, now_us)
         {
@@ -213,7 +215,7 @@ impl Servo {
     }
 
     fn on_plant_heartbeat(&mut self, state: NmtState, now_us: u64) {
-        self.periodic.hear_plant(now_us);
+        self.periodic.hear_plant(now_us, self.silence_us());
         if state == NmtState::Initialising {
             // A plant that starts anew delivers nothing until it says so.
             self.axis.stage = StageInput::default();

@@ -22,26 +22,32 @@ pub(crate) struct Periodic {
     said: Option<(StatusWord, Option<Fault>)>,
     heartbeat_due_us: Option<u64>,
     plant_heard_us: Option<u64>,
+    /// When it counts as silent, unless it is heard before.
+    plant_silent_us: u64,
 }
 
 impl Periodic {
     /// The first cycle carries a heartbeat, so that a run looks the same wherever it is made.
-    pub(crate) const fn beat_now(&mut self, now_us: u64) {
+    pub(crate) const fn beat_now(&mut self, now_us: u64, allowed_us: u64) {
         self.heartbeat_due_us = Some(now_us);
-        self.plant_heard_us = Some(now_us);
+        self.hear_plant(now_us, allowed_us);
     }
 
     pub(crate) const fn heartbeat_due_us(&self) -> Option<u64> {
         self.heartbeat_due_us
     }
 
-    pub(crate) const fn hear_plant(&mut self, now_us: u64) {
+    pub(crate) const fn hear_plant(&mut self, now_us: u64, allowed_us: u64) {
         self.plant_heard_us = Some(now_us);
+        self.allow_silence(allowed_us);
     }
 
-    fn plant_is_silent(&self, now_us: u64, allowed_us: u64) -> bool {
-        self.plant_heard_us
-            .is_some_and(|heard| now_us.saturating_sub(heard) > allowed_us)
+    /// The plant may be silent for so long.
+    pub(crate) const fn allow_silence(&mut self, allowed_us: u64) {
+        self.plant_silent_us = match self.plant_heard_us {
+            Some(heard_us) => heard_us.saturating_add(allowed_us),
+            None => u64::MAX,
+        };
     }
 
     fn status_is_due(&mut self, now: (StatusWord, Option<Fault>)) -> bool {
@@ -74,7 +80,7 @@ impl Servo {
         let Some(counter) = self.inbox.counter() else {
             return;
         };
-        let torque = TorqueMicroNm(stage.torque.whole_micro_nm());
+        let torque = TorqueMicroNm(stage.micro_nm);
         let torque = message::Torque {
             torque,
             control: stage.control,
@@ -87,7 +93,7 @@ impl Servo {
         let (word, fault) = (self.status_word(), self.axis.drive.fault());
         if self.periodic.status_is_due((word, fault)) {
             let status = self.status(word, fault);
-            self.send(Message::Status(status));
+            self.put(status.encode(self.ids));
             self.axis.last.warning = false;
         }
         if let Some(now_us) = self.timing.began_us() {
@@ -126,12 +132,15 @@ impl Servo {
         self.timing.periods_us(HEARTBEAT_EVERY_CYCLES)
     }
 
-    fn watch_plant(&mut self, now_us: u64) {
-        let allowed_us = self
-            .active
+    /// How long the plant may be silent.
+    pub(crate) fn silence_us(&self) -> u64 {
+        self.active
             .as_ref()
-            .map_or(0, |settings| settings.limits.heartbeat_us);
-        if self.axis.drive.is_energised() && self.periodic.plant_is_silent(now_us, allowed_us) {
+            .map_or(0, |settings| settings.limits.heartbeat_us)
+    }
+
+    fn watch_plant(&mut self, now_us: u64) {
+        if now_us > self.periodic.plant_silent_us && self.axis.drive.is_energised() {
             self.latch(Fault::HeartbeatLost);
         }
     }
@@ -171,11 +180,7 @@ impl Servo {
             .active
             .as_ref()
             .map_or(1, |settings| settings.rated_torque_mnm);
-        let per_mille = last
-            .torque
-            .whole_micro_nm()
-            .checked_div(rated_mnm)
-            .unwrap_or(0);
+        let per_mille = last.micro_nm.checked_div(rated_mnm).unwrap_or(0);
         Status {
             status: word,
             following_error: FollowingError24::saturating(last.following_error.0.to_num()),
@@ -200,11 +205,11 @@ impl Servo {
             (StatusWord::INTERNAL_LIMIT, self.axis.last.limited),
             (StatusWord::FOLLOWS_SETPOINT, follows),
         ];
-        bits.into_iter()
-            .filter(|(_, is_set)| *is_set)
-            .fold(StatusWord::of(drive.state()), |word, (bit, _)| {
-                word.with(bit)
-            })
+        // Without a branch for each.
+        let word = StatusWord::of(drive.state());
+        bits.into_iter().fold(word, |word, (bit, is_set)| {
+            word.with(bit.wrapping_mul(u16::from(is_set)))
+        })
     }
 
     pub(crate) fn readings(&self) -> Readings {

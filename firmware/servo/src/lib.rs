@@ -186,8 +186,8 @@ impl Servo {
 
     /// Torque that is commanded at present.
     #[must_use]
-    pub const fn torque(&self) -> Torque {
-        self.axis.last.torque
+    pub fn torque(&self) -> Torque {
+        Torque::from_micro_nm(self.axis.last.micro_nm)
     }
 
     /// The commanded reference of the last cycle; `None` without torque.

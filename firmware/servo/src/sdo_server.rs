@@ -444,8 +444,7 @@ mod tests {
         ask(&mut server, choose(1));
         assert_eq!(read(&mut server, delay), 0, "active");
         assert_eq!(ask(&mut server, COMMIT), COMMITTED);
-        let settings = server.active.settings().unwrap();
-        assert_eq!(settings.config.pulse.shape.start_delay_cycles, 7);
+        assert_eq!(server.active.get(Parameter::PulseStartDelay), 7000);
         assert_eq!(
             (read(&mut server, delay), read(&mut server, objects::COMMIT)),
             (7000, 1)

@@ -5,7 +5,6 @@
 //! frame), or an inverter on the board. The drive believes only what the stage says of itself:
 //! `operation enabled` without its word does not exist.
 
-use controller::units::Torque;
 use protocol::Fault;
 use protocol::message::PlantStatus;
 use protocol::states::{BrakeState, ControlWord, DriveState};
@@ -79,8 +78,8 @@ impl From<PlantStatus> for StageInput {
 pub struct StageOutput {
     /// Enable and brake.
     pub control: ControlWord,
-    /// Torque.
-    pub torque: Torque,
+    /// Torque, µN·m.
+    pub micro_nm: i32,
 }
 
 #[cfg(test)]

@@ -19,6 +19,8 @@ pub struct Timing {
     spans: Spans,
     /// When the present cycle began.
     began_us: Option<u64>,
+    /// Nothing is due before this, whatever the drive does; zero: not known.
+    quiet_until_us: u64,
     sync: Option<(u64, SyncCounter)>,
     odd_intervals: u8,
 }
@@ -58,6 +60,7 @@ impl Timing {
         Self {
             spans: Spans::of(period_us),
             began_us: None,
+            quiet_until_us: 0,
             sync: None,
             odd_intervals: 0,
         }
@@ -67,10 +70,28 @@ impl Timing {
     pub const fn set_period(&mut self, period_us: u32) {
         self.spans = Spans::of(period_us);
         self.odd_intervals = 0;
+        self.quiet_until_us = 0;
     }
 
     const fn begin(&mut self, at_us: u64) {
         self.began_us = Some(at_us);
+        self.quiet_until_us = 0;
+    }
+
+    /// The present cycle waits for its frames: nothing is due before its deadline.
+    pub fn open(&mut self) {
+        self.quiet_until_us = self.deadline_us().unwrap_or(0);
+    }
+
+    /// The present cycle is closed: nothing is due before the next begins by itself.
+    pub fn close(&mut self) {
+        self.quiet_until_us = self.own_timer_us().unwrap_or(0);
+    }
+
+    /// Whether it is known that nothing was due until now.
+    #[must_use]
+    pub const fn is_quiet(&self, now_us: u64) -> bool {
+        now_us < self.quiet_until_us
     }
 
     /// A cycle begins with a SYNC frame.
@@ -100,8 +121,12 @@ impl Timing {
     fn note_sync(&mut self, now_us: u64, counter: SyncCounter) {
         if let Some((last_us, last)) = self.sync {
             let period_us = self.spans.period_us;
-            let wanted_us = u32::from(counter.cycles_since(last)).saturating_mul(period_us);
-            let got_us = u32::try_from(now_us.saturating_sub(last_us)).unwrap_or(u32::MAX);
+            let wanted_us = if counter == last.next() {
+                period_us
+            } else {
+                u32::from(counter.cycles_since(last)).saturating_mul(period_us)
+            };
+            let got_us = u32::try_from(now_us.wrapping_sub(last_us)).unwrap_or(u32::MAX);
             let odd = got_us.abs_diff(wanted_us) > period_us >> 2;
             self.odd_intervals = if odd {
                 self.odd_intervals.saturating_add(1)
@@ -144,7 +169,8 @@ impl Timing {
 
     fn after(&self, span_us: u32) -> Option<u64> {
         let began_us = self.began_us?;
-        Some(began_us.saturating_add(u64::from(span_us)))
+        // 2⁶⁴ µs are 580 000 years.
+        Some(began_us.wrapping_add(u64::from(span_us)))
     }
 
     /// Whether the last SYNC frame is longer ago than a timeout.

@@ -22,6 +22,24 @@ pub type Stiffnesses = [i32; ELEMENTS];
 /// Fractional bits of a stiffness: 2⁷ µN·m per 2⁻¹² of 10 nm at most.
 pub const STIFFNESS_BITS: u32 = 24;
 
+/// The elements of both sides of the screw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Elements {
+    /// Ways after which they slip.
+    pub ways: SlipWays,
+    /// Their stiffnesses; the sum of their levels, stiffness times way, is the Coulomb torque.
+    pub stiffnesses: Stiffnesses,
+    /// What of them is the table's, and winds the screw up.
+    pub of_table: Stiffnesses,
+}
+
+/// Friction of both sides of the screw, and what of it is the table's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Force {
+    pub(super) all: Coarse,
+    pub(super) table: Coarse,
+}
+
 /// How far an element is bent, 10 nm.
 pub(super) type Bend = I20F12;
 
@@ -55,12 +73,20 @@ impl Bends {
     }
 
     /// Their torque with such stiffnesses, saturated. That of one is below 2⁵⁵.
-    pub(super) fn torque(&self, stiffnesses: &Stiffnesses) -> Coarse {
+    fn torque(&self, stiffnesses: &Stiffnesses) -> Coarse {
         let each = self.0.iter().zip(stiffnesses);
         let sum = each.fold(0_i64, |sum, (bend, stiffness)| {
             sum.wrapping_add(i64::from(*stiffness).wrapping_mul(i64::from(bend.to_bits())))
         });
         Coarse::from_bits(narrowed::<{ STIFFNESS_BITS - Coarse::FRAC_NBITS }>(sum))
+    }
+
+    /// What they hold.
+    pub(super) fn force(&self, elements: &Elements) -> Force {
+        Force {
+            all: self.torque(&elements.stiffnesses),
+            table: self.torque(&elements.of_table),
+        }
     }
 }
 

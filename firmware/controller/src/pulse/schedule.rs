@@ -12,8 +12,8 @@ use fixed::types::{I2F30, I20F12};
 
 use super::Shape;
 use crate::direction::Direction;
-use crate::root::root;
-use crate::units::Velocity;
+use crate::root::{root, root_of_word};
+use crate::units::{Velocity, lower};
 
 /// Points of a schedule: 4⁸ from the first acceleration to the last one.
 pub const POINTS: usize = 9;
@@ -84,7 +84,7 @@ fn root_of(mean: MeanAcceleration) -> u64 {
         .saturating_sub(square.leading_zeros())
         .wrapping_shr(1);
     let head = u32::try_from(square.wrapping_shr(pairs_off.wrapping_mul(2)));
-    u64::from(root(u64::from(head.unwrap_or(u32::MAX)))).wrapping_shl(pairs_off)
+    u64::from(root_of_word(head.unwrap_or(u32::MAX))).wrapping_shl(pairs_off)
 }
 
 /// Below one.
@@ -97,8 +97,8 @@ fn between(from: &Point, to: &Point, share: i64, direction: Direction) -> Shape 
         let way = i64::from(to)
             .wrapping_sub(i64::from(from))
             .wrapping_mul(share);
-        let bits = i64::from(from).wrapping_add(way.wrapping_shr(ONE_LOG2));
-        i32::try_from(bits).unwrap_or_default()
+        // Between the two.
+        from.wrapping_add(lower(way.wrapping_shr(ONE_LOG2)))
     };
     let height = |point: &Point| match direction {
         Direction::Positive => point.forward.0.to_bits(),
@@ -123,9 +123,10 @@ pub struct MeanAcceleration(FixedI64<U32>);
 impl MeanAcceleration {
     /// Takes the change of the velocity to the next cycle.
     pub(super) fn take(&mut self, schedule: &Schedule, change: Velocity) {
-        let off = FixedI64::<U32>::from(change.0).saturating_sub(self.0);
+        // Below 2⁵² bits, and so is every mean of them.
+        let off = FixedI64::<U32>::from(change.0).wrapping_sub(self.0);
         let step = FixedI64::from_bits(off.to_bits().wrapping_shr(schedule.mean_log2));
-        self.0 = self.0.saturating_add(step);
+        self.0 = self.0.wrapping_add(step);
     }
 }
 

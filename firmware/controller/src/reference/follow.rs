@@ -24,6 +24,7 @@ pub(super) struct Limits {
     pub(super) acceleration: Way,
     pub(super) position_min: I56F8,
     pub(super) position_max: I56F8,
+    pub(super) middle: [I56F8; 2],
 }
 
 /// Rounding of positions to 39 pm lets the velocity of a setpoint pass a limit by one bit, its
@@ -42,9 +43,17 @@ impl Limits {
         ) && within(
             track.acceleration,
             self.acceleration.saturating_add(ACCELERATION_ROUNDING),
-        ) && track.position >= self.position_min
-            && track.position <= self.position_max
-            && self.can_stop(track)
+        ) && (self.is_amid(track) || self.is_on_the_travel(track) && self.can_stop(track))
+    }
+
+    /// Within the velocity limit it stops from there.
+    fn is_amid(&self, track: &Track) -> bool {
+        let [from, to] = self.middle;
+        track.position >= from && track.position <= to
+    }
+
+    fn is_on_the_travel(&self, track: &Track) -> bool {
+        track.position >= self.position_min && track.position <= self.position_max
     }
 
     /// Whether the track stays within the position limits when it brakes from now on.
@@ -107,7 +116,7 @@ impl Limits {
 }
 
 /// 10 m in counts of 10 nm.
-const LONGEST_COUNTS: i32 = 1_000_000_000;
+pub(super) const LONGEST_COUNTS: i32 = 1_000_000_000;
 
 /// Where the setpoint is going.
 #[derive(Clone, Copy, Debug)]
@@ -166,5 +175,45 @@ fn braking_velocity(left: Way, acceleration: Way) -> Way {
         speed.saturating_neg()
     } else {
         speed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::ReferenceConfig;
+    use crate::units::Position;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn amid_the_travel_an_axis_within_its_velocity_limit_can_stop(
+            (limit, acceleration) in (1_i32..1 << 26, 1_i32..1 << 22),
+            share in prop_oneof![Just(-1024_i64), Just(1024), -1024_i64..=1024],
+            beyond in prop_oneof![Just(0_i64), 0_i64..1 << 20],
+            at_max in any::<bool>(),
+        ) {
+            let fastest = limit + VELOCITY_ROUNDING.to_bits();
+            let (square, twice) = (i64::from(fastest).pow(2), 512 * i64::from(acceleration));
+            let Ok(counts) = i32::try_from((square + twice / 2) / twice) else {
+                return Ok(());
+            };
+            let travel = [-1_i64, 1].map(|side| Position::from_counts(side * 5_000_000_000));
+            let middle = ReferenceConfig::middle_of(travel, counts).map(|at| at.0);
+            let [position_min, position_max] = travel.map(|at| at.0);
+            let limits = Limits {
+                velocity: Way::from_bits(limit),
+                acceleration: Way::from_bits(acceleration),
+                position_min,
+                position_max,
+                middle,
+            };
+            let inwards = I56F8::from_bits(beyond);
+            prop_assume!(middle[0] < middle[1]);
+            let position = if at_max { middle[1] - inwards } else { middle[0] + inwards };
+            let velocity = Way::from_bits(i32::try_from(i64::from(fastest) * share / 1024).unwrap());
+            let track = Track { position, velocity, acceleration: Way::ZERO };
+            prop_assert!(!limits.is_amid(&track) || limits.can_stop(&track), "{track:?}");
+        }
     }
 }

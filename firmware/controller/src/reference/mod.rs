@@ -43,6 +43,7 @@
 //!     slow_down: ramp,
 //!     filter_log2: 0,
 //!     setpoint_cycles: 1,
+//!     middle: ReferenceConfig::NOWHERE,
 //! };
 //! // 100 counts per cycle; the setpoint of cycle 8 is lost.
 //! let mut stage = ReferenceState::at(Position::from_counts(0), per_cycle(100));
@@ -65,7 +66,7 @@ mod triangle;
 use fixed::types::I56F8;
 
 use crate::units::{Acceleration, Position, Velocity};
-use follow::{Limits, Target, follow};
+use follow::{LONGEST_COUNTS, Limits, Target, follow};
 use ingest::{Bounds, Ingest, Revision, Taken};
 use interpolate::{Interpolation, MOST_CYCLES};
 use track::{
@@ -103,7 +104,33 @@ pub struct ReferenceConfig {
     pub filter_log2: u8,
     /// Setpoints come every 1 to 20 cycles.
     pub setpoint_cycles: u8,
+    /// Where an axis within its velocity limit stops before it comes to an end of the travel
+    /// ([`Self::middle_of`]): there a cycle does not look. [`Self::NOWHERE`] is right of any axis.
+    pub middle: [Position; 2],
 }
+
+impl ReferenceConfig {
+    /// No position lies between these.
+    pub const NOWHERE: [Position; 2] = [Position(I56F8::MAX), Position(I56F8::MIN)];
+
+    /// The travel without the way at both ends that a braking from the velocity limit takes, in
+    /// whole counts of 10 nm: at least `v² / 2 a`, with v a bit above the limit. Nowhere where
+    /// that is beyond 10 m: no look goes farther.
+    #[must_use]
+    pub fn middle_of([min, max]: [Position; 2], braking_counts: i32) -> [Position; 2] {
+        if braking_counts >= LONGEST_COUNTS {
+            return Self::NOWHERE;
+        }
+        let way = I56F8::from(braking_counts.saturating_add(ROUNDING_COUNTS));
+        [
+            Position(min.0.saturating_add(way)),
+            Position(max.0.saturating_sub(way)),
+        ]
+    }
+}
+
+/// What is left is rounded down to whole counts, and a braking way to nearest.
+const ROUNDING_COUNTS: i32 = 2;
 
 /// What the commanded track does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -453,6 +480,7 @@ fn limits_of(config: &ReferenceConfig) -> Limits {
         acceleration: way_of(config.acceleration_limit),
         position_min: config.position_min.0,
         position_max: config.position_max.0,
+        middle: config.middle.map(|position| position.0),
     }
 }
 

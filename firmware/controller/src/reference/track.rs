@@ -85,9 +85,9 @@ pub(super) fn exact_way(from: I56F8, to: I56F8) -> Option<Way> {
         .map(Way::from_bits)
 }
 
-/// Whether a magnitude is within a bound.
+/// Whether a magnitude is within a bound; never within a negative one.
 pub(super) fn within(value: Way, bound: Way) -> bool {
-    value.saturating_abs() <= bound
+    value <= bound && value >= bound.wrapping_neg()
 }
 
 /// `value` brought into `±bound`; a negative bound counts as zero.

@@ -81,6 +81,10 @@ mod tests {
     use super::*;
     use crate::parameters::ParameterSet;
 
+    fn pulse(set: &ParameterSet) -> PulseConfig {
+        Reading::of(set).pulse().unwrap()
+    }
+
     #[test]
     fn the_points_of_a_table_are_in_machine_units_of_its_cycle_time() {
         let mut set = ParameterSet::default();
@@ -99,7 +103,7 @@ mod tests {
         for place in Parameter::ADAPTIVE_DELAY {
             set.set(place, 5_000);
         }
-        let got = set.settings().unwrap().config.pulse.schedule.unwrap();
+        let got = pulse(&set).schedule.unwrap();
         let point = Point {
             forward: Velocity(I20F12::from_num(50)),
             backward: Velocity(I20F12::from_num(-100)),
@@ -117,8 +121,8 @@ mod tests {
         for place in Parameter::ADAPTIVE_TIME {
             set.set(place, 20_000_000);
         }
-        assert_eq!(set.settings().unwrap().config.pulse.schedule, None);
+        assert_eq!(pulse(&set).schedule, None);
         set.set(Parameter::AdaptiveBackward9, 1_000_000);
-        assert!(set.settings().unwrap().config.pulse.schedule.is_some());
+        assert!(pulse(&set).schedule.is_some());
     }
 }
