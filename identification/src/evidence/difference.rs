@@ -30,9 +30,11 @@ mod linearised;
 mod load;
 mod motor_side;
 mod refined;
+mod rounding;
 mod rubbing;
 mod search;
 mod slipping;
+mod smallest;
 mod spring;
 
 use std::cell::OnceCell;
@@ -41,7 +43,6 @@ use std::f64::consts::TAU;
 use axis_model::EffectName;
 
 pub(crate) use self::by_the_load::ByTheLoad;
-use self::by_the_load::Smallest;
 pub(crate) use self::columns::Path;
 use self::columns::{Apart, FittedWays, Way};
 pub(crate) use self::elsewhere::elsewhere;
@@ -52,6 +53,7 @@ pub(crate) use self::load::More;
 #[cfg(test)]
 pub(crate) use self::motor_side::MotorSide;
 use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
+use self::smallest::Smallest;
 use crate::evidence::selection::{self, Candidate, Output, Scored};
 use crate::evidence::thresholds::{
     DIFFERENCE_RMS_COUNTS, DIFFERENCE_SHARE, DIFFERENCE_SHARE_OF_ALL, DIFFERENCE_T, EFFORT_PERCENT,

@@ -115,7 +115,7 @@ fn sum_of_squares(answer: &[f64]) -> f64 {
 }
 
 /// Mean square that a low-pass leaves of white noise of one.
-fn white(filter: &LowPass) -> f64 {
+pub(crate) fn white(filter: &LowPass) -> f64 {
     sum_of_squares(&filter.apply(&impulse()))
 }
 

@@ -20,6 +20,7 @@ use super::motor_side::{self, MotorSide, Stiffness};
 use super::refined::stepped;
 use super::rubbing::{ALIKE, LoadFriction, MOST_GROWTH};
 use super::slipping;
+use super::smallest::Smallest;
 use super::spring::Spring;
 use crate::evidence::reversal::slip::Elements;
 use crate::evidence::thresholds::METHOD;
@@ -87,17 +88,6 @@ const REST: f64 = 0.1;
 /// of it.
 const TIMING: f64 = 4.0e-3;
 
-/// The smallest that is told of a load's motion.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Smallest {
-    /// Count of the load's scale.
-    pub count: f64,
-    /// Count of the motor's encoder.
-    pub motor_count: f64,
-    /// Velocity from which on an axis counts as moving.
-    pub velocity: f64,
-}
-
 /// What the wind-up at a place of such ways tells, by the rows in which the load moves.
 pub(super) fn told(
     apart: &Apart<'_>,
@@ -110,7 +100,7 @@ pub(super) fn told(
         return None;
     };
     let apart = apart.where_known(ways);
-    let stiffness = motor_side::stiffness(&apart, carried, smallest.motor_count)?;
+    let stiffness = motor_side::stiffness(&apart, carried, smallest)?;
     let stiffness = stiffness.or_on_moving_rows(spring);
     let apart = where_the_load_moves(apart, smallest.velocity);
     let apart = apart.without_strikes(ways);

@@ -20,17 +20,21 @@
 //! It goes with what the load's goes with, such as a viscous friction that differs by direction:
 //! without that the stiffness of a drawn machine was 256 N/µm for 175, with an interval of 36.
 //!
-//! Motor − load was measured, so noise of the effort does not bias the stiffness.
+//! Motor − load was measured, so noise of the effort does not bias the stiffness; what encoders
+//! round does, and is in the intervals ([`rounding`]).
 //! Units: m or rad, s, unit of the effort.
 
 use std::ops::RangeInclusive;
+use std::slice;
 
 use super::METHOD_OF_STIFFNESS;
 use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
+use super::rounding;
 use super::rubbing::Law;
+use super::smallest::Smallest;
 use super::spring::Spring;
 use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE, WRONG_IN_FORM};
 use crate::fit::blocks::{Blocks, Fit, Gain};
@@ -142,11 +146,17 @@ impl Stiffness {
 
 /// The stiffness as the effort shows it; `None` where it would be below zero. A motor that turns by
 /// less than a count of its encoder does not.
-pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Option<Stiffness> {
+pub(super) fn stiffness(
+    apart: &Apart<'_>,
+    carried: Carried,
+    smallest: Smallest,
+) -> Option<Stiffness> {
     let balance = Balance::of(apart);
     let wound = balance.wound(carried.flanks);
     let rubbing = Rubbing {
-        motor: LoadMotion::of_motor(apart.motion, apart.path.position, count),
+        motor: LoadMotion::of_motor(apart.motion, apart.path.position, smallest.motor_count),
+        rounding: rounding::in_the_difference(apart, smallest),
+        wound: &wound,
         apart,
         rows: balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
         carried,
@@ -155,7 +165,8 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Opti
     let plain = balance.rows(&OWN_WITHOUT_FRICTION, &wound, &apart.mask);
     let plain = Blocks::with(&plain, &[]);
     let without = plain.cross_validate();
-    let unrubbed = last(&without.coefficients, &plain.half_widths())?;
+    let softer = rubbing.softens(&OWN_WITHOUT_FRICTION, &[]);
+    let unrubbed = last(&without.coefficients, &plain.half_widths())?.within_share(softer);
     let best = rubbing.best();
     let by_law = rubbing.at(best);
     let gain = Gain::of(&without, &by_law.fit);
@@ -164,7 +175,7 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Opti
         && by_law.viscous.value >= -by_law.viscous.half_width
         && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width;
     let seen = is_clear.then(|| {
-        let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best);
+        let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best, unrubbed);
         match carried.friction.law {
             Law::Slip(_) => beside_elements(seen, motor_side, unrubbed),
             Law::Dahl => by_method(seen, motor_side, unrubbed),
@@ -186,16 +197,24 @@ pub(super) fn stiffness(apart: &Apart<'_>, carried: Carried, count: f64) -> Opti
     })
 }
 
-/// The same, told apart no better than this way of doing it does. What the stiffness has less, the
-/// motor's friction has more.
+/// The same, told apart no better than this way of doing it does.
 fn by_method(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> (Known, MotorSide) {
-    let coulomb = motor_side.coulomb;
-    let of_load = coulomb.value * stiffness.value / (unrubbed.value - stiffness.value);
+    let (stiffness, coulomb) = apart_by(APART, stiffness, motor_side.coulomb, unrubbed);
     let motor_side = MotorSide {
-        coulomb: coulomb.within(APART * of_load),
+        coulomb,
         ..motor_side
     };
-    (stiffness.within_share(APART), motor_side)
+    (stiffness, motor_side)
+}
+
+/// A stiffness and a friction of the motor's side that are told apart to a share of the stiffness:
+/// what that has less, the friction has more.
+fn apart_by(share: f64, stiffness: Known, coulomb: Known, unrubbed: Known) -> (Known, Known) {
+    let of_load = coulomb.value * stiffness.value / (unrubbed.value - stiffness.value);
+    (
+        stiffness.within_share(share),
+        coulomb.within(share * of_load),
+    )
 }
 
 /// The same where the load's friction has elements that slip. Three machines whose motor had other
@@ -228,6 +247,10 @@ struct ByLaw {
 struct Rubbing<'a> {
     motor: LoadMotion,
     apart: &'a Apart<'a>,
+    /// Columns of what is wound up: its rate, itself.
+    wound: &'a [Vec<f64>; 2],
+    /// Sum of squares of what encoders round of it.
+    rounding: f64,
     /// All columns but those of the bend.
     rows: Rows,
     /// The load's friction.
@@ -246,6 +269,15 @@ impl Rubbing<'_> {
 
     fn blocks(&self, deflection: f64) -> Blocks {
         Blocks::with(&self.rows, &self.bend(deflection))
+    }
+
+    /// By which share rounding makes a stiffness too small that is fitted beside some columns of
+    /// the motor's own side and such bends.
+    fn softens(&self, own: &[usize], bends: &[Vec<f64>]) -> f64 {
+        let [rate, wound] = self.wound;
+        let others = [slice::from_ref(rate), bends].concat();
+        let others = self.balance.rows(own, &others, &self.apart.mask);
+        rounding::softens(self.rounding, wound, &others)
     }
 
     /// The deflection that leaves least.
@@ -269,7 +301,7 @@ impl Rubbing<'_> {
     /// load's, with such a deflection, whatever law it follows: these, with half of what is
     /// otherwise with free bends in their intervals, or what is told with those. A deflection at an
     /// end of what was searched, or by a law that does not hold, is hardly known.
-    fn by_its_own_law(&self, by_law: &ByLaw, at: f64) -> (Known, MotorSide) {
+    fn by_its_own_law(&self, by_law: &ByLaw, at: f64, unrubbed: Known) -> (Known, MotorSide) {
         let ByLaw {
             stiffness,
             motor_side:
@@ -279,7 +311,7 @@ impl Rubbing<'_> {
                 },
             ..
         } = *by_law;
-        let [free_stiffness, free_coulomb] = self.of_any_shape();
+        let (free_stiffness, free_coulomb) = self.of_any_shape(unrubbed);
         let apart = (free_stiffness.value - stiffness.value).abs();
         let contradicts = apart > free_stiffness.half_width;
         let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
@@ -302,6 +334,8 @@ impl Rubbing<'_> {
         }
         let coulomb = coulomb.within(0.5 * (free_coulomb.value - coulomb.value));
         let stiffness = stiffness.within(0.5 * apart);
+        let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.bend(at));
+        let (stiffness, coulomb) = apart_by(softer, stiffness, coulomb, unrubbed);
         (
             stiffness,
             MotorSide {
@@ -313,7 +347,7 @@ impl Rubbing<'_> {
 
     /// Stiffness and Coulomb friction of the motor's side with free bends: the first column has the
     /// coefficients of all.
-    fn of_any_shape(&self) -> [Known; 2] {
+    fn of_any_shape(&self, unrubbed: Known) -> (Known, Known) {
         // The first bend and all that goes with it.
         let mut columns = self.bend(SHAPES[0]);
         for shape in &SHAPES[1..] {
@@ -322,7 +356,9 @@ impl Rubbing<'_> {
         }
         let blocks = Blocks::with(&self.rows, &columns);
         let (fit, half_widths) = (blocks.fit(), blocks.half_widths());
-        [STIFFNESS, COULOMB].map(|place| Known::new(fit.coefficients[place], half_widths[place]))
+        let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
+        let softer = self.softens(&OWN_WITHOUT_COULOMB, &columns);
+        apart_by(softer, known(STIFFNESS), known(COULOMB), unrubbed)
     }
 
     /// The fit at a deflection, and what is told by it, as uncertain as that deflection is.
@@ -362,6 +398,13 @@ mod tests {
     use super::*;
     use crate::fit::made::Axis;
 
+    /// Encoders that round nothing.
+    const FINE: Smallest = Smallest {
+        count: 0.0,
+        motor_count: 0.0,
+        velocity: 0.0,
+    };
+
     /// What the balance says beside the wind-up that the load's motion asks for.
     fn told(axis: &Axis) -> Stiffness {
         let apart = apart(axis);
@@ -369,7 +412,7 @@ mod tests {
         let Way::Carried(carried) = ways[1] else {
             panic!("{ways:?}")
         };
-        stiffness(&apart.where_known(&ways), carried, 0.0).unwrap()
+        stiffness(&apart.where_known(&ways), carried, FINE).unwrap()
     }
 
     /// Stiffness and friction of the motor's side as they are told beside 25 N of the load's.
