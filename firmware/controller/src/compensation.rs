@@ -116,6 +116,21 @@ impl CompensationState {
         self.friction.break_off();
     }
 
+    /// Friction as it was known elsewhere.
+    pub(crate) const fn set_friction(&mut self, friction: FrictionState) {
+        self.friction = friction;
+        self.is_at_rest = false;
+    }
+
+    /// One cycle without torque: friction goes along with what is measured.
+    pub(crate) fn follow(&mut self, model: Option<&FrictionConfig>, measured: Position) {
+        match model {
+            Some(model) => self.friction.follow(model, measured),
+            None => self.friction.forget(),
+        }
+        self.is_at_rest = false;
+    }
+
     /// Nothing is compensated; gives what the elements held, once.
     pub(crate) fn rest(&mut self, reference: &Reference) -> Option<Torque> {
         self.direction.take(reference.next_velocity);
@@ -249,5 +264,57 @@ fn coulomb(torque: Torque, direction: Option<Direction>) -> Torque {
         Some(Direction::Positive) => torque,
         Some(Direction::Negative) => Torque(torque.0.wrapping_neg()),
         None => Torque::ZERO,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pulse::Shape;
+    use fixed::types::{I2F30, I20F12};
+
+    fn velocity(counts: i32) -> Velocity {
+        Velocity(I20F12::from_num(counts))
+    }
+
+    /// A cycle at such a position, and so far on to the next.
+    fn at(position: i64, next: i32) -> Reference {
+        Reference {
+            position: Position::from_counts(position),
+            next_velocity: velocity(next),
+            ..Reference::default()
+        }
+    }
+
+    #[test]
+    fn a_pulse_is_gone_once_nothing_was_compensated() {
+        let compensation = Compensation {
+            pulse: PulseConfig {
+                shape: Shape {
+                    amplitude: velocity(100),
+                    decay: I2F30::from_num(0.95),
+                    start_delay_cycles: 0,
+                },
+                stop_cycles: u16::MAX,
+                ..PulseConfig::default()
+            },
+            ..Compensation::default()
+        };
+        let added = |state: &mut CompensationState, reference: Reference| {
+            let (added, held) = state.step(&compensation, PositionSource::Load, &reference);
+            assert_eq!(held, None);
+            added.velocity
+        };
+        let mut state = CompensationState::default();
+        assert_eq!(added(&mut state, at(0, 50)), Velocity::ZERO);
+        assert_eq!(added(&mut state, at(50, 50)), Velocity::ZERO);
+        assert_eq!(added(&mut state, at(100, -50)), velocity(-100));
+        assert!(added(&mut state, at(50, -50)) < velocity(-90));
+        assert_eq!(state.rest(&at(0, -50)), None);
+        assert_eq!(added(&mut state, at(-50, -50)), Velocity::ZERO);
+        // The direction is known all the same, and where the setpoint came from is not.
+        assert_eq!(state.direction.last(), Some(Direction::Negative));
+        assert_eq!(added(&mut state, at(-100, 50)), Velocity::ZERO);
+        assert_eq!(added(&mut state, at(-50, -50)), velocity(-100));
     }
 }

@@ -135,17 +135,13 @@ impl State {
             cascade: self.cascade.taking(friction.held().reversed()),
             ..self
         };
-        own.compensation.friction = friction;
+        own.compensation.set_friction(friction);
         own
     }
 
     /// One cycle without torque: friction goes along with what is measured.
     pub fn follow(&mut self, config: &Config, measured: Position) {
-        let friction = &mut self.compensation.friction;
-        match config.friction() {
-            Some(model) => friction.follow(model, measured),
-            None => friction.forget(),
-        }
+        self.compensation.follow(config.friction(), measured);
     }
 
     /// The parameters are other ones: what was refined of the model's level is not known of them.
@@ -240,7 +236,7 @@ fn compensated(
 
 #[expect(
     clippy::inline_always,
-    reason = "twice, so that the plain one adds no zeros: a quarter of its instructions"
+    reason = "twice, so that the plain one adds no zeros"
 )]
 #[inline(always)]
 fn law(config: &Config, state: &mut State, input: &Input, added: &Added) -> Output {

@@ -25,8 +25,9 @@ pub(crate) fn root_of_word(square: u32) -> u32 {
     let places = square.leading_zeros() & !1;
     let x = square.wrapping_shl(places);
     let y = newton(newton(start(x), x), x);
-    // √x = x y, 30 bits of the root.
+    // √x = x y, 30 bits of the root, and a little less: to nearest, so that whole roots are whole.
     upper_product(x, y)
+        .wrapping_add(1 << 13)
         .wrapping_shr(14)
         .wrapping_shr(places.wrapping_shr(1))
 }
@@ -130,6 +131,8 @@ mod tests {
         fn the_root_of_a_word_is_one_off_at_most(square in any::<u32>(), shift in 0..32_u32) {
             let square = square >> shift;
             assert!(root_of_word(square).abs_diff(square.isqrt()) <= 1, "{square}");
+            let whole = square.isqrt();
+            assert_eq!(root_of_word(whole * whole), whole);
         }
 
         /// Where the last bit is decided.

@@ -540,8 +540,11 @@ fn a_model_that_is_switched_off_in_motion_leaves_its_torque_to_the_integral() {
     let on = law(Some(model));
     let before = (2..500).map(|cycle| torque_at(&on, cycle)).last().unwrap();
     assert!(before > 0.9 * LEVEL, "{before}");
-    let after = torque_at(&law(None), 500);
-    assert!((after - before).abs() < 0.01 * LEVEL, "{before} {after}");
+    // Once, and not in every cycle.
+    for cycle in 500..503 {
+        let after = torque_at(&law(None), cycle);
+        assert!((after - before).abs() < 0.01 * LEVEL, "{before} {after}");
+    }
 }
 
 /// A law with limits that these paths keep, and nothing on.

@@ -733,6 +733,15 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
+/// The same where the middle of the travel is known.
+fn amid(config: ReferenceConfig) -> ReferenceConfig {
+    let [v, a] =
+        [config.velocity_limit, config.acceleration_limit].map(|limit| limit.0.to_num::<f64>());
+    let braking = ((v + 1.0 / 256.0).powi(2) / (2.0 * a)).round() as i32;
+    let middle = ReferenceConfig::middle_of([config.position_min, config.position_max], braking);
+    ReferenceConfig { middle, ..config }
+}
+
 struct Storm {
     config: ReferenceConfig,
     state: ReferenceState,
@@ -753,7 +762,7 @@ impl Storm {
             ..config()
         };
         Self {
-            config,
+            config: amid(config),
             state,
             target: 0,
             velocity: 0,
@@ -777,6 +786,7 @@ impl Storm {
                 self.config.acceleration_limit = Velocity(I20F12::from_num(acceleration));
                 self.config.position_max = Position::from_counts(i64::from(travel));
                 self.config.position_min = Position::from_counts(-i64::from(travel));
+                self.config = amid(self.config);
             }
             Event::Setpoints(log2, cycles) => {
                 self.config.filter_log2 = log2;

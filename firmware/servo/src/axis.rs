@@ -79,8 +79,8 @@ pub struct Last {
 /// What the node knows beyond the frames of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Circumstances {
-    /// The master's SYNC period is that of the parameter set, which is asked before there is
-    /// torque.
+    /// The master's SYNC period is that of the parameter set. Known without torque only, where it
+    /// is asked; with torque it says so in any case.
     pub period_fits: bool,
     /// Control words count (NMT operational, and no way out of it pending).
     pub listens: bool,

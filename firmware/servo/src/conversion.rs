@@ -1053,7 +1053,7 @@ mod tests {
     }
 
     #[test]
-    fn amid_the_travel_no_cycle_looks_whether_the_axis_can_stop() {
+    fn the_middle_of_the_travel_is_a_braking_way_from_its_ends() {
         let set = with(&[
             (Parameter::VelocityLimit, 500_000),
             (Parameter::AccelerationLimit, 5_000_000),
@@ -1061,10 +1061,9 @@ mod tests {
             (Parameter::PositionMax, 30_000_000),
         ]);
         let middle = set.settings().unwrap().config.reference.middle;
-        // (0.5 m/s)² / (2 · 5 m/s²) are 25 mm of the 200 and 300.
-        let got = middle.map(|position| 1.0e-5 * position.0.to_num::<f64>());
-        let near = |got: f64, wanted: f64| (got - wanted).abs() < 0.01;
-        assert!(near(got[0], -175.0) && near(got[1], 275.0), "{got:?} mm");
+        // (50 000 + 1/256)² / (2 · 500) counts to nearest, 25 mm, and two for rounding.
+        let wanted = [-20_000_000 + 2_500_002, 30_000_000 - 2_500_002].map(Position::from_counts);
+        assert_eq!(middle, wanted);
     }
 
     /// `exp(−T/τ)` as the settings hold it, and as a real number.

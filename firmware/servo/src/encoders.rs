@@ -188,7 +188,8 @@ impl Followed {
     /// is what it may be beside what was expected, for each cycle since then.
     fn reached(&self, position: Position, jump: PositionError) -> Option<Velocity> {
         if self.predicted_cycles == 0 {
-            // The last position was good, and this is the way since then.
+            // The last position was good, and this is the way since then. No axis goes beyond the
+            // range of a way in a cycle, 84 mm.
             let way = position.exact_error_from(self.at)?;
             let off = way.minus(self.velocity.way_lossy());
             return (!off.is_beyond(jump)).then(|| way.in_a_cycle());
