@@ -17,6 +17,9 @@
 //! bends that are free beside each other: that knows less, but holds whatever the law is. Where it
 //! contradicts the law of the load's, it stands.
 //!
+//! How much higher it is at rest is its own: taken for the load's it made the stiffness a quarter
+//! too large on a machine whose motor has half of that rise.
+//!
 //! It goes with what the load's goes with, such as a viscous friction that differs by direction:
 //! without that the stiffness of a drawn machine was 256 N/µm for 175, with an interval of 36.
 //!
@@ -47,13 +50,15 @@ const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
 /// Bends that are free beside each other, where the law of the load's friction does not fit that of
 /// the motor's side. The middle one comes first.
 const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
+/// Rises of the motor's friction that are tried, in that of the load's.
+const FALLS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
 /// First step of the descent from the best of them, as a share of it.
 const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
-/// Fall and damping of the motor's part of a friction are taken for those of the load's; it may
-/// have none, or twice as much. More than this share of the whole is not open: so much the effort
-/// tells.
+/// Velocity of the fall and damping of the motor's part of a friction are taken for those of the
+/// load's; it may have none, or twice as much. More than this share of the whole is not open: so
+/// much the effort tells.
 const MOST_UNLIKE: f64 = 0.4;
 /// Most that is open of a deflection, as a share of it.
 const MOST_OPEN: f64 = 0.8;
@@ -89,6 +94,8 @@ pub(super) struct Stiffness {
     pub unrubbed: Known,
     /// Friction of the motor's own side, where some is seen.
     pub motor_side: Option<MotorSide>,
+    /// How much higher that is at rest, in the rise of the load's friction.
+    pub fall: f64,
 }
 
 /// Friction of the motor's own side.
@@ -117,6 +124,7 @@ impl Stiffness {
                 coulomb: spring.motor_coulomb,
                 deflection: None,
             }),
+            fall: 1.0,
             ..self
         }
     }
@@ -133,6 +141,15 @@ impl Stiffness {
         match motor.deflection {
             Some(_) => both,
             None => both.beside(self.unrubbed),
+        }
+    }
+
+    /// What a rise of the load's friction has to be multiplied with to be that of both sides.
+    pub(super) fn rise_of_both(&self, coulomb: Known) -> f64 {
+        let motor_share = 1.0 - self.known.value / self.of_both(coulomb).value;
+        match self.motor_side {
+            Some(_) => 1.0 - motor_share * (1.0 - self.fall),
+            None => 1.0,
         }
     }
 
@@ -157,13 +174,15 @@ pub(super) fn stiffness(
 ) -> Option<Stiffness> {
     let balance = Balance::of(apart);
     let wound = balance.wound(carried.flanks);
+    let motor = LoadMotion::of_motor(apart.motion, apart.path.position, smallest.motor_count);
     let rubbing = Rubbing {
-        motor: LoadMotion::of_motor(apart.motion, apart.path.position, smallest.motor_count),
+        motor: &motor,
         rounding: rounding::in_the_difference(apart, smallest),
         wound: &wound,
         apart,
-        rows: balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
+        rows: &balance.rows(&OWN_WITHOUT_COULOMB, &wound, &apart.mask),
         carried,
+        fall: 1.0,
         balance: &balance,
     };
     let plain = balance.rows(&OWN_WITHOUT_FRICTION, &wound, &apart.mask);
@@ -171,6 +190,13 @@ pub(super) fn stiffness(
     let without = plain.cross_validate();
     let softer = rubbing.softens(&OWN_WITHOUT_FRICTION, &[]);
     let unrubbed = last(&without.coefficients, &plain.half_widths())?.within_share(softer);
+    let best = rubbing.best();
+    let gain = Gain::of(&without, &rubbing.blocks(best).cross_validate());
+    let rubbing = if gain.share >= MOTOR_SIDE_SHARE {
+        rubbing.with_its_own_fall()
+    } else {
+        rubbing
+    };
     let best = rubbing.best();
     let by_law = rubbing.at(best);
     let gain = Gain::of(&without, &by_law.fit);
@@ -198,6 +224,7 @@ pub(super) fn stiffness(
         known,
         unrubbed,
         motor_side: seen.map(|(_, motor_side)| motor_side),
+        fall: rubbing.fall,
     })
 }
 
@@ -248,17 +275,20 @@ struct ByLaw {
 }
 
 /// The balance beside a friction of the motor's side.
+#[derive(Clone, Copy)]
 struct Rubbing<'a> {
-    motor: LoadMotion,
+    motor: &'a LoadMotion,
     apart: &'a Apart<'a>,
     /// Columns of what is wound up: its rate, itself.
     wound: &'a [Vec<f64>; 2],
     /// Sum of squares of what encoders round of it.
     rounding: f64,
     /// All columns but those of the bend.
-    rows: Rows,
-    /// The load's friction.
+    rows: &'a Rows,
+    /// The load's friction, with the rise of the motor's.
     carried: Carried,
+    /// That in the load's.
+    fall: f64,
     balance: &'a Balance<'a>,
 }
 
@@ -267,12 +297,12 @@ impl Rubbing<'_> {
     /// comes first.
     fn bend(&self, deflection: f64) -> Vec<Vec<f64>> {
         let motion = self.apart.motion;
-        let columns = self.carried.on_motor(motion, &self.motor, deflection);
+        let columns = self.carried.on_motor(motion, self.motor, deflection);
         self.balance.at_efforts(&columns)
     }
 
     fn blocks(&self, deflection: f64) -> Blocks {
-        Blocks::with(&self.rows, &self.bend(deflection))
+        Blocks::with(self.rows, &self.bend(deflection))
     }
 
     /// By which share rounding makes a stiffness too small that is fitted beside some columns of
@@ -290,6 +320,30 @@ impl Rubbing<'_> {
         let begin = smallest(&DEFLECTIONS, &left).unwrap_or(1.0);
         let range = (DEFLECTIONS[0], DEFLECTIONS[DEFLECTIONS.len() - 1]);
         descend(begin, STEP * begin, range, &left)
+    }
+
+    /// The same with a fall of the motor's own friction as much higher or lower than the load's as
+    /// leaves least.
+    fn with_its_own_fall(self) -> Self {
+        let left = |times: f64| {
+            let own = self.falling(times);
+            own.blocks(own.best()).fit().sse
+        };
+        let begin = smallest(&FALLS, &left).unwrap_or(1.0);
+        let range = (FALLS[0], FALLS[FALLS.len() - 1]);
+        self.falling(descend(begin, STEP, range, &left))
+    }
+
+    /// The same with so many times the rise of the load's friction.
+    fn falling(&self, times: f64) -> Self {
+        let mut carried = self.carried;
+        carried.friction.rise *= times;
+        let fall = times * self.fall;
+        Self {
+            carried,
+            fall,
+            ..*self
+        }
     }
 
     /// A stiffness where no friction of the motor's side is seen: as soft as it would be with as
@@ -360,11 +414,18 @@ impl Rubbing<'_> {
             let other = minus(&self.bend(*shape)[0], &columns[0]);
             columns.push(other);
         }
-        let blocks = Blocks::with(&self.rows, &columns);
+        let blocks = Blocks::with(self.rows, &columns);
         let (fit, half_widths) = (blocks.fit(), blocks.half_widths());
         let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
         let softer = self.softens(&OWN_WITHOUT_COULOMB, &columns);
         apart_by(softer, known(STIFFNESS), known(COULOMB), unrubbed)
+    }
+
+    /// What a fall that is a little higher or lower changes of the bend.
+    fn by_fall(&self, deflection: f64) -> Vec<f64> {
+        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.falling(by).bend(deflection));
+        let pairs = more[0].iter().zip(&less[0]);
+        pairs.map(|(more, less)| more - less).collect()
     }
 
     /// The fit at a deflection, and what is told by it, as uncertain as that deflection is.
@@ -373,9 +434,10 @@ impl Rubbing<'_> {
         let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.bend(by * deflection));
         let pairs = more[0].iter().zip(&less[0]);
         let by_deflection = pairs.map(|(more, less)| (more - less) / (2.0 * LINEAR));
-        let fit = Blocks::with(&self.rows, &bend).cross_validate();
-        let columns = [bend, vec![by_deflection.collect()]].concat();
-        let half_widths = Blocks::with(&self.rows, &columns).half_widths();
+        let by_deflection = by_deflection.collect();
+        let fit = Blocks::with(self.rows, &bend).cross_validate();
+        let columns = [bend, vec![self.by_fall(deflection), by_deflection]].concat();
+        let half_widths = Blocks::with(self.rows, &columns).half_widths();
         let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
         let [viscous, stiffness, coulomb] = [VISCOUS, STIFFNESS, COULOMB].map(known);
         let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
@@ -422,9 +484,10 @@ mod tests {
     }
 
     /// Stiffness and friction of the motor's side as they are told beside 25 N of the load's.
-    fn both_told(by_direction: [f64; 2]) -> Stiffness {
+    fn both_told(by_direction: [f64; 2], fall: f64) -> Stiffness {
         let motor = LoadFriction {
             deflection: 0.4 * FRICTION.deflection,
+            rise: fall * FRICTION.rise,
             ..FRICTION
         };
         let axis = rubbed_on_both(FRICTION, by_direction, (15.0, motor), |_| 0.0);
@@ -443,12 +506,20 @@ mod tests {
 
     #[test]
     fn viscous_friction_that_differs_by_direction_on_both_sides_is_no_stiffness() {
-        let _ = both_told([60.0, 40.0]);
+        let _ = both_told([60.0, 40.0], 1.0);
+    }
+
+    #[test]
+    fn friction_of_the_motors_side_falls_in_its_own_way() {
+        for fall in [0.25, 1.5] {
+            let told = both_told([0.0; 2], fall);
+            assert!((told.fall - fall).abs() < 0.2, "{fall} {told:?}");
+        }
     }
 
     #[test]
     fn friction_of_the_motors_side_is_seen_by_how_it_turns_over() {
-        let told = both_told([0.0; 2]);
+        let told = both_told([0.0; 2], 1.0);
         // Without it the spring would be as much stiffer as the load has less of all friction.
         let stiffer = told.unrubbed.value / STIFFNESS;
         assert!((stiffer / (40.0 / 25.0) - 1.0).abs() < 0.1, "{stiffer}");
@@ -464,6 +535,7 @@ mod tests {
             known: Known::new(5.0e6, half_width),
             unrubbed: Known::new(6.0e6, 1.0e5),
             motor_side: None,
+            fall: 1.0,
         };
         let stiffness = |half_width: f64, spring: Option<Spring>| {
             of_all(half_width).or_on_moving_rows(spring).known.value
