@@ -179,8 +179,7 @@ fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Opt
         deflection,
         elements: None,
         bristle_damping: (bent.times(deflection.inverse())).within_share(unlike),
-        excess: (rise.times(coulomb).within_share(unlike))
-            .of(spring.rise_of_both(known[Carried::FRICTION])),
+        excess: (rise.times(coulomb)).times(spring.rise_of_both(known[Carried::FRICTION])),
         velocity: of_friction(friction.velocity, 2)?,
         lag: of_friction(friction.lag_s, LoadFriction::LAG),
         lag_growth: of_friction(friction.lag_growth.into(), LoadFriction::LAG_GROWTH)

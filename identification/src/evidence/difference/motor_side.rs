@@ -17,8 +17,8 @@
 //! bends that are free beside each other: that knows less, but holds whatever the law is. Where it
 //! contradicts the law of the load's, it stands.
 //!
-//! How much higher it is at rest is its own: taken for the load's it made the stiffness a quarter
-//! too large on a machine whose motor has half of that rise.
+//! How much higher it is at rest is its own, up to twice the load's rise: taken for that it made
+//! the stiffness a quarter too large on a machine whose motor has half of it.
 //!
 //! It goes with what the load's goes with, such as a viscous friction that differs by direction:
 //! without that the stiffness of a drawn machine was 256 N/µm for 175, with an interval of 36.
@@ -52,13 +52,15 @@ const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
 const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
 /// Rises of the motor's friction that are tried, in that of the load's.
 const FALLS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
-/// First step of the descent from the best of them, as a share of it.
+/// First step of the descent from the best of them, and over which they are linearised.
+const FALL_STEP: f64 = 0.1;
+/// First step of the descent from the best deflection, as a share of it.
 const STEP: f64 = 0.1;
 /// Deflections are linearised over such a share of them.
 const LINEAR: f64 = 0.05;
-/// Velocity of the fall and damping of the motor's part of a friction are taken for those of the
-/// load's; it may have none, or twice as much. More than this share of the whole is not open: so
-/// much the effort tells.
+/// Where the motor's part of a friction is taken for one like the load's it may have no rise or
+/// damping, or twice as much. More than this share of the whole is not open: so much the effort
+/// tells.
 const MOST_UNLIKE: f64 = 0.4;
 /// Most that is open of a deflection, as a share of it.
 const MOST_OPEN: f64 = 0.8;
@@ -79,6 +81,10 @@ const HIDDEN_BY_ROUNDING: f64 = 2.0;
 const OPEN_BY_ELEMENTS: f64 = 0.5;
 /// Shares of the friction that may be left to the table where some is the motor's.
 const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
+/// A rise of the motor's friction that is the load's.
+const ALIKE: Known = Known::new(1.0, 0.0);
+/// One that is not told apart from that.
+const ALIKE_OR_NOT: Known = Known::new(1.0, 1.0);
 /// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
 /// friction, offset, rate of the wind-up, wind-up, bend.
 const VISCOUS: usize = 1;
@@ -95,7 +101,7 @@ pub(super) struct Stiffness {
     /// Friction of the motor's own side, where some is seen.
     pub motor_side: Option<MotorSide>,
     /// How much higher that is at rest, in the rise of the load's friction.
-    pub fall: f64,
+    pub fall: Known,
 }
 
 /// Friction of the motor's own side.
@@ -124,7 +130,7 @@ impl Stiffness {
                 coulomb: spring.motor_coulomb,
                 deflection: None,
             }),
-            fall: 1.0,
+            fall: if rubs { ALIKE_OR_NOT } else { ALIKE },
             ..self
         }
     }
@@ -145,12 +151,13 @@ impl Stiffness {
     }
 
     /// What a rise of the load's friction has to be multiplied with to be that of both sides.
-    pub(super) fn rise_of_both(&self, coulomb: Known) -> f64 {
+    pub(super) fn rise_of_both(&self, coulomb: Known) -> Known {
+        let Some(_) = self.motor_side else {
+            return Known::new(1.0, self.fall.half_width.min(MOST_UNLIKE));
+        };
         let motor_share = 1.0 - self.known.value / self.of_both(coulomb).value;
-        match self.motor_side {
-            Some(_) => 1.0 - motor_share * (1.0 - self.fall),
-            None => 1.0,
-        }
+        let open = (motor_share * self.fall.half_width).min(MOST_UNLIKE);
+        Known::new(1.0 - motor_share * (1.0 - self.fall.value), open)
     }
 
     /// What is not known of a friction of both sides whose motor's part is taken for the load's, as
@@ -190,14 +197,13 @@ pub(super) fn stiffness(
     let without = plain.cross_validate();
     let softer = rubbing.softens(&OWN_WITHOUT_FRICTION, &[]);
     let unrubbed = last(&without.coefficients, &plain.half_widths())?.within_share(softer);
-    let best = rubbing.best();
+    let (alike, best) = (rubbing, rubbing.best());
     let gain = Gain::of(&without, &rubbing.blocks(best).cross_validate());
-    let rubbing = if gain.share >= MOTOR_SIDE_SHARE {
+    let (rubbing, best) = if gain.share >= MOTOR_SIDE_SHARE && carried.friction.rise > 0.0 {
         rubbing.with_its_own_fall()
     } else {
-        rubbing
+        (rubbing, best)
     };
-    let best = rubbing.best();
     let by_law = rubbing.at(best);
     let gain = Gain::of(&without, &by_law.fit);
     let is_clear = gain.share >= MOTOR_SIDE_SHARE
@@ -205,26 +211,28 @@ pub(super) fn stiffness(
         && by_law.viscous.value >= -by_law.viscous.half_width
         && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width;
     let seen = is_clear.then(|| {
-        let (seen, motor_side) = rubbing.by_its_own_law(&by_law, best, unrubbed);
-        match carried.friction.law {
+        let (seen, motor_side, fall) = rubbing.by_its_own_law(&by_law, best, unrubbed);
+        let (known, motor_side) = match carried.friction.law {
             Law::Slip(_) => beside_elements(seen, motor_side, unrubbed),
             Law::Dahl => by_method(seen, motor_side, unrubbed),
-        }
+        };
+        (known, motor_side, fall)
     });
-    let seen = seen.filter(|(known, motor_side)| {
+    let seen = seen.filter(|(known, motor_side, _)| {
         let table_share = known.value / unrubbed.value;
         motor_side.coulomb.value > motor_side.coulomb.half_width
             && TABLE_SHARES.contains(&table_share)
     });
+    let hides = alike.hides(best);
     let known = seen.map_or_else(
-        || rubbing.hiding(unrubbed, by_law.stiffness, best),
-        |(known, _)| known,
+        || alike.hiding(unrubbed, by_law.stiffness, hides),
+        |(known, ..)| known,
     );
     (unrubbed.value > 0.0).then_some(Stiffness {
         known,
         unrubbed,
-        motor_side: seen.map(|(_, motor_side)| motor_side),
-        fall: rubbing.fall,
+        motor_side: seen.map(|(_, motor_side, _)| motor_side),
+        fall: seen.map_or(ALIKE.within(hides), |(.., fall)| fall),
     })
 }
 
@@ -272,6 +280,8 @@ struct ByLaw {
     viscous: Known,
     stiffness: Known,
     motor_side: MotorSide,
+    /// Its rise at rest, in that of the load's friction.
+    fall: Known,
 }
 
 /// The balance beside a friction of the motor's side.
@@ -285,9 +295,9 @@ struct Rubbing<'a> {
     rounding: f64,
     /// All columns but those of the bend.
     rows: &'a Rows,
-    /// The load's friction, with the rise of the motor's.
+    /// The load's friction.
     carried: Carried,
-    /// That in the load's.
+    /// Rise of the motor's at rest, in that of the load's.
     fall: f64,
     balance: &'a Balance<'a>,
 }
@@ -297,7 +307,9 @@ impl Rubbing<'_> {
     /// comes first.
     fn bend(&self, deflection: f64) -> Vec<Vec<f64>> {
         let motion = self.apart.motion;
-        let columns = self.carried.on_motor(motion, self.motor, deflection);
+        let mut carried = self.carried;
+        carried.friction.rise *= self.fall;
+        let columns = carried.on_motor(motion, self.motor, deflection);
         self.balance.at_efforts(&columns)
     }
 
@@ -322,38 +334,36 @@ impl Rubbing<'_> {
         descend(begin, STEP * begin, range, &left)
     }
 
-    /// The same with a fall of the motor's own friction as much higher or lower than the load's as
-    /// leaves least.
-    fn with_its_own_fall(self) -> Self {
-        let left = |times: f64| {
-            let own = self.falling(times);
+    /// The same with such a rise of the motor's friction as leaves least, and the deflection that
+    /// does then.
+    fn with_its_own_fall(self) -> (Self, f64) {
+        let left = |fall: f64| {
+            let own = self.falling(fall);
             own.blocks(own.best()).fit().sse
         };
         let begin = smallest(&FALLS, &left).unwrap_or(1.0);
         let range = (FALLS[0], FALLS[FALLS.len() - 1]);
-        self.falling(descend(begin, STEP, range, &left))
+        let own = self.falling(descend(begin, FALL_STEP, range, &left));
+        (own, own.best())
     }
 
-    /// The same with so many times the rise of the load's friction.
-    fn falling(&self, times: f64) -> Self {
-        let mut carried = self.carried;
-        carried.friction.rise *= times;
-        let fall = times * self.fall;
-        Self {
-            carried,
-            fall,
-            ..*self
-        }
+    /// The same with such a rise of the motor's friction, in that of the load's.
+    const fn falling(self, fall: f64) -> Self {
+        Self { fall, ..self }
+    }
+
+    /// What rounding hides of a friction of the motor's side, as a share of the stiffness.
+    fn hides(&self, at: f64) -> f64 {
+        let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.bend(at));
+        (HIDDEN_BY_ROUNDING * softer).min(VAGUE)
     }
 
     /// A stiffness where no friction of the motor's side is seen: as soft as it would be with as
     /// much of it as could hide, which hides best where it turns over as that of the load does.
-    fn hiding(&self, unrubbed: Known, by_law: Known, at: f64) -> Known {
+    fn hiding(&self, unrubbed: Known, by_law: Known, hides: f64) -> Known {
         let hidden = self.at(1.0).stiffness;
         let softest = [by_law, hidden].map(|known| known.value - known.half_width);
         let less = unrubbed.value - softest[0].min(softest[1]);
-        let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.bend(at));
-        let hides = (HIDDEN_BY_ROUNDING * softer).min(VAGUE);
         unrubbed.within(less.max(0.0)).within_share(hides)
     }
 
@@ -361,7 +371,12 @@ impl Rubbing<'_> {
     /// load's, with such a deflection, whatever law it follows: these, with half of what is
     /// otherwise with free bends in their intervals, or what is told with those. A deflection at an
     /// end of what was searched, or by a law that does not hold, is hardly known.
-    fn by_its_own_law(&self, by_law: &ByLaw, at: f64, unrubbed: Known) -> (Known, MotorSide) {
+    fn by_its_own_law(
+        &self,
+        by_law: &ByLaw,
+        at: f64,
+        unrubbed: Known,
+    ) -> (Known, MotorSide, Known) {
         let ByLaw {
             stiffness,
             motor_side:
@@ -369,6 +384,7 @@ impl Rubbing<'_> {
                     coulomb,
                     deflection,
                 },
+            fall,
             ..
         } = *by_law;
         let (free_stiffness, free_coulomb) = self.of_any_shape(unrubbed);
@@ -390,11 +406,12 @@ impl Rubbing<'_> {
                     coulomb,
                     deflection,
                 },
+                ALIKE_OR_NOT,
             );
         }
         let coulomb = coulomb.within(0.5 * (free_coulomb.value - coulomb.value));
         let stiffness = stiffness.within(0.5 * apart);
-        let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.bend(at));
+        let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.linearised(at));
         let (stiffness, coulomb) = apart_by(softer, stiffness, coulomb, unrubbed);
         (
             stiffness,
@@ -402,6 +419,7 @@ impl Rubbing<'_> {
                 coulomb,
                 deflection,
             },
+            fall.within(HIDDEN_BY_ROUNDING * softer),
         )
     }
 
@@ -421,29 +439,34 @@ impl Rubbing<'_> {
         apart_by(softer, known(STIFFNESS), known(COULOMB), unrubbed)
     }
 
-    /// What a fall that is a little higher or lower changes of the bend.
-    fn by_fall(&self, deflection: f64) -> Vec<f64> {
-        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.falling(by).bend(deflection));
-        let pairs = more[0].iter().zip(&less[0]);
-        pairs.map(|(more, less)| more - less).collect()
+    /// The bend at a deflection and all that goes with it; what another rise changes of it, and
+    /// what another deflection does, last.
+    fn linearised(&self, deflection: f64) -> Vec<Vec<f64>> {
+        let bend = |fall: f64, deflection: f64| self.falling(fall).bend(deflection).swap_remove(0);
+        let per = |more: Vec<f64>, less: Vec<f64>, step: f64| {
+            let pairs = more.iter().zip(&less);
+            pairs.map(|(more, less)| (more - less) / step).collect()
+        };
+        let [low, high] = [(self.fall - FALL_STEP).max(0.0), self.fall + FALL_STEP];
+        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| bend(self.fall, by * deflection));
+        let by_fall = per(bend(high, deflection), bend(low, deflection), high - low);
+        let by_deflection = per(more, less, 2.0 * LINEAR);
+        [self.bend(deflection), vec![by_fall, by_deflection]].concat()
     }
 
-    /// The fit at a deflection, and what is told by it, as uncertain as that deflection is.
+    /// The fit at a deflection, and what is told by it, as uncertain as deflection and rise are.
     fn at(&self, deflection: f64) -> ByLaw {
-        let bend = self.bend(deflection);
-        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.bend(by * deflection));
-        let pairs = more[0].iter().zip(&less[0]);
-        let by_deflection = pairs.map(|(more, less)| (more - less) / (2.0 * LINEAR));
-        let by_deflection = by_deflection.collect();
-        let fit = Blocks::with(self.rows, &bend).cross_validate();
-        let columns = [bend, vec![self.by_fall(deflection), by_deflection]].concat();
-        let half_widths = Blocks::with(self.rows, &columns).half_widths();
+        let fit = self.blocks(deflection).cross_validate();
+        let half_widths = Blocks::with(self.rows, &self.linearised(deflection)).half_widths();
         let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
         let [viscous, stiffness, coulomb] = [VISCOUS, STIFFNESS, COULOMB].map(known);
         let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
         let deflection = Known::new(deflection, deflection * share);
         let deflection = Some(deflection.of(self.carried.friction.deflection));
+        let by_fall = half_widths.len() - 2;
+        let fall = Known::new(self.fall, half_widths[by_fall] / coulomb.value);
         ByLaw {
+            fall,
             fit,
             viscous,
             stiffness,
@@ -475,12 +498,17 @@ mod tests {
 
     /// What the balance says beside the wind-up that the load's motion asks for.
     fn told(axis: &Axis) -> Stiffness {
+        told_of(axis, FINE)
+    }
+
+    /// The same before encoders with such counts.
+    fn told_of(axis: &Axis, smallest: Smallest) -> Stiffness {
         let apart = apart(axis);
         let ways = instead(&apart, &WAYS, UNIT, 0.0).unwrap();
         let Way::Carried(carried) = ways[1] else {
             panic!("{ways:?}")
         };
-        stiffness(&apart.where_known(&ways), carried, FINE).unwrap()
+        stiffness(&apart.where_known(&ways), carried, smallest).unwrap()
     }
 
     /// Stiffness and friction of the motor's side as they are told beside 25 N of the load's.
@@ -513,7 +541,7 @@ mod tests {
     fn friction_of_the_motors_side_falls_in_its_own_way() {
         for fall in [0.25, 1.5] {
             let told = both_told([0.0; 2], fall);
-            assert!((told.fall - fall).abs() < 0.2, "{fall} {told:?}");
+            assert!((told.fall.value - fall).abs() < 0.2, "{fall} {told:?}");
         }
     }
 
@@ -526,6 +554,21 @@ mod tests {
     }
 
     #[test]
+    fn what_a_motor_encoder_rounds_is_in_the_interval() {
+        let axis = axis(|_| 0.0);
+        let [fine, coarse] = [0.0, 4.0e-6].map(|motor_count| {
+            let smallest = Smallest {
+                motor_count,
+                ..FINE
+            };
+            told_of(&axis, smallest)
+        });
+        assert_eq!(fine.known.value, coarse.known.value);
+        let wider = |of: fn(&Stiffness) -> Known| of(&coarse).half_width / of(&fine).half_width;
+        assert!(wider(|told| told.unrubbed) > 1.1 && wider(|told| told.known) > 1.5);
+    }
+
+    #[test]
     fn moving_rows_tell_what_all_rows_do_not_know() {
         let spring = Spring {
             stiffness: Known::new(4.0e6, 3.0e4),
@@ -535,7 +578,7 @@ mod tests {
             known: Known::new(5.0e6, half_width),
             unrubbed: Known::new(6.0e6, 1.0e5),
             motor_side: None,
-            fall: 1.0,
+            fall: ALIKE_OR_NOT,
         };
         let stiffness = |half_width: f64, spring: Option<Spring>| {
             of_all(half_width).or_on_moving_rows(spring).known.value
