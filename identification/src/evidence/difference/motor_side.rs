@@ -197,20 +197,10 @@ pub(super) fn stiffness(
     let without = plain.cross_validate();
     let softer = rubbing.softens(&OWN_WITHOUT_FRICTION, &[]);
     let unrubbed = last(&without.coefficients, &plain.half_widths())?.within_share(softer);
-    let (alike, best) = (rubbing, rubbing.best());
-    let gain = Gain::of(&without, &rubbing.blocks(best).cross_validate());
-    let (rubbing, best) = if gain.share >= MOTOR_SIDE_SHARE && carried.friction.rise > 0.0 {
-        rubbing.with_its_own_fall()
-    } else {
-        (rubbing, best)
-    };
+    let alike = rubbing;
+    let (rubbing, best) = alike.with_its_own_fall(&without);
     let by_law = rubbing.at(best);
-    let gain = Gain::of(&without, &by_law.fit);
-    let is_clear = gain.share >= MOTOR_SIDE_SHARE
-        && gain.t >= DIFFERENCE_T
-        && by_law.viscous.value >= -by_law.viscous.half_width
-        && by_law.motor_side.coulomb.value > by_law.motor_side.coulomb.half_width;
-    let seen = is_clear.then(|| {
+    let seen = by_law.is_clear(&without).then(|| {
         let (seen, motor_side, fall) = rubbing.by_its_own_law(&by_law, best, unrubbed);
         let (known, motor_side) = match carried.friction.law {
             Law::Slip(_) => beside_elements(seen, motor_side, unrubbed),
@@ -284,6 +274,18 @@ struct ByLaw {
     fall: Known,
 }
 
+impl ByLaw {
+    /// Whether a friction of the motor's side is seen, beside a fit without.
+    fn is_clear(&self, without: &Fit) -> bool {
+        let gain = Gain::of(without, &self.fit);
+        let coulomb = self.motor_side.coulomb;
+        gain.share >= MOTOR_SIDE_SHARE
+            && gain.t >= DIFFERENCE_T
+            && self.viscous.value >= -self.viscous.half_width
+            && coulomb.value > coulomb.half_width
+    }
+}
+
 /// The balance beside a friction of the motor's side.
 #[derive(Clone, Copy)]
 struct Rubbing<'a> {
@@ -335,8 +337,13 @@ impl Rubbing<'_> {
     }
 
     /// The same with such a rise of the motor's friction as leaves least, and the deflection that
-    /// does then.
-    fn with_its_own_fall(self) -> (Self, f64) {
+    /// does then; with that of the load's where hardly any is seen beside a fit without.
+    fn with_its_own_fall(self, without: &Fit) -> (Self, f64) {
+        let best = self.best();
+        let gain = Gain::of(without, &self.blocks(best).cross_validate());
+        if gain.share < MOTOR_SIDE_SHARE || self.carried.friction.rise <= 0.0 {
+            return (self, best);
+        }
         let left = |fall: f64| {
             let own = self.falling(fall);
             own.blocks(own.best()).fit().sse
