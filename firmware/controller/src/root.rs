@@ -4,7 +4,7 @@
 //! hundreds of cycles on a Cortex-M4) and without a loop over digits: one over the root by Newton's
 //! method, `y ← y (3 − x y²) / 2` with x in [1/4, 1), twice from a parabola that is off by
 //! 2.4 %, then a step of Newton's method for the root itself and the last bit by comparison.
-//! 81 instructions with the call, where 32 digits took 450.
+//! Some 80 instructions with the call, where 32 digits took 450.
 
 use crate::units::{lower, upper};
 
