@@ -22,6 +22,8 @@
 //! row away on either side see 1 − 5 ω²T²/24 of a friction that is smooth, and sharpened by a
 //! quarter 1 + ω²T²/24.
 
+use crate::motion::lag::unevenness;
+use crate::record::dataset::Dataset;
 use crate::record::units::EffortHold;
 
 /// Position, velocity and acceleration of one body.
@@ -101,18 +103,61 @@ impl Derivatives {
     /// The same with what differences lack of fast motion.
     #[must_use]
     pub(crate) fn sharpened(self, hold: EffortHold) -> Self {
-        let with = |values: &[f64], share: f64| {
-            let around = Reflected(values);
-            let second = |i| around.at(i + 1) - 2.0 * around.at(i) + around.at(i - 1);
-            let rows = 0..values.len() as isize;
-            rows.map(|i| around.at(i) - share * second(i)).collect()
-        };
         Self {
-            velocity: with(&self.velocity, lacks_of_velocity(hold)),
-            acceleration: with(&self.acceleration, lacks_of_acceleration(hold)),
+            velocity: without_bow(&self.velocity, lacks_of_velocity(hold)),
+            acceleration: without_bow(&self.acceleration, lacks_of_acceleration(hold)),
             position: self.position,
         }
     }
+}
+
+/// What the acceleration of a body lacks of fast motion, as shares of ω²T².
+///
+/// It is more of the effort that moves the body than of a force beside it. A held effort goes in
+/// steps, and the acceleration over two rows sees `[1 2 1]/4` of it; a lag rounds the steps, up to
+/// what a smooth force is. For an effort that is recorded at an instant both are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lacking {
+    /// Of the effort.
+    pub effort: f64,
+    /// Of a smooth force.
+    pub force: f64,
+}
+
+impl Lacking {
+    /// Of a dataset.
+    #[must_use]
+    pub(crate) fn of(dataset: &Dataset) -> Self {
+        if dataset.train.velocity.is_some() {
+            return Self::default();
+        }
+        let given = if dataset.is_sharpened {
+            lacks_of_acceleration(dataset.hold)
+        } else {
+            0.0
+        };
+        let (effort, force) = match dataset.hold {
+            EffortHold::Instant => (1.0 / 12.0, 1.0 / 12.0),
+            EffortHold::ZeroOrder => {
+                let uneven = unevenness(dataset.effort_lag_s, dataset.train.period_s);
+                (0.25 - uneven, 1.0 / 6.0)
+            }
+        };
+        Self {
+            effort: effort - given,
+            force: force - given,
+        }
+    }
+}
+
+/// A signal with so much of its second differences taken away: sharpened, or smoothed where that is
+/// below zero.
+#[must_use]
+pub(crate) fn without_bow(values: &[f64], share: f64) -> Vec<f64> {
+    let around = Reflected(values);
+    let second = |i| around.at(i + 1) - 2.0 * around.at(i) + around.at(i - 1);
+    let rows = 0..values.len() as isize;
+    rows.map(|i| around.at(i) - share * second(i)).collect()
 }
 
 /// Values that go on beyond both ends, mirrored.
@@ -183,6 +228,8 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::motion::lag::acting_effort;
+    use crate::simulate::made::{dataset, record};
 
     const HOLDS: [EffortHold; 2] = [EffortHold::Instant, EffortHold::ZeroOrder];
 
@@ -304,6 +351,69 @@ mod tests {
         assert!((0.012..0.018).contains(&left(&plain)), "{}", left(&plain));
         let sharp = left(&plain.sharpened(EffortHold::ZeroOrder));
         assert!(sharp < 4.0e-4, "{sharp}");
+    }
+
+    /// A mass of one between a held effort that acts through a lag and half as much of a smooth
+    /// force, at 40 Hz in 200 steps a row: what is left of the balance of forces, plain and with
+    /// what the acceleration lacks.
+    fn left_of_balance(lag_s: f64) -> [f64; 2] {
+        const STEPS: i32 = 200;
+        let (omega, step_s) = (TAU * 40.0, 1.0e-3 / f64::from(STEPS));
+        let smooth = |t: f64| 0.5 * (omega * t + 0.4).sin();
+        let recorded: Vec<f64> = (0..800)
+            .map(|row| (omega * 1.0e-3 * f64::from(row)).sin())
+            .collect();
+        let (mut x, mut v, mut t, mut acts) = (0.0, 0.0, 0.0, 0.0);
+        let kept = if lag_s > 0.0 {
+            (-step_s / lag_s).exp()
+        } else {
+            0.0
+        };
+        let (mut path, mut forces) = (Vec::new(), Vec::new());
+        for effort in &recorded {
+            path.push(x);
+            let mut mean = 0.0;
+            for _ in 0..STEPS {
+                let before = acts;
+                acts = effort + (before - effort) * kept;
+                let middle = if lag_s > 0.0 {
+                    0.5 * (before + acts)
+                } else {
+                    *effort
+                };
+                let force = smooth(t + 0.5 * step_s);
+                let acceleration = middle - force;
+                x += step_s * (v + 0.5 * step_s * acceleration);
+                v += step_s * acceleration;
+                t += step_s;
+                mean += force / f64::from(STEPS);
+            }
+            forces.push(mean);
+        }
+        let dataset = Dataset {
+            effort_lag_s: lag_s,
+            ..dataset(record(1.0e-3, path.clone()), None)
+        };
+        let lacking = Lacking::of(&dataset);
+        let acceleration = Derivatives::new(&path, 1.0e-3, EffortHold::ZeroOrder).acceleration;
+        let effort = acting_effort(&recorded, lag_s, 1.0e-3, EffortHold::ZeroOrder);
+        [Lacking::default(), lacking].map(|lacking| {
+            let acceleration = without_bow(&acceleration, lacking.force);
+            let effort = without_bow(&effort, lacking.force - lacking.effort);
+            let of = |row: usize| effort[row] - forces[row] - acceleration[row];
+            (200..790).map(|row| of(row).abs()).fold(0.0, f64::max)
+        })
+    }
+
+    #[test]
+    fn what_an_acceleration_lacks_of_a_lagging_effort_and_of_a_smooth_force_is_given_back() {
+        for lag_s in [0.0, 5.0e-4, 3.0e-3] {
+            let [plain, whole] = left_of_balance(lag_s);
+            assert!(
+                plain > 4.0e-3 && whole < 0.1 * plain,
+                "{lag_s}: {plain} {whole}"
+            );
+        }
     }
 
     #[test]

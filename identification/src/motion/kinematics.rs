@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use crate::motion::bodies::{Bodies, minus};
+use crate::motion::derivatives::Lacking;
 use crate::motion::filter::{LowPass, fit_cutoff_hz};
 use crate::motion::lag::acting_effort;
 use crate::motion::mask;
@@ -45,6 +46,8 @@ pub(crate) struct Kinematics {
     pub effort_lp: Vec<f64>,
     /// Motor − load, raw, where both were measured.
     pub difference: Option<Vec<f64>>,
+    /// What the acceleration lacks of fast motion.
+    pub lacking: Lacking,
     /// Moving samples: the ones that errors are defined on.
     pub moving: Vec<bool>,
     /// Moving samples, of motor and load, clear of rest, whose effort is known and not at its
@@ -119,6 +122,7 @@ impl Kinematics {
                 .load
                 .as_deref()
                 .map(|load| minus(&record.position, load)),
+            lacking: Lacking::of(dataset),
             fitted: mask::without(&both_move, &spoilt),
             slow: mask::without(&slow, &spoilt),
             moving,

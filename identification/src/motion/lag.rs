@@ -36,6 +36,21 @@ pub(crate) fn acting_effort(
         .collect()
 }
 
+/// By how much more of the acting effort is in the second half of a row than in the first,
+/// weighted by the way from its middle, where the effort goes evenly: a share of what it changes by
+/// in a row. A twelfth where the lag is long, nothing without one: a held effort is even.
+#[must_use]
+pub(crate) fn unevenness(lag_s: f64, period_s: f64) -> f64 {
+    if lag_s <= 0.0 {
+        return 0.0;
+    }
+    let rows = period_s / lag_s;
+    let decay = (-rows).exp();
+    // Of exp(−rows y) from 0 to 1: its mean weighted by 1 − 2 y.
+    let weighted = (1.0 - decay) / rows - 2.0 * (1.0 - decay * (1.0 + rows)) / rows.powi(2);
+    0.5 * weighted / (1.0 - decay)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,5 +82,12 @@ mod tests {
         // ∫ (1 − exp(−t/5)) dt from 0 to 1.
         let wanted = 1.0 - 5.0 * (1.0 - (-0.2_f64).exp());
         assert!((acting[10] - wanted).abs() < 1.0e-12, "{}", acting[10]);
+    }
+
+    #[test]
+    fn an_effort_is_uneven_within_its_rows_as_far_as_it_lags() {
+        assert_eq!(unevenness(0.0, 1.0e-3), 0.0);
+        assert!(unevenness(1.0e-5, 1.0e-3) < 0.006);
+        assert!((unevenness(0.1, 1.0e-3) - 1.0 / 12.0).abs() < 1.0e-4);
     }
 }

@@ -26,6 +26,7 @@ use crate::fit::blocks::{Blocks, Fit, Gain};
 use crate::fit::rows::Rows;
 use crate::fit::search::descend;
 use crate::fit::side_by_side::side_by_side;
+use crate::motion::derivatives::without_bow;
 use crate::motion::kinematics::Kinematics;
 use crate::record::units::EffortHold;
 
@@ -68,7 +69,8 @@ pub(crate) struct Judged {
 /// The motor's balance of forces on a record.
 pub(super) struct Balance<'a> {
     motion: &'a Kinematics,
-    effort: &'a [f64],
+    /// Low-passed, as the acceleration of the motor sees it beside smooth forces.
+    effort: Vec<f64>,
     hold: EffortHold,
     /// Motor − load at the rows.
     difference: &'a [f64],
@@ -90,15 +92,16 @@ impl<'a> Balance<'a> {
         let motion = apart.motion;
         let pairs = motion.fitted.iter().zip(&motion.slow);
         let mask: Vec<bool> = pairs.map(|(fitted, slow)| *fitted || *slow).collect();
+        let lacking = motion.lacking;
+        let [acceleration, direction, velocity] = of_motor(motion);
+        let acceleration = without_bow(&acceleration, lacking.force);
+        let steps = lacking.force - lacking.effort;
         Self {
             motion,
-            effort: apart.path.transmitted,
+            effort: without_bow(apart.path.transmitted, steps),
             hold: apart.path.hold,
             difference: apart.raw,
-            own: of_motor(motion)
-                .into_iter()
-                .chain([vec![1.0; motion.len()]])
-                .collect(),
+            own: vec![acceleration, direction, velocity, vec![1.0; motion.len()]],
             mask: calm(motion, mask),
         }
     }
@@ -114,14 +117,19 @@ impl<'a> Balance<'a> {
         (high > low).then_some((low, high))
     }
 
-    /// What is told of each row, at the time at which the effort of the row acts.
+    /// What is told of each row, at the time at which the effort of the row acts: its mean over a
+    /// hold, as that of a cubic through four rows is.
     fn held(&self, at_row: impl Fn(usize) -> f64) -> Vec<f64> {
         let last = self.difference.len() - 1;
         let rows = 0..=last;
         match self.hold {
             EffortHold::Instant => rows.map(at_row).collect(),
             EffortHold::ZeroOrder => rows
-                .map(|row| 0.5 * (at_row(row) + at_row((row + 1).min(last))))
+                .map(|row| {
+                    let inside = at_row(row) + at_row((row + 1).min(last));
+                    let outside = at_row(row.saturating_sub(1)) + at_row((row + 2).min(last));
+                    (13.0 * inside - outside) / 24.0
+                })
                 .collect(),
         }
     }
@@ -180,7 +188,7 @@ impl<'a> Balance<'a> {
         let all: Vec<&[f64]> = own.chain(columns.iter().map(Vec::as_slice)).collect();
         let pairs = mask.iter().zip(&self.mask);
         let mask: Vec<bool> = pairs.map(|(mask, own)| *mask && *own).collect();
-        Rows::new(&all, self.effort, &mask, self.motion.period_s)
+        Rows::new(&all, &self.effort, &mask, self.motion.period_s)
     }
 
     /// Rate of motor − load where a condition on it holds.
