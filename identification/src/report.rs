@@ -85,7 +85,9 @@ fn report(findings: &Findings<'_>) -> Report {
     let bristle = bristle.as_deref();
     let whole = dataset.whole();
     let whole = whole.and_then(|record| Kinematics::new(dataset, &record));
-    let presliding = bristle.and_then(|bristle| presliding::curve(bristle, &parameters.estimates));
+    let of_motor = parameters::motor_elements(findings);
+    let presliding =
+        bristle.and_then(|bristle| presliding::curve(bristle, &of_motor, &parameters.estimates));
     let table = unknown::table(parameters.estimates);
     Report {
         dataset: dataset.name.clone(),

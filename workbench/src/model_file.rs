@@ -122,12 +122,13 @@ impl Own {
         let (mechanics, table_mass) = stated::mechanics(known, &result.effects);
         let motor = MotorSide::of(&report.parameters);
         let motor_kg = mechanics.motor_inertia_kg;
-        let motor_side = motor.map(|motor| motor.tables(&result.effects, motor_kg));
+        let curve = report.presliding.as_ref();
+        let of_motor = curve.map_or(&[][..], |curve| &curve.motor_elements);
+        let motor_side = motor.map(|motor| motor.tables(&result.effects, of_motor, motor_kg));
         let of_table = match motor {
             Some(motor) => motor.left(&result.effects),
             None => result.effects.clone(),
         };
-        let curve = report.presliding.as_ref();
         let friction = stated::friction(curve, &of_table, mechanics.table_mass_kg);
         let mut stated = stated::effects(known, &of_table, mechanics.table_mass_kg);
         if friction.is_some() {
@@ -444,10 +445,21 @@ mod tests {
         result.report.presliding = Some(PreslidingCurve {
             law: "maxwell-slip",
             elements: vec![element(1.0e-9, 0.25), element(1.0e-5, 0.75)],
+            motor_elements: vec![element(2.0e-6, 0.4), element(8.0e-6, 0.6)],
             points: Vec::new(),
         });
+        for (name, value) in [("motor_coulomb", 50.0), ("load_coulomb", 150.0)] {
+            let known = &mut result.report.parameters.known;
+            known.insert(name.into(), estimate(value));
+        }
         let (file, machine) = written_of(&result);
         let axis = &machine.axes[0];
+        let motor = axis.actual.motor_side.as_ref().unwrap();
+        let of_motor = Law::MaxwellSlip {
+            stiffness_n_per_m: vec![1.0e7, 3.75e6],
+            share: vec![0.4, 0.6],
+        };
+        assert_eq!(motor.law, of_motor);
         let Law::MaxwellSlip {
             stiffness_n_per_m,
             share,
@@ -458,7 +470,7 @@ mod tests {
         // The first one is as stiff as the sub-step carries.
         let most = 0.2 * 280.0 / plant_sim::axis::SUB_STEP_S.powi(2);
         assert!((stiffness_n_per_m[0] / (0.25 * most) - 1.0).abs() < 1.0e-9);
-        assert!((stiffness_n_per_m[1] - 1.5e7).abs() < 1.0e-3);
+        assert!((stiffness_n_per_m[1] - 1.125e7).abs() < 1.0e-3);
         assert_eq!(share, &[0.25, 0.75]);
         assert!(!identified(&file).contains_key("left_out"));
     }

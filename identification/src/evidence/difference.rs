@@ -28,6 +28,8 @@ mod known;
 mod left;
 mod linearised;
 mod load;
+mod motor_elements;
+mod motor_friction;
 mod motor_side;
 mod refined;
 mod rounding;
@@ -51,7 +53,7 @@ pub(crate) use self::known::Known;
 use self::left::Left;
 pub(crate) use self::load::More;
 #[cfg(test)]
-pub(crate) use self::motor_side::MotorSide;
+pub(crate) use self::motor_friction::MotorSide;
 use self::search::{FEWEST_PERIODS, best_gap, best_order, best_pitch};
 use self::smallest::Smallest;
 use crate::evidence::selection::{self, Candidate, Output, Scored};

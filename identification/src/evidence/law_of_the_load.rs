@@ -3,8 +3,8 @@
 //! The effort shows a law through its noise, the load's motion through a spring and some counts.
 //! The columns of the effort are those of that law then: the form and the velocity of the fall, and
 //! the bristle or the elements. Coefficients stay the effort's own. Friction of the motor's side is
-//! one more element beside those of the load. A bristle of the load beside such a friction, and a
-//! fall that the effort has not, are not put in.
+//! one more element beside those of the load, or as many as it has of its own. A bristle of the
+//! load beside such a friction, and a fall that the effort has not, are not put in.
 
 use crate::evidence::difference::ByTheLoad;
 use crate::evidence::inverse_dynamics::InverseDynamics;
@@ -95,10 +95,17 @@ fn beside_the_motor(elements: Elements, told: &ByTheLoad) -> Elements {
         return elements;
     };
     let at_once = AT_ONCE * told.deflection.value;
-    elements.beside(Element {
-        deflection: motor.deflection.map_or(at_once, |known| known.value),
-        share: motor.coulomb.value / told.coulomb.value,
-    })
+    let alone = (motor.deflection.map_or(at_once, |known| known.value), 1.0);
+    let mut own = motor.elements();
+    if own.is_empty() {
+        own.push(alone);
+    }
+    let motor_share = motor.coulomb.value / told.coulomb.value;
+    let element = |(deflection, share): (f64, f64)| Element {
+        deflection,
+        share: motor_share * share,
+    };
+    elements.beside(&own.into_iter().map(element).collect::<Vec<_>>())
 }
 
 #[cfg(test)]
@@ -140,6 +147,7 @@ mod tests {
         told.motor_side = motor.map(|coulomb| MotorSide {
             coulomb: Known::new(coulomb, 1.0),
             deflection: None,
+            law: None,
         });
         with(&dataset, &Model::declared(&dataset), &told)
     }
@@ -180,6 +188,7 @@ mod tests {
         told.motor_side = Some(MotorSide {
             coulomb: Known::new(60.0, 1.0),
             deflection: None,
+            law: None,
         });
         let found = with(&dataset, &Model::declared(&dataset), &told);
         assert_eq!(found.by_the_load, None);

@@ -299,6 +299,49 @@ impl Blocks {
         (0..self.folds).map(without).collect()
     }
 
+    /// All coefficients without each fold, those of the first columns free and those of the others
+    /// not negative.
+    #[must_use]
+    pub(crate) fn beside_non_negative_without_folds(&self, free: usize) -> Vec<Vec<f64>> {
+        let total = sum(&self.grams, self.scale.len());
+        let without = |fold: usize| {
+            let rest = self.gram_without(&total, fold);
+            let parts = non_negative(&self.beside(free, &rest));
+            let mut all = self.solve_first(free, &rest, &parts);
+            all.extend(parts);
+            all
+        };
+        (0..self.folds).map(without).collect()
+    }
+
+    /// Coefficients of the first columns beside those of the others.
+    fn solve_first(&self, free: usize, gram: &DMatrix<f64>, others: &[f64]) -> Vec<f64> {
+        let last = self.scale.len() - 1;
+        let own = |i: usize| if i < free { i } else { last };
+        // What the others explain of each product with the target is taken away.
+        let explained = |i: usize| {
+            let of_others = others.iter().enumerate();
+            of_others
+                .map(|(j, other)| other * gram[(i, free + j)])
+                .sum::<f64>()
+        };
+        let reduced = DMatrix::from_fn(free + 1, free + 1, |i, j| {
+            let product = gram[(own(i), own(j))];
+            match (own(i) == last, own(j) == last) {
+                (false, true) => product - explained(i),
+                (true, false) => product - explained(j),
+                _ => product,
+            }
+        });
+        let scale = (0..=free).map(|i| self.scale[own(i)]).collect();
+        let blocks = Self {
+            grams: Vec::new(),
+            scale,
+            folds: 1,
+        };
+        blocks.solve(&reduced).as_slice().to_vec()
+    }
+
     /// A Gram matrix of what the first columns leave of the others (Schur's complement).
     fn beside(&self, free: usize, gram: &DMatrix<f64>) -> DMatrix<f64> {
         let size = self.scale.len();
@@ -493,6 +536,23 @@ mod tests {
         assert!(Gain::of(&before, &after).share < 0.01);
         let none = Blocks::new(&[&b], &target, &mask, 1.0e-3).cross_validate();
         assert!(Gain::of(&none, &after).share > 0.99);
+    }
+
+    #[test]
+    fn free_columns_are_fitted_beside_those_that_are_not_negative() {
+        let wave = |k: f64| -> Vec<f64> { (0..20_000).map(|i| (k * f64::from(i)).sin()).collect() };
+        let (free, one, other) = (wave(0.011), wave(0.0231), wave(0.017));
+        let rows = free.iter().zip(&one).zip(&other);
+        let target: Vec<f64> = rows.map(|((f, a), b)| -2.0 * f + 3.0 * a - b).collect();
+        let columns = [&free[..], &one, &other];
+        let blocks = Blocks::new(&columns, &target, &vec![true; 20_000], 1.0e-3);
+        for own in blocks.beside_non_negative_without_folds(1) {
+            assert!(
+                (own[0] + 2.0).abs() < 0.02 && (own[1] - 3.0).abs() < 0.02,
+                "{own:?}"
+            );
+            assert_eq!(own[2], 0.0);
+        }
     }
 
     /// A gram of one column and a target, as if from one row each.

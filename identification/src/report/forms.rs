@@ -225,6 +225,10 @@ pub struct PreslidingCurve {
     /// The elements of Maxwell slip.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub elements: Vec<SlipElement>,
+    /// Those of the motor's own side, over the motor's way, where they are known: shares of its
+    /// level.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub motor_elements: Vec<SlipElement>,
     /// The curve.
     pub points: Vec<AfterReversal>,
 }

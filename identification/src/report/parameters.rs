@@ -257,6 +257,14 @@ pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>
     }))
 }
 
+/// Elements of the motor's own side, where it has some: where each slips, and its share.
+pub(crate) fn motor_elements(findings: &Findings<'_>) -> Vec<(f64, f64)> {
+    let told = findings.stages.difference.as_ref();
+    let told = told.and_then(|difference| difference.by_the_load.as_ref());
+    let motor = told.and_then(|told| told.motor_side);
+    motor.map_or_else(Vec::new, |motor| motor.elements())
+}
+
 /// Effects beside which Coulomb and viscous friction are those of the load alone: none of them is a
 /// friction of another law.
 const BESIDE_USUAL: [EffectName; 8] = [

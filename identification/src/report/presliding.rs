@@ -18,9 +18,11 @@ const FIRST: f64 = 0.02;
 /// The last point of Dahl's curve, in deflections: a fiftieth of the level is left there.
 const LAST: f64 = 4.6;
 
-/// The curve of a bristle with the parameters that are told; `None` where the level is not.
+/// The curve of a bristle with the parameters that are told, beside elements of the motor's own
+/// side by their ways and shares; `None` where the level is not told.
 pub(crate) fn curve(
     bristle: &Bristle,
+    of_motor: &[(f64, f64)],
     told: &BTreeMap<String, Estimate>,
 ) -> Option<PreslidingCurve> {
     let level = known(told.get("coulomb")?);
@@ -36,6 +38,9 @@ pub(crate) fn curve(
             ("maxwell-slip", elements.collect(), 2.0 * last)
         }
     };
+    let motor_elements = of_motor
+        .iter()
+        .map(|&(deflection, share)| SlipElement { deflection, share });
     let ways = geometric(FIRST * deflection.value, last, POINTS);
     let point = |way: f64| {
         let state = match bristle {
@@ -50,6 +55,7 @@ pub(crate) fn curve(
     Some(PreslidingCurve {
         law,
         elements,
+        motor_elements: motor_elements.collect(),
         points: std::iter::once(0.0).chain(ways).map(point).collect(),
     })
 }
@@ -98,7 +104,7 @@ mod tests {
 
     #[test]
     fn dahls_curve_turns_over_within_its_deflection_and_its_band_ends_in_that_of_the_level() {
-        let curve = curve(&Bristle::Dahl(1.0e-5), &told(1.0e-5, 1.0e-6)).unwrap();
+        let curve = curve(&Bristle::Dahl(1.0e-5), &[], &told(1.0e-5, 1.0e-6)).unwrap();
         assert_eq!(
             (curve.law, curve.elements.len(), curve.points.len()),
             ("dahl", 0, 41)
@@ -126,7 +132,7 @@ mod tests {
     fn elements_give_straight_stretches_and_end_where_the_last_one_slips() {
         let two = elements(1.0e-5, &[(0.5, 0.5), (1.0, 0.5)]);
         let deflection = two.deflection();
-        let curve = curve(&Bristle::Slip(two), &told(deflection, 0.0)).unwrap();
+        let curve = curve(&Bristle::Slip(two), &[], &told(deflection, 0.0)).unwrap();
         assert_eq!(curve.law, "maxwell-slip");
         assert_eq!(
             curve.elements[1],
@@ -148,6 +154,6 @@ mod tests {
 
     #[test]
     fn without_a_level_there_is_no_curve() {
-        assert!(curve(&Bristle::Dahl(1.0e-5), &BTreeMap::new()).is_none());
+        assert!(curve(&Bristle::Dahl(1.0e-5), &[], &BTreeMap::new()).is_none());
     }
 }

@@ -1,19 +1,18 @@
 //! Friction of the motor's own side, as far as identification saw some.
 //!
-//! It is a bristle with a level and a deflection of its own, or rigid where the axis has no
-//! presliding. Viscous friction is not told apart: the simulator has all of it at the table.
+//! It has the elements that were identified, or is a bristle with a level and a deflection of its
+//! own, or rigid where the axis has no presliding. Viscous friction is not told apart: the
+//! simulator has all of it at the table.
 
 use axis_model::{Coulomb, Effect, Estimate, Presliding, Stribeck};
-use identification::ParameterTable;
+use identification::{ParameterTable, SlipElement};
 use plant_sim::friction::{Law, Sliding};
 use serde::Serialize;
 
-use super::stated::{LEAST_LEVEL_N, stiffest};
+use super::stated::{LEAST_LEVEL_N, SOFTEST_BRISTLE, slip, stiffest};
 
 /// Deflections in those of the table's friction.
 const DEFLECTIONS: (f64, f64) = (0.05, 5.0);
-/// Softest bristle of a machine file, N/m.
-const SOFTEST_BRISTLE: f64 = 1.0e3;
 
 /// Friction of the motor's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,8 +74,13 @@ impl MotorSide {
         }
     }
 
-    /// Its tables beside the effects of both sides and a motor of such a mass.
-    pub(super) fn tables(&self, effects: &[Effect<Estimate>], motor_kg: f64) -> Tables {
+    /// Its tables beside the effects of both sides, elements of its own and a motor of such a mass.
+    pub(super) fn tables(
+        &self,
+        effects: &[Effect<Estimate>],
+        elements: &[SlipElement],
+        motor_kg: f64,
+    ) -> Tables {
         let mut sliding = Sliding::dry(self.coulomb_n.max(LEAST_LEVEL_N));
         let mut friction = Law::Coulomb;
         for effect in effects {
@@ -88,7 +92,10 @@ impl MotorSide {
                     sliding.stribeck_lag_s = own.lag.unwrap_or(0.0);
                     sliding.stribeck_lag_growth = own.lag_growth.unwrap_or(0.0);
                 }
-                Effect::Presliding(own) => friction = self.bristle(own, motor_kg),
+                Effect::Presliding(own) => {
+                    let slipping = slip(elements, sliding.coulomb_n, motor_kg);
+                    friction = slipping.unwrap_or_else(|| self.bristle(own, motor_kg));
+                }
                 Effect::CoulombAsymmetry(own) => sliding.coulomb_asymmetry = own.coulomb_asymmetry,
                 _ => {}
             }

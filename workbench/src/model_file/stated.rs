@@ -27,6 +27,8 @@ const SOFTEST: f64 = 1.0e4;
 const STIFFEST_BRISTLES: f64 = 0.2;
 /// Least moved mass that makes two masses of a machine file, kg.
 const LEAST_MASS_KG: f64 = 2.0e-3;
+/// Softest bristle of a machine file, N/m.
+pub(super) const SOFTEST_BRISTLE: f64 = 1.0e3;
 /// Least friction level, N: ten times what bristles need.
 pub(super) const LEAST_LEVEL_N: f64 = 1.0e-2;
 
@@ -162,8 +164,7 @@ pub(super) fn effects(known: &Known, effects: &[Effect<Estimate>], table_kg: f64
     stated
 }
 
-/// `[axis.actual.friction]`: Maxwell slip, which no effect of the vocabulary can state. Elements as
-/// stiff as the sub-step carries, at most.
+/// `[axis.actual.friction]`: Maxwell slip, which no effect of the vocabulary can state.
 pub(super) fn friction(
     curve: Option<&PreslidingCurve>,
     effects: &[Effect<Estimate>],
@@ -173,14 +174,20 @@ pub(super) fn friction(
     let curve = curve.filter(|_| deflection.is_some())?;
     let coulomb: Option<&Coulomb<Estimate>> = identified!(effects, Coulomb);
     let level_n = coulomb?.coulomb.value.max(LEAST_LEVEL_N);
-    let shortest = level_n / stiffest(table_kg);
+    slip(&curve.elements, level_n, table_kg)
+}
+
+/// Maxwell slip of a level on a mass, where there are elements; as stiff as the sub-step carries at
+/// most, and as a machine file may say at least.
+pub(super) fn slip(elements: &[SlipElement], level_n: f64, mass_kg: f64) -> Option<Law> {
+    let shortest = level_n / stiffest(mass_kg);
     let stiffness = |element: &SlipElement| {
         let deflection = element.deflection.max(shortest);
-        element.share * level_n / deflection
+        (element.share * level_n / deflection).max(SOFTEST_BRISTLE)
     };
-    (!curve.elements.is_empty()).then(|| Law::MaxwellSlip {
-        stiffness_n_per_m: curve.elements.iter().map(stiffness).collect(),
-        share: curve.elements.iter().map(|element| element.share).collect(),
+    (!elements.is_empty()).then(|| Law::MaxwellSlip {
+        stiffness_n_per_m: elements.iter().map(stiffness).collect(),
+        share: elements.iter().map(|element| element.share).collect(),
     })
 }
 

@@ -14,7 +14,7 @@ use axis_model::{
     Backlash, Compliance, Coulomb, Effect, Estimate, Inertia, PositionDependentFriction,
     Presliding, Stribeck, TorqueRipple, Viscous,
 };
-use identification::{Identification, SlipElement};
+use identification::{Identification, PreslidingCurve, SlipElement};
 
 use super::crossing::Crossing;
 use super::springs::{Spring, Springs, of_bristle};
@@ -137,17 +137,27 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
     let found = Found::of(&result.effects);
     let motor = MotorSide::of(&result.report.parameters);
     let curve = result.report.presliding.as_ref();
-    let elements = curve.map_or(&[][..], |curve| &curve.elements);
-    let slip = |level_n: f64, deflection: f64| -> Vec<Spring> {
+    let curve = curve.filter(|own| !own.elements.is_empty() && found.presliding.is_some());
+    let slipping = curve.map(|curve| slipping(found.coulomb_n, curve, motor));
+    of_effects(known, &result.effects, slipping, motor)
+}
+
+/// Springs of elements with such a level together. Where those of the motor's side are not known,
+/// they are those of the table, stretched.
+fn slipping(level_n: f64, curve: &PreslidingCurve, motor: Option<MotorSide>) -> Springs {
+    let springs = |elements: &[SlipElement], level_n: f64, deflection: f64| -> Vec<Spring> {
         let spring = |own: &SlipElement| Spring {
             level_n: own.share * level_n,
             way_m: deflection * own.deflection,
         };
         elements.iter().map(spring).collect()
     };
-    let slips = !elements.is_empty() && found.presliding.is_some();
-    let slipping = slips.then(|| Springs::of_sides(found.coulomb_n, motor, slip));
-    of_effects(known, &result.effects, slipping, motor)
+    let stretched = |level_n, deflection| springs(&curve.elements, level_n, deflection);
+    let mut both = Springs::of_sides(level_n, motor, stretched);
+    if let Some(motor) = motor.filter(|_| !curve.motor_elements.is_empty()) {
+        both.motor = springs(&curve.motor_elements, motor.share * level_n, 1.0);
+    }
+    both
 }
 
 /// The model of what is known of an axis: with springs that slip where it has such, else with a

@@ -56,7 +56,8 @@ const PIECES: usize = 100;
 /// that slip between a and b carry `[V − x V']` from a to b and have the stiffness `V'(a) − V'(b)`.
 /// The cuts are where `V'` has come down to (1 − i / n)² of its begin: the tail is as long as the
 /// begin is steep.
-pub(super) fn of_bristle(level_n: f64, deflection_m: f64) -> Vec<Spring> {
+#[must_use]
+pub fn of_bristle(level_n: f64, deflection_m: f64) -> Vec<Spring> {
     let scale_m = 0.5 * deflection_m;
     // With e = exp(−x / scale), V' is e level / scale and V − x V' is level (1 − e (1 − ln e)).
     let carried = |e: f64| 1.0 - if e > 0.0 { e * (1.0 - e.ln()) } else { 0.0 };

@@ -16,7 +16,8 @@ use super::columns::{Apart, Way};
 use super::known::Known;
 use super::linearised::Linearised;
 use super::load::{Carried, More, where_it_moves};
-use super::motor_side::{self, MotorSide, Stiffness};
+use super::motor_friction::MotorSide;
+use super::motor_side::{self, Stiffness};
 use super::refined::stepped;
 use super::rubbing::{ALIKE, LoadFriction, MOST_GROWTH};
 use super::slipping;
@@ -112,7 +113,7 @@ pub(super) fn told(
         };
         stepped(&apart, slipping::instead(ways, place, turning), place)
     };
-    let near = |ways: &[Way]| near(&apart, ways, place, stiffness);
+    let near = |ways: &[Way]| near(&apart, ways, place, &stiffness);
     let own = turned(SMALLEST_TURN);
     let told = near(&own)?;
     let mut others = OTHER_TURNS.into_iter().map(turned);
@@ -140,7 +141,7 @@ fn where_the_load_moves(apart: Apart<'_>, moving_velocity: f64) -> Apart<'_> {
 }
 
 /// What a wind-up tells by the fit that is linearised about it.
-fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: Stiffness) -> Option<ByTheLoad> {
+fn near(apart: &Apart<'_>, ways: &[Way], place: usize, spring: &Stiffness) -> Option<ByTheLoad> {
     let Some(Way::Carried(carried)) = ways.get(place) else {
         return None;
     };

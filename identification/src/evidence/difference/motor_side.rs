@@ -15,7 +15,8 @@
 //!
 //! The motor's friction may turn over by another law than the load's. So it is also fitted by some
 //! bends that are free beside each other: that knows less, but holds whatever the law is. Where it
-//! contradicts the law of the load's, it stands.
+//! contradicts the law of the load's, it stands. Where the load's friction has elements that slip,
+//! the motor's has elements of its own first of all ([`motor_elements`]).
 //!
 //! How much higher it is at rest is its own, up to twice the load's rise: taken for that it made
 //! the stiffness a quarter too large on a machine whose motor has half of it.
@@ -28,36 +29,24 @@
 //! Units: m or rad, s, unit of the effort.
 
 use std::ops::RangeInclusive;
-use std::slice;
 
 use super::METHOD_OF_STIFFNESS;
 use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
+use super::motor_elements;
+use super::motor_friction::{
+    ByLaw, DEFLECTIONS, HIDDEN_BY_ROUNDING, MotorSide, Rubbing, apart_by, open_by_elements,
+};
+
 use super::rounding;
 use super::rubbing::Law;
 use super::smallest::Smallest;
 use super::spring::Spring;
-use crate::evidence::thresholds::{DIFFERENCE_T, MOTOR_SIDE_SHARE, WRONG_IN_FORM};
-use crate::fit::blocks::{Blocks, Fit, Gain};
-use crate::fit::rows::Rows;
-use crate::fit::search::{descend, smallest};
-use crate::motion::bodies::minus;
+use crate::evidence::thresholds::WRONG_IN_FORM;
+use crate::fit::blocks::Blocks;
 
-/// Deflections that are tried, in those of the load's friction.
-const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
-/// Bends that are free beside each other, where the law of the load's friction does not fit that of
-/// the motor's side. The middle one comes first.
-const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
-/// Rises of the motor's friction that are tried, in that of the load's.
-const FALLS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
-/// First step of the descent from the best of them, and over which they are linearised.
-const FALL_STEP: f64 = 0.1;
-/// First step of the descent from the best deflection, as a share of it.
-const STEP: f64 = 0.1;
-/// Deflections are linearised over such a share of them.
-const LINEAR: f64 = 0.05;
 /// Where the motor's part of a friction is taken for one like the load's it may have no rise or
 /// damping, or twice as much. More than this share of the whole is not open: so much the effort
 /// tells.
@@ -72,12 +61,9 @@ const APART: f64 = 0.04;
 /// A stiffness is not known from this half width on, as a share of it: half of it, once the report
 /// has made it wider.
 const VAGUE: f64 = 0.5 / WRONG_IN_FORM;
-/// What encoders round is in the bend of the motor's friction as well, and hides of it: of 150 N of
-/// 400 the bend saw 76 where a stiffness beside it came out softer by a fifth, and the stiffness
-/// was 49 % too large for it (1.2 µm a count, 2026-11-28). So many times that share are open.
-const HIDDEN_BY_ROUNDING: f64 = 2.0;
-/// Part of the motor's friction, and of what it does to the stiffness, that is open where friction
-/// has elements that slip.
+/// Part of the motor's friction, and of what it does to the stiffness, that is open where it
+/// follows a law of elements that slip, the load's. Three machines whose motor had others came out
+/// with 3, 6 and 19 % of that beside the truth, beyond what free bends say (2026-11-27).
 const OPEN_BY_ELEMENTS: f64 = 0.5;
 /// Shares of the friction that may be left to the table where some is the motor's.
 const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
@@ -85,11 +71,6 @@ const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
 const ALIKE: Known = Known::new(1.0, 0.0);
 /// One that is not told apart from that.
 const ALIKE_OR_NOT: Known = Known::new(1.0, 1.0);
-/// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
-/// friction, offset, rate of the wind-up, wind-up, bend.
-const VISCOUS: usize = 1;
-const STIFFNESS: usize = 4;
-const COULOMB: usize = 5;
 
 /// The stiffness between motor and load.
 #[derive(Clone, Copy, Debug)]
@@ -102,16 +83,6 @@ pub(super) struct Stiffness {
     pub motor_side: Option<MotorSide>,
     /// How much higher that is at rest, in the rise of the load's friction.
     pub fall: Known,
-}
-
-/// Friction of the motor's own side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MotorSide {
-    /// Coulomb friction.
-    pub coulomb: Known,
-    /// Deflection of its bristle, or that by which its elements are scaled: Coulomb level over
-    /// stiffness at standstill. `None` where it turns over before anything is seen of it.
-    pub deflection: Option<Known>,
 }
 
 impl Stiffness {
@@ -129,6 +100,7 @@ impl Stiffness {
             motor_side: rubs.then_some(MotorSide {
                 coulomb: spring.motor_coulomb,
                 deflection: None,
+                law: None,
             }),
             fall: if rubs { ALIKE_OR_NOT } else { ALIKE },
             ..self
@@ -200,18 +172,16 @@ pub(super) fn stiffness(
     let alike = rubbing;
     let (rubbing, best) = alike.with_its_own_fall(&without);
     let by_law = rubbing.at(best);
-    let seen = by_law.is_clear(&without).then(|| {
-        let (seen, motor_side, fall) = rubbing.by_its_own_law(&by_law, best, unrubbed);
-        let (known, motor_side) = match carried.friction.law {
-            Law::Slip(_) => beside_elements(seen, motor_side, unrubbed),
-            Law::Dahl => by_method(seen, motor_side, unrubbed),
-        };
-        (known, motor_side, fall)
-    });
-    let seen = seen.filter(|(known, motor_side, _)| {
+    let can_be = |(known, motor_side, _): &(Known, MotorSide, Known)| {
         let table_share = known.value / unrubbed.value;
         motor_side.coulomb.value > motor_side.coulomb.half_width
             && TABLE_SHARES.contains(&table_share)
+    };
+    let own = motor_elements::told(&rubbing, &by_law, unrubbed, &without);
+    let seen = own.filter(can_be).or_else(|| {
+        let is_clear = by_law.is_clear(&without);
+        let seen = is_clear.then(|| rubbing.by_the_loads_law(&by_law, best, unrubbed));
+        seen.filter(can_be)
     });
     let hides = alike.hides(best);
     let known = seen.map_or_else(
@@ -236,129 +206,11 @@ fn by_method(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> (Known
     (stiffness, motor_side)
 }
 
-/// A stiffness and a friction of the motor's side that are told apart to a share of the stiffness:
-/// what that has less, the friction has more.
-fn apart_by(share: f64, stiffness: Known, coulomb: Known, unrubbed: Known) -> (Known, Known) {
-    let of_load = coulomb.value * stiffness.value / (unrubbed.value - stiffness.value);
-    (
-        stiffness.within_share(share),
-        coulomb.within(share * of_load),
-    )
-}
-
-/// The same where the load's friction has elements that slip. Three machines whose motor had other
-/// elements came out with 3, 6 and 19 % of what its friction does to the stiffness beside the truth
-/// (2026-11-27), beyond what free bends say: half of it is open.
-fn beside_elements(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> (Known, MotorSide) {
-    let coulomb = motor_side.coulomb;
-    let motor_side = MotorSide {
-        coulomb: coulomb.within_share(OPEN_BY_ELEMENTS),
-        ..motor_side
-    };
-    let open = OPEN_BY_ELEMENTS * (unrubbed.value - stiffness.value);
-    (stiffness.within(open), motor_side)
-}
-
 fn last(values: &[f64], half_widths: &[f64]) -> Option<Known> {
     Some(Known::new(*values.last()?, *half_widths.last()?))
 }
 
-/// What is told by a friction of the motor's side that follows the law of the load's.
-struct ByLaw {
-    fit: Fit,
-    /// Viscous friction of the motor's side.
-    viscous: Known,
-    stiffness: Known,
-    motor_side: MotorSide,
-    /// Its rise at rest, in that of the load's friction.
-    fall: Known,
-}
-
-impl ByLaw {
-    /// Whether a friction of the motor's side is seen, beside a fit without.
-    fn is_clear(&self, without: &Fit) -> bool {
-        let gain = Gain::of(without, &self.fit);
-        let coulomb = self.motor_side.coulomb;
-        gain.share >= MOTOR_SIDE_SHARE
-            && gain.t >= DIFFERENCE_T
-            && self.viscous.value >= -self.viscous.half_width
-            && coulomb.value > coulomb.half_width
-    }
-}
-
-/// The balance beside a friction of the motor's side.
-#[derive(Clone, Copy)]
-struct Rubbing<'a> {
-    motor: &'a LoadMotion,
-    apart: &'a Apart<'a>,
-    /// Columns of what is wound up: its rate, itself.
-    wound: &'a [Vec<f64>; 2],
-    /// Sum of squares of what encoders round of it.
-    rounding: f64,
-    /// All columns but those of the bend.
-    rows: &'a Rows,
-    /// The load's friction.
-    carried: Carried,
-    /// Rise of the motor's at rest, in that of the load's.
-    fall: f64,
-    balance: &'a Balance<'a>,
-}
-
 impl Rubbing<'_> {
-    /// Columns of the motor's own friction with such a deflection in those of the load's: the bend
-    /// comes first.
-    fn bend(&self, deflection: f64) -> Vec<Vec<f64>> {
-        let motion = self.apart.motion;
-        let mut carried = self.carried;
-        carried.friction.rise *= self.fall;
-        let columns = carried.on_motor(motion, self.motor, deflection);
-        self.balance.at_efforts(&columns)
-    }
-
-    fn blocks(&self, deflection: f64) -> Blocks {
-        Blocks::with(self.rows, &self.bend(deflection))
-    }
-
-    /// By which share rounding makes a stiffness too small that is fitted beside some columns of
-    /// the motor's own side and such bends.
-    fn softens(&self, own: &[usize], bends: &[Vec<f64>]) -> f64 {
-        let [rate, wound] = self.wound;
-        let others = [slice::from_ref(rate), bends].concat();
-        let others = self.balance.rows(own, &others, &self.apart.mask);
-        rounding::softens(self.rounding, wound, &others)
-    }
-
-    /// The deflection that leaves least.
-    fn best(&self) -> f64 {
-        let left = |deflection: f64| self.blocks(deflection).fit().sse;
-        let begin = smallest(&DEFLECTIONS, &left).unwrap_or(1.0);
-        let range = (DEFLECTIONS[0], DEFLECTIONS[DEFLECTIONS.len() - 1]);
-        descend(begin, STEP * begin, range, &left)
-    }
-
-    /// The same with such a rise of the motor's friction as leaves least, and the deflection that
-    /// does then; with that of the load's where hardly any is seen beside a fit without.
-    fn with_its_own_fall(self, without: &Fit) -> (Self, f64) {
-        let best = self.best();
-        let gain = Gain::of(without, &self.blocks(best).cross_validate());
-        if gain.share < MOTOR_SIDE_SHARE || self.carried.friction.rise <= 0.0 {
-            return (self, best);
-        }
-        let left = |fall: f64| {
-            let own = self.falling(fall);
-            own.blocks(own.best()).fit().sse
-        };
-        let begin = smallest(&FALLS, &left).unwrap_or(1.0);
-        let range = (FALLS[0], FALLS[FALLS.len() - 1]);
-        let own = self.falling(descend(begin, FALL_STEP, range, &left));
-        (own, own.best())
-    }
-
-    /// The same with such a rise of the motor's friction, in that of the load's.
-    const fn falling(self, fall: f64) -> Self {
-        Self { fall, ..self }
-    }
-
     /// What rounding hides of a friction of the motor's side, as a share of the stiffness.
     fn hides(&self, at: f64) -> f64 {
         let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.bend(at));
@@ -372,6 +224,22 @@ impl Rubbing<'_> {
         let softest = [by_law, hidden].map(|known| known.value - known.half_width);
         let less = unrubbed.value - softest[0].min(softest[1]);
         unrubbed.within(less.max(0.0)).within_share(hides)
+    }
+
+    /// Stiffness, friction of the motor's side and its rise, where that follows the load's law.
+    fn by_the_loads_law(
+        &self,
+        by_law: &ByLaw,
+        at: f64,
+        unrubbed: Known,
+    ) -> (Known, MotorSide, Known) {
+        let (seen, motor_side, fall) = self.by_its_own_law(by_law, at, unrubbed);
+        let both = (seen, motor_side);
+        let (known, motor_side) = match self.carried.friction.law {
+            Law::Slip(_) => open_by_elements(OPEN_BY_ELEMENTS, both, unrubbed),
+            Law::Dahl => by_method(seen, motor_side, unrubbed),
+        };
+        (known, motor_side, fall)
     }
 
     /// What holds of a stiffness and a friction of the motor's side that follows the law of the
@@ -390,13 +258,14 @@ impl Rubbing<'_> {
                 MotorSide {
                     coulomb,
                     deflection,
+                    law,
                 },
             fall,
             ..
         } = *by_law;
         let (free_stiffness, free_coulomb) = self.of_any_shape(unrubbed);
         let apart = (free_stiffness.value - stiffness.value).abs();
-        let contradicts = apart > free_stiffness.half_width;
+        let contradicts = apart > free_stiffness.half_width.hypot(stiffness.half_width);
         let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
         let deflection = deflection.map(|deflection| {
             if contradicts || !is_inside {
@@ -412,6 +281,7 @@ impl Rubbing<'_> {
                 MotorSide {
                     coulomb,
                     deflection,
+                    law,
                 },
                 ALIKE_OR_NOT,
             );
@@ -425,63 +295,10 @@ impl Rubbing<'_> {
             MotorSide {
                 coulomb,
                 deflection,
+                law,
             },
             fall.within(HIDDEN_BY_ROUNDING * softer),
         )
-    }
-
-    /// Stiffness and Coulomb friction of the motor's side with free bends: the first column has the
-    /// coefficients of all.
-    fn of_any_shape(&self, unrubbed: Known) -> (Known, Known) {
-        // The first bend and all that goes with it.
-        let mut columns = self.bend(SHAPES[0]);
-        for shape in &SHAPES[1..] {
-            let other = minus(&self.bend(*shape)[0], &columns[0]);
-            columns.push(other);
-        }
-        let blocks = Blocks::with(self.rows, &columns);
-        let (fit, half_widths) = (blocks.fit(), blocks.half_widths());
-        let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
-        let softer = self.softens(&OWN_WITHOUT_COULOMB, &columns);
-        apart_by(softer, known(STIFFNESS), known(COULOMB), unrubbed)
-    }
-
-    /// The bend at a deflection and all that goes with it; what another rise changes of it, and
-    /// what another deflection does, last.
-    fn linearised(&self, deflection: f64) -> Vec<Vec<f64>> {
-        let bend = |fall: f64, deflection: f64| self.falling(fall).bend(deflection).swap_remove(0);
-        let per = |more: Vec<f64>, less: Vec<f64>, step: f64| {
-            let pairs = more.iter().zip(&less);
-            pairs.map(|(more, less)| (more - less) / step).collect()
-        };
-        let [low, high] = [(self.fall - FALL_STEP).max(0.0), self.fall + FALL_STEP];
-        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| bend(self.fall, by * deflection));
-        let by_fall = per(bend(high, deflection), bend(low, deflection), high - low);
-        let by_deflection = per(more, less, 2.0 * LINEAR);
-        [self.bend(deflection), vec![by_fall, by_deflection]].concat()
-    }
-
-    /// The fit at a deflection, and what is told by it, as uncertain as deflection and rise are.
-    fn at(&self, deflection: f64) -> ByLaw {
-        let fit = self.blocks(deflection).cross_validate();
-        let half_widths = Blocks::with(self.rows, &self.linearised(deflection)).half_widths();
-        let known = |place: usize| Known::new(fit.coefficients[place], half_widths[place]);
-        let [viscous, stiffness, coulomb] = [VISCOUS, STIFFNESS, COULOMB].map(known);
-        let share = half_widths.last().map_or(0.0, |last| last / coulomb.value);
-        let deflection = Known::new(deflection, deflection * share);
-        let deflection = Some(deflection.of(self.carried.friction.deflection));
-        let by_fall = half_widths.len() - 2;
-        let fall = Known::new(self.fall, half_widths[by_fall] / coulomb.value);
-        ByLaw {
-            fall,
-            fit,
-            viscous,
-            stiffness,
-            motor_side: MotorSide {
-                coulomb,
-                deflection,
-            },
-        }
     }
 }
 
@@ -620,5 +437,33 @@ mod tests {
         assert_eq!(told.known.value, told.unrubbed.value);
         assert!(told.known.half_width > 3.0 * told.unrubbed.half_width);
         assert!((told.unrubbed.value / STIFFNESS - 1.0).abs() < 0.005);
+    }
+
+    #[test]
+    fn elements_of_the_motor_have_nothing_to_do_with_those_of_the_load() {
+        let of_load = FRICTION.slipping(&[4.0e-6, 20.0e-6, 60.0e-6], &[0.3, 0.4, 0.3]);
+        let of_motor = FRICTION.slipping(&[2.0e-6, 6.0e-6, 40.0e-6], &[0.6, 0.1, 0.3]);
+        let [of_load, of_motor]: [LoadFriction; 2] = [of_load, of_motor].map(Option::unwrap);
+        let axis = rubbed_on_both(of_load, [0.0; 2], (30.0, of_motor), |_| 0.0);
+        let told = told(&axis);
+        let off = (told.known.value - STIFFNESS).abs();
+        assert!(
+            off < 0.05 * STIFFNESS && off < told.known.half_width,
+            "{told:?}"
+        );
+        let motor = told.motor_side.unwrap();
+        assert!(
+            (motor.coulomb.value - 30.0).abs() < 2.0,
+            "{:?}",
+            motor.coulomb
+        );
+        let force = |elements: &[(f64, f64)], way: f64| -> f64 {
+            let own = elements.iter();
+            own.map(|(at, share)| share * (way / at).min(1.0)).sum()
+        };
+        for way in [1.0e-6, 4.0e-6, 10.0e-6, 30.0e-6] {
+            let [is, wanted] = [motor.elements(), of_motor.elements()].map(|own| force(&own, way));
+            assert!((is - wanted).abs() < 0.05, "{way}: {is} {wanted}");
+        }
     }
 }

@@ -222,7 +222,7 @@ impl LoadFriction {
     }
 
     /// The elements: where each slips, and its share.
-    pub(super) fn elements(self) -> Vec<(f64, f64)> {
+    pub(crate) fn elements(self) -> Vec<(f64, f64)> {
         let Law::Slip(Slip { elements }) = self.law else {
             return Vec::new();
         };

@@ -134,14 +134,15 @@ impl Elements {
         Self { fall, ..self }
     }
 
-    /// The same beside one more, whose share is that of all.
-    pub(crate) fn beside(mut self, other: Element) -> Self {
+    /// The same beside others, whose shares are those of all.
+    pub(crate) fn beside(mut self, others: &[Element]) -> Self {
+        let left = 1.0 - others.iter().map(|other| other.share).sum::<f64>();
         let all = std::iter::once(&mut self.in_turn).chain(&mut self.without_folds);
         for elements in all {
             for element in elements.iter_mut() {
-                element.share *= 1.0 - other.share;
+                element.share *= left;
             }
-            elements.push(other);
+            elements.extend(others);
             elements.sort_by(|a, b| a.deflection.total_cmp(&b.deflection));
         }
         self
@@ -317,10 +318,10 @@ pub(crate) mod tests {
     #[test]
     fn one_more_element_takes_its_share_of_all() {
         let two = elements(2.0, &[(0.5, 0.5), (1.0, 0.5)]);
-        let three = two.beside(Element {
+        let three = two.beside(&[Element {
             deflection: 1.5,
             share: 0.2,
-        });
+        }]);
         let own = three.elements().iter();
         let own: Vec<(f64, f64)> = own.map(|own| (own.deflection, own.share)).collect();
         assert_eq!(own, [(1.0, 0.4), (1.5, 0.2), (2.0, 0.4)]);
