@@ -7,7 +7,9 @@
 //! proportion to its own inertia. Machines from [`WITH_MORE`] on have more at once: friction that
 //! differs by direction, a ripple of 30 N, a part of the friction on the motor's side with a
 //! presliding of its own, and every third of them a gap of 3 to 8 µm inside the loop. Of these one
-//! whose loops oscillate without any compensation, also while it creeps, is drawn again.
+//! whose loops oscillate without any compensation, also while it creeps, is drawn again. From
+//! [`UNLIKE_SIDES`] on the motor's friction has a rise at rest and a velocity over which that falls
+//! of its own, and on every second machine the other structure.
 
 use std::ops::RangeInclusive;
 
@@ -48,6 +50,12 @@ const ASYMMETRY: RangeInclusive<f64> = -0.15..=0.15;
 const RIPPLE_N: f64 = 30.0;
 /// Share of the friction that is on the motor's side.
 const ON_MOTOR: RangeInclusive<f64> = 0.15..=0.45;
+/// Machines from this number on have friction of both sides that rises and falls otherwise.
+pub const UNLIKE_SIDES: u64 = 201;
+/// Of those every so many have the other structure on one side only.
+const UNLIKE_STRUCTURE: u64 = 2;
+/// Rise of the motor's friction at rest, in that of the table's.
+const UNLIKE_RISE: RangeInclusive<f64> = 0.0..=1.8;
 /// From one draw of a machine to the next.
 const REDRAWN: u64 = 10_000;
 
@@ -88,6 +96,13 @@ fn drawn_later(number: u64, draw: u64) -> Machine {
             axis.actual.mechanics.backlash_m = draw.between(GAP_M);
         }
         share_out(&mut axis, &mut draw);
+    }
+    if number >= UNLIKE_SIDES {
+        make_unlike(
+            &mut axis,
+            number.is_multiple_of(UNLIKE_STRUCTURE),
+            &mut draw,
+        );
     }
     for (place, name) in ["X", "Y"].into_iter().enumerate() {
         machine.axes[place] = MachineAxis {
@@ -130,6 +145,34 @@ fn share_out(axis: &mut MachineAxis, draw: &mut Draw) {
     actual.sliding = part(&actual.sliding, 1.0 - share);
     actual.law = softened(&actual.law, 1.0 - share);
     actual.motor_side = Some(MotorSide { sliding, law });
+}
+
+/// Gives the motor's friction a rise, a fall and, where asked for, a structure of its own.
+fn make_unlike(axis: &mut MachineAxis, is_other_structure: bool, draw: &mut Draw) {
+    let Some(motor) = &mut axis.actual.motor_side else {
+        return;
+    };
+    let sliding = &mut motor.sliding;
+    let excess_n = sliding.static_n - sliding.coulomb_n;
+    sliding.static_n = sliding.coulomb_n + draw.between(UNLIKE_RISE) * excess_n;
+    draw.spread(&mut sliding.stribeck_velocity_m_per_s);
+    if is_other_structure {
+        let is_slip = matches!(motor.law, Law::MaxwellSlip { .. });
+        (sliding.stribeck_lag_s, motor.law) = if is_slip {
+            (0.0, usual_bristle(sliding.coulomb_n, draw))
+        } else {
+            (LAG_S * draw.between(SPREAD), slip(sliding.coulomb_n, draw))
+        };
+    }
+}
+
+/// The reference machine's bristle for another level, and softer or stiffer.
+fn usual_bristle(level_n: f64, draw: &mut Draw) -> Law {
+    let usual = &Machine::reference().axes[0].actual;
+    softened(
+        &usual.law,
+        level_n / usual.sliding.coulomb_n * draw.between(SPREAD),
+    )
 }
 
 /// A law with its stiffness and damping times a factor.

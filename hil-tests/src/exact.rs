@@ -13,7 +13,7 @@ use plant_sim::machine::MachineAxis;
 use workbench::compensation::{AxisCompensation, Compensation};
 use workbench::model_file::{Known, MotorSide};
 use workbench::tuning::friction_model;
-use workbench::tuning::springs::{Spring, Springs};
+use workbench::tuning::springs::{Spring, Springs, of_bristle};
 
 /// The compensation of an axis; none where it has no friction. Friction over position is not in it.
 #[must_use]
@@ -146,30 +146,39 @@ fn ripple(own: &TorqueRipple<f64>) -> TorqueRipple<Estimate> {
     }
 }
 
-/// Springs of Maxwell slip, where the axis has such.
+/// Springs of both sides, where one at least has Maxwell slip: a bristle beside such is as many.
 fn slipping(axis: &MachineAxis) -> Option<Springs> {
-    let of_side = |(sliding, law): &(&Sliding, &Law)| {
-        let Law::MaxwellSlip {
+    let sides = sides(axis);
+    let slips = |(_, law): &(&Sliding, &Law)| matches!(law, Law::MaxwellSlip { .. });
+    sides.iter().any(slips).then(|| {
+        let mut each = sides.into_iter().map(springs);
+        Springs {
+            table: each.next().unwrap_or_default(),
+            motor: each.next().unwrap_or_default(),
+        }
+    })
+}
+
+/// What friction that gives way at once gives way by, m.
+const RIGID_M: f64 = 1.0e-8;
+
+fn springs((sliding, law): (&Sliding, &Law)) -> Vec<Spring> {
+    let coulomb_n = sliding.coulomb_n;
+    match law {
+        Law::Coulomb => of_bristle(coulomb_n, RIGID_M),
+        Law::LuGre { .. } => of_bristle(coulomb_n, coulomb_n / law.stiffness_n_per_m()),
+        Law::MaxwellSlip {
             stiffness_n_per_m,
             share,
-        } = law
-        else {
-            return Vec::new();
-        };
-        let spring = |(share, stiffness): (&f64, &f64)| {
-            let level_n = share * sliding.coulomb_n;
-            Spring {
-                level_n,
-                way_m: level_n / stiffness,
-            }
-        };
-        share.iter().zip(stiffness_n_per_m).map(spring).collect()
-    };
-    let sides = sides(axis);
-    let mut each = sides.iter().map(of_side);
-    let springs = Springs {
-        table: each.next().unwrap_or_default(),
-        motor: each.next().unwrap_or_default(),
-    };
-    (springs != Springs::default()).then_some(springs)
+        } => {
+            let spring = |(share, stiffness): (&f64, &f64)| {
+                let level_n = share * coulomb_n;
+                Spring {
+                    level_n,
+                    way_m: level_n / stiffness,
+                }
+            };
+            share.iter().zip(stiffness_n_per_m).map(spring).collect()
+        }
+    }
 }
