@@ -12,7 +12,7 @@ use plant_sim::friction::{Law, Sliding};
 use plant_sim::machine::MachineAxis;
 use workbench::compensation::{AxisCompensation, Compensation};
 use workbench::model_file::{Known, MotorSide};
-use workbench::tuning::friction_model;
+use workbench::tuning::friction_model::{self, RIGID_M};
 use workbench::tuning::springs::{Spring, Springs, of_bristle};
 
 /// The compensation of an axis; none where it has no friction. Friction over position is not in it.
@@ -159,13 +159,13 @@ fn slipping(axis: &MachineAxis) -> Option<Springs> {
     })
 }
 
-/// What friction that gives way at once gives way by, m.
-const RIGID_M: f64 = 1.0e-8;
-
 fn springs((sliding, law): (&Sliding, &Law)) -> Vec<Spring> {
     let coulomb_n = sliding.coulomb_n;
     match law {
-        Law::Coulomb => of_bristle(coulomb_n, RIGID_M),
+        Law::Coulomb => vec![Spring {
+            level_n: coulomb_n,
+            way_m: RIGID_M,
+        }],
         Law::LuGre { .. } => of_bristle(coulomb_n, coulomb_n / law.stiffness_n_per_m()),
         Law::MaxwellSlip {
             stiffness_n_per_m,

@@ -291,26 +291,25 @@ impl Blocks {
     /// The same without each fold.
     #[must_use]
     pub(crate) fn non_negative_beside_without_folds(&self, free: usize) -> Vec<Vec<f64>> {
-        let total = sum(&self.grams, self.scale.len());
-        let without = |fold: usize| {
-            let rest = self.gram_without(&total, fold);
-            non_negative(&self.beside(free, &rest))
-        };
-        (0..self.folds).map(without).collect()
+        self.without_folds(|rest| non_negative(&self.beside(free, rest)))
     }
 
     /// All coefficients without each fold, those of the first columns free and those of the others
     /// not negative.
     #[must_use]
     pub(crate) fn beside_non_negative_without_folds(&self, free: usize) -> Vec<Vec<f64>> {
-        let total = sum(&self.grams, self.scale.len());
-        let without = |fold: usize| {
-            let rest = self.gram_without(&total, fold);
-            let parts = non_negative(&self.beside(free, &rest));
-            let mut all = self.solve_first(free, &rest, &parts);
+        self.without_folds(|rest| {
+            let parts = non_negative(&self.beside(free, rest));
+            let mut all = self.solve_first(free, rest, &parts);
             all.extend(parts);
             all
-        };
+        })
+    }
+
+    /// What follows from the Gram matrix without each fold.
+    fn without_folds<T>(&self, of: impl Fn(&DMatrix<f64>) -> T) -> Vec<T> {
+        let total = sum(&self.grams, self.scale.len());
+        let without = |fold: usize| of(&self.gram_without(&total, fold));
         (0..self.folds).map(without).collect()
     }
 
@@ -333,13 +332,8 @@ impl Blocks {
                 _ => product,
             }
         });
-        let scale = (0..=free).map(|i| self.scale[own(i)]).collect();
-        let blocks = Self {
-            grams: Vec::new(),
-            scale,
-            folds: 1,
-        };
-        blocks.solve(&reduced).as_slice().to_vec()
+        let scale: Vec<f64> = (0..=free).map(|i| self.scale[own(i)]).collect();
+        solved(&reduced, &scale).as_slice().to_vec()
     }
 
     /// A Gram matrix of what the first columns leave of the others (Schur's complement).
@@ -376,17 +370,22 @@ impl Blocks {
     }
 
     fn solve(&self, gram: &DMatrix<f64>) -> DVector<f64> {
-        let size = self.scale.len() - 1;
-        let scaled = |i: usize, j: usize| gram[(i, j)] / (self.scale[i] * self.scale[j]);
-        let mut normal = DMatrix::from_fn(size, size, scaled);
-        let ridge = RIDGE * normal.trace().max(f64::MIN_POSITIVE) / size.max(1) as f64;
-        (0..size).for_each(|i| normal[(i, i)] += ridge);
-        let right = DVector::from_fn(size, |i, _| scaled(i, size));
-        let solution = normal
-            .cholesky()
-            .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
-        DVector::from_fn(size, |i, _| solution[i] * self.scale[size] / self.scale[i])
+        solved(gram, &self.scale)
     }
+}
+
+/// Least squares by a Gram matrix whose columns, the target's last, have such scales.
+fn solved(gram: &DMatrix<f64>, scale: &[f64]) -> DVector<f64> {
+    let size = scale.len() - 1;
+    let scaled = |i: usize, j: usize| gram[(i, j)] / (scale[i] * scale[j]);
+    let mut normal = DMatrix::from_fn(size, size, scaled);
+    let ridge = RIDGE * normal.trace().max(f64::MIN_POSITIVE) / size.max(1) as f64;
+    (0..size).for_each(|i| normal[(i, i)] += ridge);
+    let right = DVector::from_fn(size, |i, _| scaled(i, size));
+    let solution = normal
+        .cholesky()
+        .map_or_else(|| DVector::zeros(size), |c| c.solve(&right));
+    DVector::from_fn(size, |i, _| solution[i] * scale[size] / scale[i])
 }
 
 /// Half width of the 95 % interval of a value that came out so without each fold: by the jackknife,

@@ -131,16 +131,13 @@ impl Lacking {
         if dataset.train.velocity.is_some() {
             return Self::default();
         }
-        let given = if dataset.is_sharpened {
-            lacks_of_acceleration(dataset.hold)
-        } else {
-            0.0
-        };
+        let of_steps = lacks_of_acceleration(dataset.hold);
+        let given = if dataset.is_sharpened { of_steps } else { 0.0 };
         let (effort, force) = match dataset.hold {
-            EffortHold::Instant => (1.0 / 12.0, 1.0 / 12.0),
+            EffortHold::Instant => (of_steps, of_steps),
             EffortHold::ZeroOrder => {
                 let uneven = unevenness(dataset.effort_lag_s, dataset.train.period_s);
-                (0.25 - uneven, 1.0 / 6.0)
+                (of_steps - uneven, 1.0 / 6.0)
             }
         };
         Self {

@@ -63,8 +63,8 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
     ];
     let mut parameters = table(of_outputs);
     parameters.count_the_mass_of_the_load(findings);
-    let difference = stages.difference.as_ref();
-    if let Some(told) = difference.and_then(|difference| difference.by_the_load.as_ref()) {
+    let told = by_the_load(findings);
+    if let Some(told) = told {
         parameters.without_shape_of_fall(told);
         // What the motor's side has of a fall the effort alone shows, beside the law of the load.
         let has_both = findings.models.extended.by_the_load.is_some() && told.motor_side.is_some();
@@ -74,9 +74,9 @@ pub(crate) fn parameters(findings: &Findings<'_>) -> Parameters {
             }
         }
     }
+    let difference = stages.difference.as_ref();
     if let Some(motor) = difference.and_then(|difference| difference.motor_coulomb) {
         let unit = findings.dataset.effort.unit();
-        let told = difference.and_then(|difference| difference.by_the_load.as_ref());
         let is_seen = told.is_some_and(|told| told.motor_side.is_some());
         parameters.share_out_coulomb(about(motor.value, motor.half_width, unit.into()), is_seen);
     }
@@ -246,12 +246,16 @@ fn estimate(known: Known, unit: &str) -> Estimate {
     about(known.value, known.half_width, unit.into())
 }
 
+/// What the load's own motion tells.
+fn by_the_load<'a>(findings: &'a Findings<'_>) -> Option<&'a ByTheLoad> {
+    let difference = findings.stages.difference.as_ref()?;
+    difference.by_the_load.as_ref()
+}
+
 /// The bristle of the extended model; that of the load's motion where elements slip there.
 pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>> {
     let own = findings.models.extended.bristle.as_ref()?;
-    let told = findings.stages.difference.as_ref();
-    let told = told.and_then(|difference| difference.by_the_load.as_ref());
-    let elements = told.and_then(|told| told.elements.clone());
+    let elements = by_the_load(findings).and_then(|told| told.elements.clone());
     Some(elements.map_or(Cow::Borrowed(own), |elements| {
         Cow::Owned(Bristle::Slip(elements))
     }))
@@ -259,9 +263,7 @@ pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>
 
 /// Elements of the motor's own side, where it has some: where each slips, and its share.
 pub(crate) fn motor_elements(findings: &Findings<'_>) -> Vec<(f64, f64)> {
-    let told = findings.stages.difference.as_ref();
-    let told = told.and_then(|difference| difference.by_the_load.as_ref());
-    let motor = told.and_then(|told| told.motor_side);
+    let motor = by_the_load(findings).and_then(|told| told.motor_side);
     motor.map_or_else(Vec::new, |motor| motor.elements())
 }
 

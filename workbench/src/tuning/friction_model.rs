@@ -25,7 +25,7 @@ use crate::compensation::{
 use crate::model_file::{Known, MotorSide};
 
 /// Friction that no reversal shows to give way slips within this, m.
-const RIGID_M: f64 = 1.0e-6;
+pub const RIGID_M: f64 = 1.0e-6;
 /// The factors end where the Stribeck fall has come down to this share of itself.
 const END_OF_FALL: f64 = 2.0e-3;
 

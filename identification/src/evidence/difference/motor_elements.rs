@@ -8,9 +8,7 @@
 
 use super::flanks::OWN_WITHOUT_COULOMB;
 use super::known::Known;
-use super::motor_friction::{
-    ByLaw, HIDDEN_BY_ROUNDING, MotorSide, Rubbing, STIFFNESS, apart_by, open_by_elements,
-};
+use super::motor_friction::{ByLaw, HIDDEN_BY_ROUNDING, Rubbing, STIFFNESS, Seen};
 use super::rubbing::Law;
 use crate::evidence::reversal::slip::grid_about;
 use crate::evidence::thresholds::DIFFERENCE_T;
@@ -30,16 +28,16 @@ const RATIOS: [f64; 4] = [1.06, 1.06, 1.03, 1.03];
 /// which its folds do not know (2026-11-29).
 const OPEN: f64 = 0.25;
 
-/// Stiffness, friction of the motor's side and its rise by elements of the motor's own, where the
-/// load's friction has some, and the fit with these is clearly better than without any friction of
-/// the motor's side and than one that follows the law of the load's. Where they slip is chosen by
-/// all blocks; that is a part of the gain, which is not held out.
+/// What is seen by elements of the motor's own, where the load's friction has some, and the fit
+/// with these is clearly better than without any friction of the motor's side and than one that
+/// follows the law of the load's. Where they slip is chosen by all blocks; that is a part of the
+/// gain, which is not held out.
 pub(super) fn told(
     alike: &Rubbing<'_>,
     by_law: &ByLaw,
     unrubbed: Known,
     without: &Fit,
-) -> Option<(Known, MotorSide, Known)> {
+) -> Option<Seen> {
     if alike.carried.friction.law == Law::Dahl {
         return None;
     }
@@ -52,17 +50,13 @@ pub(super) fn told(
     (is_better && own.is_clear(without)).then(|| {
         let [open, deep] = open_by_folds(rubbing);
         let softer = rubbing.softens(&OWN_WITHOUT_COULOMB, &rubbing.linearised(1.0));
-        let open = (open / own.stiffness.value).hypot(softer);
-        let (stiffness, coulomb) = apart_by(open, own.stiffness, own.motor_side.coulomb, unrubbed);
-        let motor_side = MotorSide {
-            coulomb,
-            deflection: own.motor_side.deflection.map(|own| own.within(deep)),
-            law: Some(rubbing.carried.friction),
-        };
-        let both = (stiffness, motor_side);
-        let (stiffness, motor_side) = open_by_elements(OPEN, both, unrubbed);
-        let fall = own.fall.within(HIDDEN_BY_ROUNDING * softer);
-        (stiffness, motor_side, fall)
+        let mut seen = own.seen;
+        seen.motor_side.deflection = seen.motor_side.deflection.map(|own| own.within(deep));
+        seen.motor_side.law = Some(rubbing.carried.friction);
+        seen.fall = seen.fall.within(HIDDEN_BY_ROUNDING * softer);
+        let open = (open / seen.stiffness.value).hypot(softer);
+        seen.apart_by(open, unrubbed)
+            .open_by_elements(OPEN, unrubbed)
     })
 }
 

@@ -5,6 +5,7 @@
 //!
 //! Units: m or rad, s, unit of the effort.
 
+use std::ops::RangeInclusive;
 use std::slice;
 
 use super::columns::Apart;
@@ -36,6 +37,8 @@ const LINEAR: f64 = 0.05;
 /// 400 the bend saw 76 where a stiffness beside it came out softer by a fifth, and the stiffness
 /// was 49 % too large for it (1.2 µm a count, 2026-11-28). So many times that share are open.
 pub(super) const HIDDEN_BY_ROUNDING: f64 = 2.0;
+/// Shares of the friction that may be left to the table where some is the motor's.
+const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
 /// Places of coefficients beside a friction of the motor's side: those of its mass, viscous
 /// friction, offset, rate of the wind-up, wind-up, bend.
 const VISCOUS: usize = 1;
@@ -63,12 +66,7 @@ impl MotorSide {
 
 /// A stiffness and a friction of the motor's side that are told apart to a share of the stiffness:
 /// what that has less, the friction has more.
-pub(super) fn apart_by(
-    share: f64,
-    stiffness: Known,
-    coulomb: Known,
-    unrubbed: Known,
-) -> (Known, Known) {
+fn apart_by(share: f64, stiffness: Known, coulomb: Known, unrubbed: Known) -> (Known, Known) {
     let of_load = coulomb.value * stiffness.value / (unrubbed.value - stiffness.value);
     (
         stiffness.within_share(share),
@@ -76,28 +74,9 @@ pub(super) fn apart_by(
     )
 }
 
-/// The same where friction has elements that slip: such a part of what the motor's does to the
-/// stiffness, and of the motor's itself, is open.
-pub(super) fn open_by_elements(
-    share: f64,
-    (stiffness, motor_side): (Known, MotorSide),
-    unrubbed: Known,
-) -> (Known, MotorSide) {
-    let coulomb = motor_side.coulomb.within_share(share);
-    let motor_side = MotorSide {
-        coulomb,
-        ..motor_side
-    };
-    let open = share * (unrubbed.value - stiffness.value);
-    (stiffness.within(open), motor_side)
-}
-
-/// What is told by a friction of the motor's side that follows a law.
-pub(super) struct ByLaw {
-    /// The fit.
-    pub fit: Fit,
-    /// Viscous friction of the motor's side.
-    pub viscous: Known,
+/// What is seen of the motor's side.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
     /// Stiffness between motor and load.
     pub stiffness: Known,
     /// The friction.
@@ -106,11 +85,57 @@ pub(super) struct ByLaw {
     pub fall: Known,
 }
 
+impl Seen {
+    /// Whether it is there, beside a stiffness that would be such without it.
+    pub(super) fn can_be(&self, unrubbed: Known) -> bool {
+        let coulomb = self.motor_side.coulomb;
+        let table_share = self.stiffness.value / unrubbed.value;
+        coulomb.value > coulomb.half_width && TABLE_SHARES.contains(&table_share)
+    }
+
+    /// The same, told apart to a share of the stiffness: what that has less, the friction has more.
+    pub(super) fn apart_by(self, share: f64, unrubbed: Known) -> Self {
+        let coulomb = self.motor_side.coulomb;
+        let (stiffness, coulomb) = apart_by(share, self.stiffness, coulomb, unrubbed);
+        self.with(stiffness, coulomb)
+    }
+
+    /// The same where friction has elements that slip: such a part of what the motor's does to the
+    /// stiffness, and of the motor's itself, is open.
+    pub(super) fn open_by_elements(self, share: f64, unrubbed: Known) -> Self {
+        let open = share * (unrubbed.value - self.stiffness.value);
+        let coulomb = self.motor_side.coulomb.within_share(share);
+        self.with(self.stiffness.within(open), coulomb)
+    }
+
+    /// The same with such a stiffness and Coulomb friction.
+    pub(super) fn with(self, stiffness: Known, coulomb: Known) -> Self {
+        Self {
+            stiffness,
+            motor_side: MotorSide {
+                coulomb,
+                ..self.motor_side
+            },
+            ..self
+        }
+    }
+}
+
+/// What is told by a friction of the motor's side that follows a law.
+pub(super) struct ByLaw {
+    /// The fit.
+    pub fit: Fit,
+    /// Viscous friction of the motor's side.
+    pub viscous: Known,
+    /// The rest.
+    pub seen: Seen,
+}
+
 impl ByLaw {
     /// Whether a friction of the motor's side is seen, beside a fit without.
     pub(super) fn is_clear(&self, without: &Fit) -> bool {
         let gain = Gain::of(without, &self.fit);
-        let coulomb = self.motor_side.coulomb;
+        let coulomb = self.seen.motor_side.coulomb;
         gain.share >= MOTOR_SIDE_SHARE
             && gain.t >= DIFFERENCE_T
             && self.viscous.value >= -self.viscous.half_width
@@ -205,7 +230,6 @@ impl Rubbing<'_> {
         Self { fall, ..self }
     }
 
-    /// What rounding hides of a friction of the motor's side, as a share of the stiffness.
     /// Stiffness and Coulomb friction of the motor's side with free bends: the first column has the
     /// coefficients of all.
     pub(super) fn of_any_shape(&self, unrubbed: Known) -> (Known, Known) {
@@ -248,15 +272,18 @@ impl Rubbing<'_> {
         let deflection = Some(deflection.of(self.carried.friction.deflection));
         let by_fall = half_widths.len() - 2;
         let fall = Known::new(self.fall, half_widths[by_fall] / coulomb.value);
+        let motor_side = MotorSide {
+            coulomb,
+            deflection,
+            law: None,
+        };
         ByLaw {
-            fall,
             fit,
             viscous,
-            stiffness,
-            motor_side: MotorSide {
-                coulomb,
-                deflection,
-                law: None,
+            seen: Seen {
+                stiffness,
+                motor_side,
+                fall,
             },
         }
     }

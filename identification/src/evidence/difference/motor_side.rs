@@ -28,18 +28,13 @@
 //! round does, and is in the intervals ([`rounding`]).
 //! Units: m or rad, s, unit of the effort.
 
-use std::ops::RangeInclusive;
-
 use super::METHOD_OF_STIFFNESS;
 use super::columns::Apart;
 use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
 use super::motor_elements;
-use super::motor_friction::{
-    ByLaw, DEFLECTIONS, HIDDEN_BY_ROUNDING, MotorSide, Rubbing, apart_by, open_by_elements,
-};
-
+use super::motor_friction::{DEFLECTIONS, HIDDEN_BY_ROUNDING, MotorSide, Rubbing, Seen};
 use super::rounding;
 use super::rubbing::Law;
 use super::smallest::Smallest;
@@ -65,8 +60,6 @@ const VAGUE: f64 = 0.5 / WRONG_IN_FORM;
 /// follows a law of elements that slip, the load's. Three machines whose motor had others came out
 /// with 3, 6 and 19 % of that beside the truth, beyond what free bends say (2026-11-27).
 const OPEN_BY_ELEMENTS: f64 = 0.5;
-/// Shares of the friction that may be left to the table where some is the motor's.
-const TABLE_SHARES: RangeInclusive<f64> = 0.05..=1.0;
 /// A rise of the motor's friction that is the load's.
 const ALIKE: Known = Known::new(1.0, 0.0);
 /// One that is not told apart from that.
@@ -172,38 +165,23 @@ pub(super) fn stiffness(
     let alike = rubbing;
     let (rubbing, best) = alike.with_its_own_fall(&without);
     let by_law = rubbing.at(best);
-    let can_be = |(known, motor_side, _): &(Known, MotorSide, Known)| {
-        let table_share = known.value / unrubbed.value;
-        motor_side.coulomb.value > motor_side.coulomb.half_width
-            && TABLE_SHARES.contains(&table_share)
-    };
     let own = motor_elements::told(&rubbing, &by_law, unrubbed, &without);
-    let seen = own.filter(can_be).or_else(|| {
+    let seen = own.filter(|seen| seen.can_be(unrubbed)).or_else(|| {
         let is_clear = by_law.is_clear(&without);
-        let seen = is_clear.then(|| rubbing.by_the_loads_law(&by_law, best, unrubbed));
-        seen.filter(can_be)
+        let seen = is_clear.then(|| rubbing.by_the_loads_law(by_law.seen, best, unrubbed));
+        seen.filter(|seen| seen.can_be(unrubbed))
     });
     let hides = alike.hides(best);
     let known = seen.map_or_else(
-        || alike.hiding(unrubbed, by_law.stiffness, hides),
-        |(known, ..)| known,
+        || alike.hiding(unrubbed, by_law.seen.stiffness, hides),
+        |seen| seen.stiffness,
     );
     (unrubbed.value > 0.0).then_some(Stiffness {
         known,
         unrubbed,
-        motor_side: seen.map(|(_, motor_side, _)| motor_side),
-        fall: seen.map_or(ALIKE.within(hides), |(.., fall)| fall),
+        motor_side: seen.map(|seen| seen.motor_side),
+        fall: seen.map_or(ALIKE.within(hides), |seen| seen.fall),
     })
-}
-
-/// The same, told apart no better than this way of doing it does.
-fn by_method(stiffness: Known, motor_side: MotorSide, unrubbed: Known) -> (Known, MotorSide) {
-    let (stiffness, coulomb) = apart_by(APART, stiffness, motor_side.coulomb, unrubbed);
-    let motor_side = MotorSide {
-        coulomb,
-        ..motor_side
-    };
-    (stiffness, motor_side)
 }
 
 fn last(values: &[f64], half_widths: &[f64]) -> Option<Known> {
@@ -220,85 +198,45 @@ impl Rubbing<'_> {
     /// A stiffness where no friction of the motor's side is seen: as soft as it would be with as
     /// much of it as could hide, which hides best where it turns over as that of the load does.
     fn hiding(&self, unrubbed: Known, by_law: Known, hides: f64) -> Known {
-        let hidden = self.at(1.0).stiffness;
+        let hidden = self.at(1.0).seen.stiffness;
         let softest = [by_law, hidden].map(|known| known.value - known.half_width);
         let less = unrubbed.value - softest[0].min(softest[1]);
         unrubbed.within(less.max(0.0)).within_share(hides)
     }
 
-    /// Stiffness, friction of the motor's side and its rise, where that follows the load's law.
-    fn by_the_loads_law(
-        &self,
-        by_law: &ByLaw,
-        at: f64,
-        unrubbed: Known,
-    ) -> (Known, MotorSide, Known) {
-        let (seen, motor_side, fall) = self.by_its_own_law(by_law, at, unrubbed);
-        let both = (seen, motor_side);
-        let (known, motor_side) = match self.carried.friction.law {
-            Law::Slip(_) => open_by_elements(OPEN_BY_ELEMENTS, both, unrubbed),
-            Law::Dahl => by_method(seen, motor_side, unrubbed),
-        };
-        (known, motor_side, fall)
+    /// What is seen where the motor's friction follows the load's law, told apart no better than
+    /// this way of doing it does.
+    fn by_the_loads_law(&self, by_law: Seen, at: f64, unrubbed: Known) -> Seen {
+        let seen = self.by_whatever_law(by_law, at, unrubbed);
+        match self.carried.friction.law {
+            Law::Slip(_) => seen.open_by_elements(OPEN_BY_ELEMENTS, unrubbed),
+            Law::Dahl => seen.apart_by(APART, unrubbed),
+        }
     }
 
-    /// What holds of a stiffness and a friction of the motor's side that follows the law of the
-    /// load's, with such a deflection, whatever law it follows: these, with half of what is
-    /// otherwise with free bends in their intervals, or what is told with those. A deflection at an
-    /// end of what was searched, or by a law that does not hold, is hardly known.
-    fn by_its_own_law(
-        &self,
-        by_law: &ByLaw,
-        at: f64,
-        unrubbed: Known,
-    ) -> (Known, MotorSide, Known) {
-        let ByLaw {
-            stiffness,
-            motor_side:
-                MotorSide {
-                    coulomb,
-                    deflection,
-                    law,
-                },
-            fall,
-            ..
-        } = *by_law;
+    /// What holds of what is seen by the law of the load's, with such a deflection, whatever law
+    /// the motor's friction follows: this, with half of what is otherwise with free bends in its
+    /// intervals, or what is told with those. A deflection at an end of what was searched, or by a
+    /// law that does not hold, is hardly known.
+    fn by_whatever_law(&self, mut seen: Seen, at: f64, unrubbed: Known) -> Seen {
         let (free_stiffness, free_coulomb) = self.of_any_shape(unrubbed);
+        let (stiffness, coulomb) = (seen.stiffness, seen.motor_side.coulomb);
         let apart = (free_stiffness.value - stiffness.value).abs();
         let contradicts = apart > free_stiffness.half_width.hypot(stiffness.half_width);
         let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
-        let deflection = deflection.map(|deflection| {
-            if contradicts || !is_inside {
-                Known::new(deflection.value, MOST_OPEN * deflection.value)
-            } else {
-                deflection
-            }
-        });
-        if contradicts {
-            let coulomb = free_coulomb;
-            return (
-                free_stiffness,
-                MotorSide {
-                    coulomb,
-                    deflection,
-                    law,
-                },
-                ALIKE_OR_NOT,
-            );
+        if contradicts || !is_inside {
+            let hardly = |own: Known| Known::new(own.value, MOST_OPEN * own.value);
+            seen.motor_side.deflection = seen.motor_side.deflection.map(hardly);
         }
-        let coulomb = coulomb.within(0.5 * (free_coulomb.value - coulomb.value));
-        let stiffness = stiffness.within(0.5 * apart);
+        if contradicts {
+            seen.fall = ALIKE_OR_NOT;
+            return seen.with(free_stiffness, free_coulomb);
+        }
         let softer = self.softens(&OWN_WITHOUT_COULOMB, &self.linearised(at));
-        let (stiffness, coulomb) = apart_by(softer, stiffness, coulomb, unrubbed);
-        (
-            stiffness,
-            MotorSide {
-                coulomb,
-                deflection,
-                law,
-            },
-            fall.within(HIDDEN_BY_ROUNDING * softer),
-        )
+        seen.fall = seen.fall.within(HIDDEN_BY_ROUNDING * softer);
+        let coulomb = coulomb.within(0.5 * (free_coulomb.value - coulomb.value));
+        seen.with(stiffness.within(0.5 * apart), coulomb)
+            .apart_by(softer, unrubbed)
     }
 }
 
