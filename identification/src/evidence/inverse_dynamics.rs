@@ -86,7 +86,8 @@ impl InverseDynamics {
             bench: &bench,
             low: &low,
         };
-        let fitted = bench.fit(&forms::refined(pair, model));
+        let model = which_wave::settled(pair, forms::refined(pair, model));
+        let fitted = bench.fit(&model);
         Self {
             fitted,
             bristle,

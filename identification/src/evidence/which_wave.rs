@@ -8,7 +8,8 @@
 use crate::evidence::thresholds::{CERTAIN_T, EFFORT_SHARE};
 use crate::fit::bench::Bench;
 use crate::fit::blocks::{Fit, Gain};
-use crate::fit::tuning::is_new;
+use crate::fit::search::smallest;
+use crate::fit::tuning::{self, Pair, is_new};
 use crate::model::effects::{Against, Setting, wave};
 use crate::model::inverse::Model;
 
@@ -23,8 +24,43 @@ const APART_PERIODS: f64 = 0.5;
 /// tells it from all others.
 #[must_use]
 pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 {
+    let found = model.parts[place].parameter;
+    let own = bench.cross_validate(model);
+    let fit_at = |k: f64| bench.cross_validate(&model.with_parameter(place, k));
+    others(bench, model, place)
+        .into_iter()
+        .filter(|k| is_open(&own, &fit_at(*k)))
+        .map(|k| (k - found).abs())
+        .fold(0.0, f64::max)
+}
+
+/// The model with each wave at the one of the wave numbers about its own that leaves least, where
+/// that leaves clearly less. A wave is found before the laws of friction are, and what these leave
+/// where the axis is slow is as large as a ripple: a period more or less between slow places may
+/// look better then.
+#[must_use]
+pub(crate) fn settled(pair: Pair<'_>, mut model: Model) -> Model {
+    for place in 0..model.parts.len() {
+        let at = |k: f64| model.with_parameter(place, k);
+        let bench = pair.bench;
+        let left = |k: f64| bench.sse(&at(k));
+        let Some(best) = smallest(&others(bench, &model, place), &left) else {
+            continue;
+        };
+        let other = tuning::refined_at(pair, at(best), place);
+        let gain = Gain::of(&bench.cross_validate(&model), &bench.cross_validate(&other));
+        if gain.share > 0.0 && gain.t >= CERTAIN_T {
+            model = other;
+        }
+    }
+    model
+}
+
+/// Wave numbers about that of a part that leave little as well; none where it is no wave that was
+/// searched.
+fn others(bench: &Bench<'_>, model: &Model, place: usize) -> Vec<f64> {
     if !is_wave(model, place) {
-        return 0.0;
+        return Vec::new();
     }
     let part = &model.parts[place];
     let found = part.parameter;
@@ -39,15 +75,9 @@ pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 
     let (lowest, _) = part.effect.bounds(bench.motion);
     let ends = [(found - aside).max(lowest), found + aside];
     let [from, to] = ends.map(|k| wave::periods(bench.motion, k));
-    let near = part.effect.strongest(bench.motion, &setting, from..to);
-    let own = bench.cross_validate(model);
-    let is_other = |k: &f64| is_apart(bench, found, *k) && is_new(bench, &without, part.effect, *k);
-    let fit_at = |k: f64| bench.cross_validate(&model.with_parameter(place, k));
-    near.into_iter()
-        .filter(is_other)
-        .filter(|k| is_open(&own, &fit_at(*k)))
-        .map(|k| (k - found).abs())
-        .fold(0.0, f64::max)
+    let mut near = part.effect.strongest(bench.motion, &setting, from..to);
+    near.retain(|k| is_apart(bench, found, *k) && is_new(bench, &without, part.effect, *k));
+    near
 }
 
 /// Whether a part is a wave over position whose wave number was searched.
@@ -73,7 +103,6 @@ mod tests {
 
     use super::*;
     use crate::fit::made::{self, Axis, usual};
-    use crate::fit::tuning::{self, Pair};
     use crate::motion::kinematics::Kinematics;
     use crate::simulate::made as simulated;
 
@@ -140,6 +169,25 @@ mod tests {
             );
             assert_eq!(half_width(&bench, &found, 4), 0.0);
         }
+    }
+
+    #[test]
+    fn a_wave_that_was_found_a_period_beside_its_own_is_put_there() {
+        // Seven and four revolutions from place to place, which no other wave fits as well.
+        let axis = slow_at(&[0.0, 0.07, 0.11, 0.04], 12.0);
+        let bench = axis.bench();
+        let beside = found_at(&bench, 12.0 + 1.0 / 7.0);
+        assert!((order(&beside) - 12.0).abs() > 0.1, "{}", order(&beside));
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let settled = settled(pair, beside);
+        assert!((order(&settled) - 12.0).abs() < 0.02, "{}", order(&settled));
+        assert_eq!(
+            order(&super::settled(pair, settled.clone())),
+            order(&settled)
+        );
     }
 
     #[test]
