@@ -121,6 +121,11 @@ impl Seen {
     }
 }
 
+fn slope(more: &[f64], less: &[f64], step: f64) -> Vec<f64> {
+    let pairs = more.iter().zip(less);
+    pairs.map(|(more, less)| (more - less) / step).collect()
+}
+
 /// What is told by a friction of the motor's side that follows a law.
 pub(super) struct ByLaw {
     /// The fit.
@@ -249,16 +254,19 @@ impl Rubbing<'_> {
     /// The bend at a deflection and all that goes with it; what another rise changes of it, and
     /// what another deflection does, last.
     pub(super) fn linearised(&self, deflection: f64) -> Vec<Vec<f64>> {
-        let bend = |fall: f64, deflection: f64| self.falling(fall).bend(deflection).swap_remove(0);
-        let per = |more: Vec<f64>, less: Vec<f64>, step: f64| {
-            let pairs = more.iter().zip(&less);
-            pairs.map(|(more, less)| (more - less) / step).collect()
-        };
+        let [less, more] =
+            [1.0 - LINEAR, 1.0 + LINEAR].map(|by| self.bend(by * deflection).swap_remove(0));
+        let by_deflection = slope(&more, &less, 2.0 * LINEAR);
+        let own = vec![self.by_fall(deflection), by_deflection];
+        [self.bend(deflection), own].concat()
+    }
+
+    /// What another rise changes of the bend at a deflection.
+    pub(super) fn by_fall(&self, deflection: f64) -> Vec<f64> {
         let [low, high] = [(self.fall - FALL_STEP).max(0.0), self.fall + FALL_STEP];
-        let [less, more] = [1.0 - LINEAR, 1.0 + LINEAR].map(|by| bend(self.fall, by * deflection));
-        let by_fall = per(bend(high, deflection), bend(low, deflection), high - low);
-        let by_deflection = per(more, less, 2.0 * LINEAR);
-        [self.bend(deflection), vec![by_fall, by_deflection]].concat()
+        let [less, more] =
+            [low, high].map(|fall| self.falling(fall).bend(deflection).swap_remove(0));
+        slope(&more, &less, high - low)
     }
 
     /// The fit at a deflection, and what is told by it, as uncertain as deflection and rise are.

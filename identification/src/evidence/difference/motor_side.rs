@@ -15,8 +15,8 @@
 //!
 //! The motor's friction may turn over by another law than the load's. So it is also fitted by some
 //! bends that are free beside each other: that knows less, but holds whatever the law is. Where it
-//! contradicts the law of the load's, it stands. Where the load's friction has elements that slip,
-//! the motor's has elements of its own first of all ([`motor_elements`]).
+//! contradicts the law of the load's, it stands. First of all it is asked for elements of its own
+//! ([`motor_elements`]).
 //!
 //! How much higher it is at rest is its own, up to twice the load's rise: taken for that it made
 //! the stiffness a quarter too large on a machine whose motor has half of it.
@@ -377,11 +377,8 @@ mod tests {
         assert!((told.unrubbed.value / STIFFNESS - 1.0).abs() < 0.005);
     }
 
-    #[test]
-    fn elements_of_the_motor_have_nothing_to_do_with_those_of_the_load() {
-        let of_load = FRICTION.slipping(&[4.0e-6, 20.0e-6, 60.0e-6], &[0.3, 0.4, 0.3]);
-        let of_motor = FRICTION.slipping(&[2.0e-6, 6.0e-6, 40.0e-6], &[0.6, 0.1, 0.3]);
-        let [of_load, of_motor]: [LoadFriction; 2] = [of_load, of_motor].map(Option::unwrap);
+    /// What is told of a load with such friction and a motor with elements of its own.
+    fn elements_told(of_load: LoadFriction, of_motor: LoadFriction) {
         let axis = rubbed_on_both(of_load, [0.0; 2], (30.0, of_motor), |_| 0.0);
         let told = told(&axis);
         let off = (told.known.value - STIFFNESS).abs();
@@ -403,5 +400,18 @@ mod tests {
             let [is, wanted] = [motor.elements(), of_motor.elements()].map(|own| force(&own, way));
             assert!((is - wanted).abs() < 0.05, "{way}: {is} {wanted}");
         }
+    }
+
+    #[test]
+    fn elements_of_the_motor_have_nothing_to_do_with_those_of_the_load() {
+        let of_load = FRICTION.slipping(&[4.0e-6, 20.0e-6, 60.0e-6], &[0.3, 0.4, 0.3]);
+        let of_motor = FRICTION.slipping(&[2.0e-6, 6.0e-6, 40.0e-6], &[0.6, 0.1, 0.3]);
+        elements_told(of_load.unwrap(), of_motor.unwrap());
+    }
+
+    #[test]
+    fn elements_of_the_motor_are_told_beside_a_bristle_of_the_load() {
+        let of_motor = FRICTION.slipping(&[2.0e-6, 6.0e-6, 40.0e-6], &[0.6, 0.1, 0.3]);
+        elements_told(FRICTION, of_motor.unwrap());
     }
 }
