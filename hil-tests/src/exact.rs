@@ -69,6 +69,30 @@ fn coulomb_n(axis: &MachineAxis) -> f64 {
     of_both(axis, |sliding, _| sliding.coulomb_n)
 }
 
+fn excess_n(sliding: &Sliding) -> f64 {
+    sliding.static_n - sliding.coulomb_n
+}
+
+/// Share of the fall that is of sides with some law.
+fn share_of_fall(axis: &MachineAxis, is_meant: impl Fn(&Law) -> bool) -> f64 {
+    let meant_n = of_both(axis, |sliding, law| {
+        if is_meant(law) {
+            excess_n(sliding)
+        } else {
+            0.0
+        }
+    });
+    meant_n / of_both(axis, |sliding, _| excess_n(sliding)).max(f64::MIN_POSITIVE)
+}
+
+/// The drive has one lag: that of each side counts as far as it falls.
+fn lag_s(axis: &MachineAxis) -> f64 {
+    let weighed = of_both(axis, |sliding, _| {
+        excess_n(sliding) * sliding.stribeck_lag_s
+    });
+    weighed / of_both(axis, |sliding, _| excess_n(sliding)).max(f64::MIN_POSITIVE)
+}
+
 fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     let (sliding, mechanics) = (&axis.actual.sliding, &axis.actual.mechanics);
     let (motor_kg, table_kg) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
@@ -80,7 +104,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
         } => *bristle_damping_n_s_per_m,
         _ => 0.0,
     });
-    let excess_n = of_both(axis, |sliding, _| sliding.static_n - sliding.coulomb_n);
+    let excess_n = of_both(axis, |sliding, _| excess_n(sliding));
     let mut effects = vec![
         Effect::Inertia(Inertia {
             inertia: known(motor_kg + table_kg),
@@ -102,7 +126,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
             excess: known(excess_n),
             velocity: known(sliding.stribeck_velocity_m_per_s),
             exponent: Some(known(sliding.stribeck_exponent)),
-            lag: Some(known(sliding.stribeck_lag_s)),
+            lag: Some(known(lag_s(axis))),
             lag_growth: Some(known(sliding.stribeck_lag_growth)),
         }),
         Effect::Compliance(Compliance {
@@ -155,6 +179,7 @@ fn slipping(axis: &MachineAxis) -> Option<Springs> {
         Springs {
             table: each.next().unwrap_or_default(),
             motor: each.next().unwrap_or_default(),
+            bristle_share: share_of_fall(axis, |law| matches!(law, Law::LuGre { .. })),
         }
     })
 }

@@ -33,6 +33,10 @@ const END_OF_FALL: f64 = 2.0e-3;
 /// without a load scale calls all of an offset so where the fall differs by direction.
 const MOST_ASYMMETRY: f64 = 0.5;
 
+/// What a ripple may be out of step with at the end of the travel, turns: with a sixth of one, what
+/// takes it away is as far from it as it is from nothing.
+const MOST_OPEN_TURNS: f64 = 1.0 / 6.0;
+
 /// What was identified of an axis, one effect by one.
 struct Found<'a> {
     coulomb_n: f64,
@@ -105,7 +109,7 @@ impl<'a> Found<'a> {
     /// Those of bristles; where there are none, of friction that gives way at once.
     fn springs(&self, motor: Option<MotorSide>) -> Springs {
         let bristle_m = self.bristle_m();
-        Springs::of_sides(self.coulomb_n, motor, |level_n, deflection| {
+        let springs = Springs::of_sides(self.coulomb_n, motor, |level_n, deflection| {
             let rigid = || {
                 vec![Spring {
                     level_n,
@@ -113,7 +117,39 @@ impl<'a> Found<'a> {
                 }]
             };
             bristle_m.map_or_else(rigid, |own_m| of_bristle(level_n, deflection * own_m))
-        })
+        });
+        Springs {
+            bristle_share: bristle_m.map_or(0.0, |_| 1.0),
+            ..springs
+        }
+    }
+
+    /// Springs of elements that were identified, on both sides or beside a bristle of the table;
+    /// `None` where there are none. Where those of the motor's side are not known, they are those
+    /// of the table, stretched.
+    fn slipping(&self, curve: &PreslidingCurve, motor: Option<MotorSide>) -> Option<Springs> {
+        let springs = |elements: &[SlipElement], level_n: f64, deflection: f64| -> Vec<Spring> {
+            let spring = |own: &SlipElement| Spring {
+                level_n: own.share * level_n,
+                way_m: deflection * own.deflection,
+            };
+            elements.iter().map(spring).collect()
+        };
+        let of_motor = motor.filter(|_| !curve.motor_elements.is_empty());
+        let mut both = if curve.elements.is_empty() {
+            let share = of_motor?.share;
+            Springs {
+                bristle_share: 1.0 - share,
+                ..self.springs(motor)
+            }
+        } else {
+            let stretched = |level_n, deflection| springs(&curve.elements, level_n, deflection);
+            Springs::of_sides(self.coulomb_n, motor, stretched)
+        };
+        if let Some(motor) = of_motor {
+            both.motor = springs(&curve.motor_elements, motor.share * self.coulomb_n, 1.0);
+        }
+        Some(both)
     }
 
     fn factors(&self) -> ([f64; LEVELS], f64) {
@@ -137,27 +173,9 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
     let found = Found::of(&result.effects);
     let motor = MotorSide::of(&result.report.parameters);
     let curve = result.report.presliding.as_ref();
-    let curve = curve.filter(|own| !own.elements.is_empty() && found.presliding.is_some());
-    let slipping = curve.map(|curve| slipping(found.coulomb_n, curve, motor));
+    let curve = curve.filter(|_| found.presliding.is_some());
+    let slipping = curve.and_then(|curve| found.slipping(curve, motor));
     of_effects(known, &result.effects, slipping, motor)
-}
-
-/// Springs of elements with such a level together. Where those of the motor's side are not known,
-/// they are those of the table, stretched.
-fn slipping(level_n: f64, curve: &PreslidingCurve, motor: Option<MotorSide>) -> Springs {
-    let springs = |elements: &[SlipElement], level_n: f64, deflection: f64| -> Vec<Spring> {
-        let spring = |own: &SlipElement| Spring {
-            level_n: own.share * level_n,
-            way_m: deflection * own.deflection,
-        };
-        elements.iter().map(spring).collect()
-    };
-    let stretched = |level_n, deflection| springs(&curve.elements, level_n, deflection);
-    let mut both = Springs::of_sides(level_n, motor, stretched);
-    if let Some(motor) = motor.filter(|_| !curve.motor_elements.is_empty()) {
-        both.motor = springs(&curve.motor_elements, motor.share * level_n, 1.0);
-    }
-    both
 }
 
 /// The model of what is known of an axis: with springs that slip where it has such, else with a
@@ -184,11 +202,11 @@ pub fn of_effects(
         ahead_s: known.lag_s,
         ..Model::OFF
     };
-    if let (None, Some(bristle_m)) = (&slipping, found.bristle_m()) {
-        give_bristle(&mut model, &found, bristle_m);
+    let springs = slipping.unwrap_or_else(|| found.springs(motor));
+    if let Some(bristle_m) = found.bristle_m().filter(|_| springs.bristle_share > 0.0) {
+        give_bristle(&mut model, &found, bristle_m, springs.bristle_share);
     }
     give_screw(&mut model, &found, known);
-    let springs = slipping.unwrap_or_else(|| found.springs(motor));
     give_elements(&mut model, springs);
     give_places(&mut model, &found, known);
     give_gap(&mut model, &found, known);
@@ -238,13 +256,17 @@ fn give_slope(model: &mut Model, own: &PositionDependentFriction<Estimate>, orig
     }
 }
 
-/// A ripple as the drive has it; `None` without a phase, or without a period that it can hold.
+/// A ripple as the drive has it; `None` without a phase, without a period that it can hold, or
+/// where the period is not known well enough to stay in step along the travel.
 fn ripple(own: &TorqueRipple<Estimate>, known: &Known) -> Option<Ripple> {
     let phase_rad = own.phase.as_ref()?.value;
-    let of_order = || Some(known.lead_m / own.order.as_ref()?.value);
-    let period_m = own.period.as_ref().map(|period| period.value);
-    let period_m = period_m.or_else(of_order)?;
-    if !PERIODS_M.contains(&period_m) {
+    let half_width = |own: &Estimate| 0.5 * (own.high - own.low);
+    let by_period = |own: &Estimate| (own.value, half_width(own) / own.value.powi(2));
+    let by_order = |own: &Estimate| (known.lead_m / own.value, half_width(own) / known.lead_m);
+    let period = own.period.as_ref().map(by_period);
+    let (period_m, open_per_m) = period.or_else(|| own.order.as_ref().map(by_order))?;
+    let open_turns = known.limits.travel_m * open_per_m;
+    if !PERIODS_M.contains(&period_m) || open_turns > MOST_OPEN_TURNS {
         return None;
     }
     let turns = phase_rad / TAU - known.origin_m / period_m;
@@ -262,11 +284,12 @@ fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {
 }
 
 /// A bristle comes to another level within its deflection, and has a damping. The way within which
-/// it comes to its level is as different by direction as that.
-fn give_bristle(model: &mut Model, found: &Found<'_>, bristle_m: f64) {
+/// it comes to its level is as different by direction as that. The drive has one way for all of
+/// its friction: beside springs that slip, which come to another level at once, a share of it.
+fn give_bristle(model: &mut Model, found: &Found<'_>, bristle_m: f64, share: f64) {
     let (least, most) = WAY_ASYMMETRIES.into_inner();
     model.way_asymmetry = found.coulomb_asymmetry.clamp(least, most);
-    model.lag_m = bristle_m * (1.0 + found.rise());
+    model.lag_m = share * bristle_m * (1.0 + found.rise());
     let damping = found.presliding.and_then(|own| own.damping.as_ref());
     let damping = damping.map_or(0.0, |own| own.value.max(0.0));
     model.damping_s = damping * bristle_m / found.coulomb_n;
@@ -365,6 +388,78 @@ mod tests {
         };
         give_slope(&mut steep, &own, 0.0);
         assert_eq!(steep, begin);
+    }
+
+    #[test]
+    fn a_ripple_that_may_be_out_of_step_within_the_travel_is_left_out() {
+        let machine = plant_sim::Machine::reference();
+        let known = Known::of_machine(&machine.axes[0], machine.period_s);
+        let ripple_of = |order: Option<f64>, period: Option<f64>| {
+            let own = TorqueRipple {
+                amplitude: about(30.0),
+                order: order.map(|half_width| Estimate::about(5.0, half_width, "")),
+                period: period.map(|half_width| Estimate::about(2.0e-3, half_width, "m")),
+                phase: Some(about(1.0)),
+            };
+            ripple(&own, &known)
+        };
+        // A sixth of a turn at the end of the travel, as periods per revolution and as a way.
+        let most = known.lead_m / known.limits.travel_m / 6.0;
+        let way_m = most * 2.0e-3_f64.powi(2) / known.lead_m;
+        let told = ripple_of(Some(0.9 * most), None).unwrap();
+        assert!((told.period_m - known.lead_m / 5.0).abs() < 1.0e-12);
+        assert_eq!(ripple_of(Some(1.1 * most), None), None);
+        assert_eq!(
+            ripple_of(None, Some(0.9 * way_m)).map(|own| own.period_m),
+            Some(2.0e-3)
+        );
+        assert_eq!(ripple_of(None, Some(1.1 * way_m)), None);
+    }
+
+    #[test]
+    fn a_bristle_of_the_table_stands_beside_springs_of_the_motor() {
+        let effects = [
+            Effect::Coulomb(Coulomb {
+                coulomb: about(400.0),
+            }),
+            Effect::Presliding(Presliding {
+                deflection: about(1.0e-5),
+                damping: None,
+            }),
+        ];
+        let curve = |motor_elements: Vec<SlipElement>| PreslidingCurve {
+            law: "dahl",
+            elements: Vec::new(),
+            motor_elements,
+            points: Vec::new(),
+        };
+        let of_motor = SlipElement {
+            deflection: 3.0e-6,
+            share: 1.0,
+        };
+        let motor = MotorSide {
+            coulomb_n: 100.0,
+            share: 0.25,
+            deflection: 0.5,
+        };
+        let found = Found::of(&effects);
+        let both = found.slipping(&curve(vec![of_motor]), Some(motor)).unwrap();
+        assert_eq!((both.table.len(), both.bristle_share), (100, 0.75));
+        assert_eq!(
+            both.motor,
+            [Spring {
+                level_n: 100.0,
+                way_m: 3.0e-6,
+            }]
+        );
+        assert_eq!(found.slipping(&curve(Vec::new()), Some(motor)), None);
+        let machine = plant_sim::Machine::reference();
+        let known = Known::of_machine(&machine.axes[0], machine.period_s);
+        let lag_m = |springs: Option<Springs>| {
+            let model = of_effects(&known, &effects, springs, Some(motor)).unwrap();
+            model.lag_m
+        };
+        assert!((lag_m(Some(both)) / lag_m(None) - 0.75).abs() < 1.0e-12);
     }
 
     /// What was identified of a reference axis with friction that differs by direction, a weight

@@ -35,6 +35,8 @@ pub struct Springs {
     pub table: Vec<Spring>,
     /// Those of the motor's own side, over the way of the motor.
     pub motor: Vec<Spring>,
+    /// Share of them that stand for a bristle, which comes to another level within its deflection.
+    pub bristle_share: f64,
 }
 
 /// An element of the drive.
@@ -86,6 +88,7 @@ impl Springs {
         Self {
             table: of_side((1.0 - share) * level_n, 1.0),
             motor: motor.map_or_else(Vec::new, of_motor),
+            bristle_share: 0.0,
         }
     }
 
@@ -216,6 +219,7 @@ mod tests {
         let springs = Springs {
             table: of_bristle(400.0, 1.0e-5),
             motor: Vec::new(),
+            ..Springs::default()
         };
         let elements = springs.elements(1.2e8);
         assert_eq!(elements.len(), ELEMENTS);
@@ -234,6 +238,7 @@ mod tests {
         let springs = Springs {
             table: of_bristle(table.0, table.1),
             motor: of_bristle(motor.0, motor.1),
+            ..Springs::default()
         };
         for (elements, most_n) in [
             (springs.over_the_tables_way(screw), 0.1),
@@ -263,6 +268,7 @@ mod tests {
         let springs = Springs {
             table: many(5),
             motor: many(4),
+            ..Springs::default()
         };
         // A rigid screw: both sides go the same way.
         let elements = springs.clone().elements(f64::INFINITY);
@@ -277,6 +283,7 @@ mod tests {
         let springs = Springs {
             table: many(14),
             motor: Vec::new(),
+            ..Springs::default()
         };
         let (fine, fewer) = (springs.over_the_tables_way(1.0e8), springs.elements(1.0e8));
         assert!(fewer.len() <= ELEMENTS, "{}", fewer.len());
