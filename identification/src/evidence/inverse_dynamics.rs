@@ -72,7 +72,9 @@ impl InverseDynamics {
     /// and a fall that lags is hidden behind a bristle that bends far.
     pub(crate) fn fitted(pair: Pair<'_>, model: Model, bristle: Option<Bristle>) -> Self {
         let Some(own) = &bristle else {
-            let fitted = pair.bench.fit(&model);
+            let fitted = pair
+                .bench
+                .fit(&which_wave::settled(pair, &model).unwrap_or(model));
             return Self {
                 fitted,
                 bristle,
@@ -86,7 +88,9 @@ impl InverseDynamics {
             bench: &bench,
             low: &low,
         };
-        let model = which_wave::settled(pair, forms::refined(pair, model));
+        let model = forms::refined(pair, model);
+        let moved = which_wave::settled(pair, &model);
+        let model = moved.map_or(model, |moved| forms::refined(pair, moved));
         let fitted = bench.fit(&model);
         Self {
             fitted,

@@ -181,7 +181,7 @@ fn bristle_of_the_load(findings: &Findings<'_>, told: &ByTheLoad) -> Vec<(&'stat
     let length = findings.dataset.kind.position_unit();
     let is_of_its_law = match findings.models.extended.bristle {
         Some(Bristle::Dahl(_)) => true,
-        Some(Bristle::Slip(_)) => told.elements.is_some(),
+        Some(Bristle::Slip(_)) => law_of_the_load(told).is_some(),
         None => false,
     };
     if !is_of_its_law {
@@ -252,13 +252,20 @@ fn by_the_load<'a>(findings: &'a Findings<'_>) -> Option<&'a ByTheLoad> {
     difference.by_the_load.as_ref()
 }
 
-/// The bristle of the extended model; that of the load's motion where elements slip there.
+/// The bristle of the extended model; that of the load's motion where elements slip on a side.
 pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>> {
     let own = findings.models.extended.bristle.as_ref()?;
-    let elements = by_the_load(findings).and_then(|told| told.elements.clone());
-    Some(elements.map_or(Cow::Borrowed(own), |elements| {
-        Cow::Owned(Bristle::Slip(elements))
-    }))
+    let of_load = by_the_load(findings).and_then(law_of_the_load);
+    Some(of_load.map_or(Cow::Borrowed(own), Cow::Owned))
+}
+
+/// The law of the load's friction where elements slip on a side: those of the load, or its bristle
+/// beside those of the motor, which the effort sees as elements of both.
+fn law_of_the_load(told: &ByTheLoad) -> Option<Bristle> {
+    let of_motor = told.motor_side.map(|motor| motor.elements());
+    let is_beside = of_motor.is_some_and(|elements| !elements.is_empty());
+    let bristle = is_beside.then_some(Bristle::Dahl(told.deflection.value));
+    told.elements.clone().map(Bristle::Slip).or(bristle)
 }
 
 /// Elements of the motor's own side, where it has some: where each slips, and its share.

@@ -1,5 +1,8 @@
 //! A value with its interval.
 
+/// What is open of a value of which hardly anything is known, as a share of it.
+const HARDLY: f64 = 0.8;
+
 /// A value with the half width of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Known {
@@ -39,6 +42,11 @@ impl Known {
     /// The same, as uncertain as another value of it is different.
     pub(super) fn beside(self, other: Self) -> Self {
         self.within(self.value - other.value)
+    }
+
+    /// The same, as hardly anything is known of it.
+    pub(super) fn hardly(self) -> Self {
+        Self::new(self.value, HARDLY * self.value)
     }
 
     /// The product with another.

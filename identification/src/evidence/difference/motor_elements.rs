@@ -9,7 +9,7 @@
 
 use super::flanks::OWN_WITHOUT_COULOMB;
 use super::known::Known;
-use super::motor_friction::{ByLaw, HIDDEN_BY_ROUNDING, Rubbing, STIFFNESS, Seen};
+use super::motor_friction::{ByLaw, DEFLECTIONS, HIDDEN_BY_ROUNDING, Rubbing, STIFFNESS, Seen};
 use crate::evidence::reversal::slip::grid_about;
 use crate::evidence::thresholds::DIFFERENCE_T;
 use crate::fit::blocks::{Blocks, Fit, Gain, half_width_without_folds};
@@ -51,7 +51,8 @@ pub(super) fn told(
         let [open, deep] = open_by_folds(rubbing);
         let softer = rubbing.softens(&OWN_WITHOUT_COULOMB, &rubbing.linearised(1.0));
         let mut seen = own.seen;
-        seen.motor_side.deflection = seen.motor_side.deflection.map(|own| own.within(deep));
+        let deflection = seen.motor_side.deflection;
+        seen.motor_side.deflection = deflection.map(|own| deep_as_seen(own.within(deep), about));
         seen.motor_side.law = Some(rubbing.carried.friction);
         let by_elements = fall_beside_elements(rubbing) / seen.motor_side.coulomb.value;
         let fall = seen.fall.within(by_elements).within(FALL_OPEN);
@@ -60,6 +61,17 @@ pub(super) fn told(
         seen.apart_by(open, unrubbed)
             .open_by_elements(OPEN, unrubbed)
     })
+}
+
+/// A deflection, in view of that of the load's friction: hardly known where a law would not have
+/// been looked for, as that may be the end of the grid.
+fn deep_as_seen(own: Known, about: f64) -> Known {
+    let [least, .., most] = DEFLECTIONS;
+    if (least..=most).contains(&(own.value / about)) {
+        own
+    } else {
+        own.hardly()
+    }
 }
 
 /// The same with the elements that leave least.

@@ -46,8 +46,6 @@ use crate::fit::blocks::Blocks;
 /// damping, or twice as much. More than this share of the whole is not open: so much the effort
 /// tells.
 const MOST_UNLIKE: f64 = 0.4;
-/// Most that is open of a deflection, as a share of it.
-const MOST_OPEN: f64 = 0.8;
 /// What friction and stiffness are told apart to at best, as a share of the stiffness: it came out
 /// with 0.3 to 3.3 % beside the truth on seven drawn machines, most often too soft, with 0.7 % of
 /// itself in the statistical interval and less (2026-11-27; 2.1 % without noise of the effort). Why
@@ -225,8 +223,7 @@ impl Rubbing<'_> {
         let contradicts = apart > free_stiffness.half_width.hypot(stiffness.half_width);
         let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
         if contradicts || !is_inside {
-            let hardly = |own: Known| Known::new(own.value, MOST_OPEN * own.value);
-            seen.motor_side.deflection = seen.motor_side.deflection.map(hardly);
+            seen.motor_side.deflection = seen.motor_side.deflection.map(Known::hardly);
         }
         if contradicts {
             seen.fall = ALIKE_OR_NOT;
@@ -283,6 +280,8 @@ mod tests {
         let axis = rubbed_on_both(FRICTION, by_direction, (15.0, motor), |_| 0.0);
         let told = told(&axis);
         let seen = told.motor_side.unwrap();
+        // A bristle is none of elements.
+        assert!(seen.elements().is_empty(), "{seen:?}");
         for (known, truth) in [
             (told.known, STIFFNESS),
             (seen.coulomb, 15.0),
