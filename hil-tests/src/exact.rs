@@ -73,37 +73,47 @@ fn excess_n(sliding: &Sliding) -> f64 {
     sliding.static_n - sliding.coulomb_n
 }
 
-/// Share of the fall that is of sides with some law.
-fn share_of_fall(axis: &MachineAxis, is_meant: impl Fn(&Law) -> bool) -> f64 {
-    let meant_n = of_both(axis, |sliding, law| {
-        if is_meant(law) {
-            excess_n(sliding)
-        } else {
-            0.0
-        }
-    });
-    meant_n / of_both(axis, |sliding, _| excess_n(sliding)).max(f64::MIN_POSITIVE)
+/// A quantity of each side as far as it falls.
+fn by_fall(axis: &MachineAxis, of_side: impl Fn(&Sliding) -> f64) -> f64 {
+    let all_n = of_both(axis, |sliding, _| excess_n(sliding));
+    let each = |sliding: &Sliding, _: &Law| excess_n(sliding) * of_side(sliding);
+    of_both(axis, each) / all_n.max(f64::MIN_POSITIVE)
 }
 
-/// The drive has one lag: that of each side counts as far as it falls.
-fn lag_s(axis: &MachineAxis) -> f64 {
-    let weighed = of_both(axis, |sliding, _| {
-        excess_n(sliding) * sliding.stribeck_lag_s
-    });
-    weighed / of_both(axis, |sliding, _| excess_n(sliding)).max(f64::MIN_POSITIVE)
+/// Share of the fall that is of a bristle at the table; of the friction where nothing falls.
+fn bristle_share(axis: &MachineAxis) -> f64 {
+    let of_table = &axis.actual.sliding;
+    let falls_n = of_both(axis, |sliding, _| excess_n(sliding));
+    match axis.actual.law {
+        Law::LuGre { .. } if falls_n > 0.0 => excess_n(of_table) / falls_n,
+        Law::LuGre { .. } => of_table.coulomb_n / coulomb_n(axis),
+        _ => 0.0,
+    }
+}
+
+/// Damping of bristles, as identification has it: of the whole friction, where only the table has
+/// a bristle.
+fn bristle_damping(axis: &MachineAxis) -> f64 {
+    let damping = |law: &Law| match law {
+        Law::LuGre {
+            bristle_damping_n_s_per_m,
+            ..
+        } => *bristle_damping_n_s_per_m,
+        _ => 0.0,
+    };
+    let all = of_both(axis, |_, law| damping(law));
+    let of_table = damping(&axis.actual.law);
+    if all > of_table {
+        all
+    } else {
+        of_table * coulomb_n(axis) / axis.actual.sliding.coulomb_n
+    }
 }
 
 fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     let (sliding, mechanics) = (&axis.actual.sliding, &axis.actual.mechanics);
     let (motor_kg, table_kg) = (mechanics.motor_inertia_kg, mechanics.table_mass_kg);
     let stiffness_n_per_m = axis.actual.law.stiffness_n_per_m();
-    let damping = of_both(axis, |_, law| match law {
-        Law::LuGre {
-            bristle_damping_n_s_per_m,
-            ..
-        } => *bristle_damping_n_s_per_m,
-        _ => 0.0,
-    });
     let excess_n = of_both(axis, |sliding, _| excess_n(sliding));
     let mut effects = vec![
         Effect::Inertia(Inertia {
@@ -126,7 +136,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
             excess: known(excess_n),
             velocity: known(sliding.stribeck_velocity_m_per_s),
             exponent: Some(known(sliding.stribeck_exponent)),
-            lag: Some(known(lag_s(axis))),
+            lag: Some(known(by_fall(axis, |own| own.stribeck_lag_s))),
             lag_growth: Some(known(sliding.stribeck_lag_growth)),
         }),
         Effect::Compliance(Compliance {
@@ -145,7 +155,7 @@ fn effects(axis: &MachineAxis) -> Vec<Effect<Estimate>> {
     if stiffness_n_per_m > 0.0 {
         effects.push(Effect::Presliding(Presliding {
             deflection: known(sliding.coulomb_n / stiffness_n_per_m),
-            damping: Some(known(damping)),
+            damping: Some(known(bristle_damping(axis))),
         }));
     }
     let listed = axis
@@ -179,7 +189,7 @@ fn slipping(axis: &MachineAxis) -> Option<Springs> {
         Springs {
             table: each.next().unwrap_or_default(),
             motor: each.next().unwrap_or_default(),
-            bristle_share: share_of_fall(axis, |law| matches!(law, Law::LuGre { .. })),
+            bristle_share: bristle_share(axis),
         }
     })
 }

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Presliding comes as springs that slip, of both sides of the screw ([`Springs`]): those that were
-//! identified as they are, or those of a bristle (Dahl).
+//! identified as they are, or those of a bristle (Dahl), or those of a bristle at the table and
+//! such as were identified at the motor.
 
 use std::f64::consts::TAU;
 
@@ -106,6 +107,13 @@ impl<'a> Found<'a> {
         Some(own.deflection.value.max(RIGID_M))
     }
 
+    /// Damping of a bristle over its stiffness: so far its force is ahead of its bend.
+    fn bristle_lead_s(&self, bristle_m: f64) -> f64 {
+        let damping = self.presliding.and_then(|own| own.damping.as_ref());
+        let damping = damping.map_or(0.0, |own| own.value.max(0.0));
+        damping * bristle_m / self.coulomb_n
+    }
+
     /// Those of bristles; where there are none, of friction that gives way at once.
     fn springs(&self, motor: Option<MotorSide>) -> Springs {
         let bristle_m = self.bristle_m();
@@ -178,7 +186,7 @@ pub fn of_axis(known: &Known, result: &Identification) -> Option<Model> {
     of_effects(known, &result.effects, slipping, motor)
 }
 
-/// The model of what is known of an axis: with springs that slip where it has such, else with a
+/// The model of what is known of an axis: with springs that slip where a side has such, else with a
 /// bristle on the table and one of the motor's side.
 #[must_use]
 pub fn of_effects(
@@ -203,10 +211,14 @@ pub fn of_effects(
         ..Model::OFF
     };
     let springs = slipping.unwrap_or_else(|| found.springs(motor));
-    if let Some(bristle_m) = found.bristle_m().filter(|_| springs.bristle_share > 0.0) {
-        give_bristle(&mut model, &found, bristle_m, springs.bristle_share);
+    let share = springs.bristle_share;
+    let bristle_m = found.bristle_m().filter(|_| share > 0.0);
+    let lead_s = bristle_m.map_or(0.0, |bristle_m| found.bristle_lead_s(bristle_m));
+    model.damping_s = share * lead_s;
+    if let Some(bristle_m) = bristle_m {
+        give_bristle(&mut model, &found, bristle_m, share);
     }
-    give_screw(&mut model, &found, known);
+    give_screw(&mut model, &found, known, lead_s);
     give_elements(&mut model, springs);
     give_places(&mut model, &found, known);
     give_gap(&mut model, &found, known);
@@ -283,20 +295,18 @@ fn lag_s(stribeck: &Stribeck<Estimate>) -> f64 {
     value(&stribeck.lag) * (1.0 + 0.5 * value(&stribeck.lag_growth))
 }
 
-/// A bristle comes to another level within its deflection, and has a damping. The way within which
-/// it comes to its level is as different by direction as that. The drive has one way for all of
-/// its friction: beside springs that slip, which come to another level at once, a share of it.
+/// A bristle comes to another level within its deflection. The way within which it comes to that is
+/// as different by direction as that. The drive has one way for all of its friction: beside springs
+/// that slip, which come to another level at once, a share of it.
 fn give_bristle(model: &mut Model, found: &Found<'_>, bristle_m: f64, share: f64) {
     let (least, most) = WAY_ASYMMETRIES.into_inner();
-    model.way_asymmetry = found.coulomb_asymmetry.clamp(least, most);
+    model.way_asymmetry = share * found.coulomb_asymmetry.clamp(least, most);
     model.lag_m = share * bristle_m * (1.0 + found.rise());
-    let damping = found.presliding.and_then(|own| own.damping.as_ref());
-    let damping = damping.map_or(0.0, |own| own.value.max(0.0));
-    model.damping_s = damping * bristle_m / found.coulomb_n;
 }
 
-/// The screw that friction winds up, where it was identified.
-fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
+/// The screw that friction winds up, where it was identified; that of the table is ahead of its
+/// bend by so much.
+fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known, lead_s: f64) {
     let all_kg = found
         .inertia
         .map_or(known.inertia_kg, |own| own.inertia.value);
@@ -308,7 +318,7 @@ fn give_screw(model: &mut Model, found: &Found<'_>, known: &Known) {
     let damping = screw.damping.as_ref().map_or(0.0, |own| own.value.max(0.0));
     model.stiffness_n_per_m = stiffness;
     model.motor_inertia_kg = (all_kg - load.value).max(0.0);
-    model.windup_ahead_s = model.damping_s - damping / stiffness;
+    model.windup_ahead_s = lead_s - damping / stiffness;
     model.table_mass_kg = load.value;
 }
 
@@ -422,8 +432,19 @@ mod tests {
             Effect::Coulomb(Coulomb {
                 coulomb: about(400.0),
             }),
+            Effect::CoulombAsymmetry(axis_model::CoulombAsymmetry {
+                coulomb_asymmetry: about(0.1),
+            }),
             Effect::Presliding(Presliding {
                 deflection: about(1.0e-5),
+                damping: Some(about(3.0e4)),
+            }),
+            Effect::Inertia(Inertia {
+                inertia: about(930.0),
+                load: Some(about(300.0)),
+            }),
+            Effect::Compliance(Compliance {
+                stiffness: about(1.2e8),
                 damping: None,
             }),
         ];
@@ -455,11 +476,20 @@ mod tests {
         assert_eq!(found.slipping(&curve(Vec::new()), Some(motor)), None);
         let machine = plant_sim::Machine::reference();
         let known = Known::of_machine(&machine.axes[0], machine.period_s);
-        let lag_m = |springs: Option<Springs>| {
-            let model = of_effects(&known, &effects, springs, Some(motor)).unwrap();
-            model.lag_m
-        };
-        assert!((lag_m(Some(both)) / lag_m(None) - 0.75).abs() < 1.0e-12);
+        let model =
+            |springs: Option<Springs>| of_effects(&known, &effects, springs, Some(motor)).unwrap();
+        let [beside, alone] = [Some(both), None].map(model);
+        for of in [
+            |model: &Model| model.lag_m,
+            |model: &Model| model.damping_s,
+            |model: &Model| model.way_asymmetry,
+        ] {
+            assert!((of(&beside) / of(&alone) - 0.75).abs() < 1.0e-12);
+        }
+        // What winds the screw up is ahead as the bristle is.
+        for model in [&beside, &alone] {
+            assert!((model.windup_ahead_s - 3.0e4 * 1.0e-5 / 400.0).abs() < 1.0e-12);
+        }
     }
 
     /// What was identified of a reference axis with friction that differs by direction, a weight

@@ -35,7 +35,8 @@ pub struct Springs {
     pub table: Vec<Spring>,
     /// Those of the motor's own side, over the way of the motor.
     pub motor: Vec<Spring>,
-    /// Share of them that stand for a bristle, which comes to another level within its deflection.
+    /// Share of friction that is a bristle's at the table, which comes to another level within its
+    /// deflection; of the fall, where that of either side is known.
     pub bristle_share: f64,
 }
 
