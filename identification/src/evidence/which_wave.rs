@@ -24,10 +24,14 @@ const APART_PERIODS: f64 = 0.5;
 /// tells it from all others.
 #[must_use]
 pub(crate) fn half_width(bench: &Bench<'_>, model: &Model, place: usize) -> f64 {
+    let others = others(bench, model, place);
+    if others.is_empty() {
+        return 0.0;
+    }
     let found = model.parts[place].parameter;
     let own = bench.cross_validate(model);
     let fit_at = |k: f64| bench.cross_validate(&model.with_parameter(place, k));
-    others(bench, model, place)
+    others
         .into_iter()
         .filter(|k| is_open(&own, &fit_at(*k)))
         .map(|k| (k - found).abs())

@@ -262,15 +262,18 @@ pub(crate) fn bristle<'a>(findings: &'a Findings<'_>) -> Option<Cow<'a, Bristle>
 /// The law of the load's friction where elements slip on a side: those of the load, or its bristle
 /// beside those of the motor, which the effort sees as elements of both.
 fn law_of_the_load(told: &ByTheLoad) -> Option<Bristle> {
-    let of_motor = told.motor_side.map(|motor| motor.elements());
-    let is_beside = of_motor.is_some_and(|elements| !elements.is_empty());
+    let is_beside = !elements_of_the_motor(told).is_empty();
     let bristle = is_beside.then_some(Bristle::Dahl(told.deflection.value));
     told.elements.clone().map(Bristle::Slip).or(bristle)
 }
 
 /// Elements of the motor's own side, where it has some: where each slips, and its share.
 pub(crate) fn motor_elements(findings: &Findings<'_>) -> Vec<(f64, f64)> {
-    let motor = by_the_load(findings).and_then(|told| told.motor_side);
+    by_the_load(findings).map_or_else(Vec::new, elements_of_the_motor)
+}
+
+fn elements_of_the_motor(told: &ByTheLoad) -> Vec<(f64, f64)> {
+    let motor = told.motor_side;
     motor.map_or_else(Vec::new, |motor| motor.elements())
 }
 

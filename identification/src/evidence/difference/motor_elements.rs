@@ -2,14 +2,14 @@
 //!
 //! How the friction of the one side turns over says nothing of that of the other. Taken for that of
 //! the load, stretched, it left the stiffness of drawn machines 5 to 19 % beside the truth where
-//! springs slip on both sides, and 38 %, or unknown, where they do beside a bristle of the load:
-//! levels that turn over early and late go into what the spring transmits. So the elements' shares
-//! are a convex fit of their own on a fine grid of ways, beside all else that is linear, the
-//! stiffness with it, and their rise at rest follows in turn.
+//! springs slip on both sides, and unknown where they do beside a bristle of the load: levels that
+//! turn over early and late go into what the spring transmits. So the elements' shares are a convex
+//! fit of their own on a fine grid of ways, beside all else that is linear, the stiffness with it,
+//! and their rise at rest follows in turn.
 
 use super::flanks::OWN_WITHOUT_COULOMB;
 use super::known::Known;
-use super::motor_friction::{ByLaw, DEFLECTIONS, HIDDEN_BY_ROUNDING, Rubbing, STIFFNESS, Seen};
+use super::motor_friction::{ByLaw, HIDDEN_BY_ROUNDING, Rubbing, STIFFNESS, Seen, is_between_ends};
 use crate::evidence::reversal::slip::grid_about;
 use crate::evidence::thresholds::DIFFERENCE_T;
 use crate::fit::blocks::{Blocks, Fit, Gain, half_width_without_folds};
@@ -66,8 +66,7 @@ pub(super) fn told(
 /// A deflection, in view of that of the load's friction: hardly known where a law would not have
 /// been looked for, as that may be the end of the grid.
 fn deep_as_seen(own: Known, about: f64) -> Known {
-    let [least, .., most] = DEFLECTIONS;
-    if (least..=most).contains(&(own.value / about)) {
+    if is_between_ends(own.value / about) {
         own
     } else {
         own.hardly()

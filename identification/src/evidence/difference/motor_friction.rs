@@ -21,7 +21,13 @@ use crate::fit::search::{descend, smallest};
 use crate::motion::bodies::minus;
 
 /// Deflections that are tried, in those of the load's friction.
-pub(super) const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
+const DEFLECTIONS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.5];
+/// Whether a deflection lies between the ends of those.
+pub(super) fn is_between_ends(deflection: f64) -> bool {
+    let [least, .., most] = DEFLECTIONS;
+    deflection > least && deflection < most
+}
+
 /// Bends that are free beside each other, where the law of the load's friction does not fit that of
 /// the motor's side. The middle one comes first.
 const SHAPES: [f64; 5] = [0.6, 0.1, 0.25, 1.5, 4.0];
@@ -119,11 +125,6 @@ impl Seen {
             ..self
         }
     }
-}
-
-fn slope(more: &[f64], less: &[f64], step: f64) -> Vec<f64> {
-    let pairs = more.iter().zip(less);
-    pairs.map(|(more, less)| (more - less) / step).collect()
 }
 
 /// What is told by a friction of the motor's side that follows a law.
@@ -295,4 +296,10 @@ impl Rubbing<'_> {
             },
         }
     }
+}
+
+/// What changes from one column to another over a step.
+fn slope(more: &[f64], less: &[f64], step: f64) -> Vec<f64> {
+    let pairs = more.iter().zip(less);
+    pairs.map(|(more, less)| (more - less) / step).collect()
 }

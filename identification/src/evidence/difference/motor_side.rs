@@ -34,7 +34,7 @@ use super::flanks::{Balance, OWN_WITHOUT_COULOMB, OWN_WITHOUT_FRICTION};
 use super::known::Known;
 use super::load::{Carried, LoadMotion};
 use super::motor_elements;
-use super::motor_friction::{DEFLECTIONS, HIDDEN_BY_ROUNDING, MotorSide, Rubbing, Seen};
+use super::motor_friction::{HIDDEN_BY_ROUNDING, MotorSide, Rubbing, Seen, is_between_ends};
 use super::rounding;
 use super::rubbing::Law;
 use super::smallest::Smallest;
@@ -221,8 +221,7 @@ impl Rubbing<'_> {
         let (stiffness, coulomb) = (seen.stiffness, seen.motor_side.coulomb);
         let apart = (free_stiffness.value - stiffness.value).abs();
         let contradicts = apart > free_stiffness.half_width.hypot(stiffness.half_width);
-        let is_inside = at > DEFLECTIONS[0] && at < DEFLECTIONS[DEFLECTIONS.len() - 1];
-        if contradicts || !is_inside {
+        if contradicts || !is_between_ends(at) {
             seen.motor_side.deflection = seen.motor_side.deflection.map(Known::hardly);
         }
         if contradicts {
