@@ -38,12 +38,10 @@ impl Said {
     /// What a table of parameters says of one.
     #[must_use]
     pub fn in_table(known: Option<&Estimate>, is_unknown: bool) -> Self {
-        let unsaid = if is_unknown {
-            Self::Unknown
-        } else {
-            Self::Nothing
-        };
-        known.map_or(unsaid, Self::of)
+        if is_unknown {
+            return Self::Unknown;
+        }
+        known.map_or(Self::Nothing, Self::of)
     }
 
     /// An estimate.

@@ -140,6 +140,7 @@ mod tests {
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
             bristle: None,
             by_the_load: None,
+            slips_at: None,
         }
     }
 

@@ -163,6 +163,7 @@ mod tests {
                 .fit(&model(&[Inertia, Viscous, Coulomb, Offset])),
             bristle: None,
             by_the_load: None,
+            slips_at: None,
         };
         OnBoth::of(&first.dataset, [&first.motion, &other.motion], &fitted)
     }

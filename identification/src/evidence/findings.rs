@@ -225,6 +225,7 @@ pub(crate) mod tests {
             fitted: Bench::new(&scene.dataset, &scene.motion).fit(&model),
             bristle: None,
             by_the_load: None,
+            slips_at: None,
         }
     }
 

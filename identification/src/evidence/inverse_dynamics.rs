@@ -8,15 +8,16 @@
 use crate::evidence::difference::Known;
 use crate::evidence::fast_motion;
 use crate::evidence::forms;
-use crate::evidence::reversal;
 use crate::evidence::reversal::bristle::Bristle;
+use crate::evidence::reversal::{self, Slipping};
 use crate::evidence::thresholds::METHOD;
 use crate::evidence::which_wave;
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::Pair;
 use crate::model::effects::by_motion::place_among_usual;
-use crate::model::inverse::Model;
+use crate::model::effects::{Stage, delay};
+use crate::model::inverse::{Model, Part};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
 
@@ -24,6 +25,8 @@ use crate::record::dataset::Dataset;
 const DEFLECTION_STEP: f64 = 0.02;
 /// As far as a deflection is moved to see what becomes of the coefficients, as a share of it.
 const MOST_OF_A_DEFLECTION: f64 = 0.5;
+/// Step of a delay that nobody asked for, as a share of a row.
+const DELAY_STEP: f64 = 0.1;
 
 /// One quantity of the declared model beside that of the extended model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +55,8 @@ pub(crate) struct InverseDynamics {
     pub bristle: Option<Bristle>,
     /// Deflection of the load's friction, where its own motion told the law.
     pub by_the_load: Option<Known>,
+    /// Deflection of Maxwell slip, where that leaves about as much as Dahl's bristle.
+    pub slips_at: Option<f64>,
 }
 
 /// What a structure leaves of one record.
@@ -79,6 +84,7 @@ impl InverseDynamics {
                 fitted,
                 bristle,
                 by_the_load: None,
+                slips_at: None,
             };
         };
         let dataset = pair.bench.dataset;
@@ -96,6 +102,7 @@ impl InverseDynamics {
             fitted,
             bristle,
             by_the_load: None,
+            slips_at: None,
         }
     }
 
@@ -105,15 +112,26 @@ impl InverseDynamics {
         let Some(about) = self.bristle.as_ref().map(Bristle::deflection) else {
             return self;
         };
-        let slipping = |before: &Self| {
+        let asked = |before: &Self| {
             let elsewhere = before.refitted(other.dataset, other.motion).fitted;
             let records = [(pair.bench, &before.fitted), (other, &elsewhere)];
-            let bristle = Bristle::Slip(reversal::slip(records, about)?);
-            let model = before.fitted.model().clone();
-            Some(Self::fitted(pair, model, Some(bristle)))
+            reversal::slip(records, about)
         };
-        let again = slipping(&self).and_then(|first| slipping(&first));
-        again.unwrap_or(self)
+        let slipping = |before: &Self, own: Slipping| {
+            let model = before.fitted.model().clone();
+            Self::fitted(pair, model, Some(Bristle::Slip(own.elements)))
+        };
+        let Some(first) = asked(&self) else {
+            return self;
+        };
+        let slips_at = Some(first.elements.deflection());
+        if first.is_clear {
+            let once = slipping(&self, first);
+            if let Some(again) = asked(&once).filter(|again| again.is_clear) {
+                return slipping(&once, again);
+            }
+        }
+        Self { slips_at, ..self }
     }
 
     /// The same structure with the coefficients of another record.
@@ -123,6 +141,7 @@ impl InverseDynamics {
             fitted: Bench::new(dataset, &seen).fit(self.fitted.model()),
             bristle: self.bristle.clone(),
             by_the_load: self.by_the_load,
+            slips_at: self.slips_at,
         }
     }
 
@@ -174,7 +193,11 @@ impl InverseDynamics {
             let open = which_wave::half_width(&bench, self.fitted.model(), place);
             estimate.parameter_half_width = estimate.parameter_half_width.map(|own| own.max(open));
         }
-        let others = [Some(of(&self.motion(low))), self.sharpened(dataset, motion)];
+        let others = [
+            Some(of(&self.motion(low))),
+            self.sharpened(dataset, motion),
+            self.delayed(dataset, [motion, low]),
+        ];
         for other in others.iter().flatten() {
             for (estimate, term) in estimates.iter_mut().zip(other.terms()) {
                 if place_among_usual(term.part.called()).is_some() {
@@ -212,6 +235,30 @@ impl InverseDynamics {
         Some(Bench::new(&sharpened, &seen).fit(self.fitted.model()))
     }
 
+    /// The same structure beside the small delay that leaves the least of slow motion, where it has
+    /// none. A current loop lags by microseconds, which nothing asks for, and they are a viscous
+    /// friction of the mass times the square of a frequency times that.
+    fn delayed(&self, dataset: &Dataset, [motion, low]: [&Kinematics; 2]) -> Option<Fitted> {
+        let model = self.fitted.model();
+        if model
+            .parts
+            .iter()
+            .any(|part| part.effect.stage() == Stage::Time)
+        {
+            return None;
+        }
+        let at = |delay_s: f64| model.with(Part::found(&delay::Delay, delay_s));
+        let seen = self.motion(low);
+        let bench = Bench::new(dataset, &seen);
+        let step = DELAY_STEP * motion.period_s;
+        let [early, none, late] = [-step, 0.0, step].map(|delay_s| bench.sse(&at(delay_s)));
+        let bend = early + late - 2.0 * none;
+        let least = 0.5 * step * (early - late) / bend;
+        let least = least.clamp(-delay::SHORTEST_S, delay::SHORTEST_S);
+        let seen = self.motion(motion);
+        (bend > 0.0).then(|| Bench::new(dataset, &seen).fit(&at(least)))
+    }
+
     /// Force error over the moving samples of a record, percent.
     pub(crate) fn force_error_percent(&self, dataset: &Dataset, motion: &Kinematics) -> f64 {
         let seen = self.motion(motion);
@@ -238,6 +285,7 @@ pub(crate) mod tests {
     use axis_model::EffectName::{Coulomb, Inertia, Stribeck, Viscous};
 
     use super::*;
+    use crate::evidence::force_noise::tests::noise;
     use crate::evidence::reversal::slip;
     use crate::model::effects::stribeck;
     use crate::record::samples::Record;
@@ -338,6 +386,7 @@ pub(crate) mod tests {
             let is_slip = |bristle: &Bristle| matches!(bristle, Bristle::Slip(_));
             let own = found.bristle.as_ref().unwrap();
             assert_eq!(is_slip(own), is_slip(&of_the_record));
+            assert_eq!(found.slips_at, None);
             if is_slip(own) {
                 assert!(left(&found) < 0.1 * before, "{} {before}", left(&found));
                 assert_near(own.deflection(), of_the_record.deflection(), 0.05);
@@ -345,6 +394,49 @@ pub(crate) mod tests {
                 assert_eq!(known.value, own.deflection());
             }
         }
+    }
+
+    #[test]
+    fn a_delay_of_microseconds_that_nobody_asks_for_is_in_the_interval_of_viscous_friction() {
+        let mut record = record(None);
+        let motion = Kinematics::new(&declared(record.clone()), &record).unwrap();
+        let late_s = 5.0e-5;
+        for (row, effort) in record.effort.iter_mut().enumerate().skip(1) {
+            let later = motion.acceleration[row] - motion.acceleration[row - 1];
+            *effort += 700.0 * later * late_s / record.period_s;
+        }
+        let dataset = declared(record);
+        let motions = [100.0, 30.0]
+            .map(|cutoff_hz| Kinematics::with_cutoff(&dataset, &dataset.train, cutoff_hz).unwrap());
+        let model = fitted(&dataset, &motions[0], None);
+        let estimates = model.estimates(&dataset, motions.each_ref());
+        let viscous = estimates.iter().find(|own| own.part.is(Viscous)).unwrap();
+        let (value, half_width) = viscous.own[0];
+        let off = (value - 900.0).abs();
+        assert!(
+            off > 3.0 && off < half_width && half_width < 3.0 * off,
+            "{value} {half_width}"
+        );
+    }
+
+    #[test]
+    fn where_noise_hides_which_law_it_is_the_deflection_of_the_other_one_is_kept() {
+        let two = [(0.2, 0.3), (1.2, 0.7)];
+        let elements = Bristle::Slip(slip::tests::elements(DEFLECTION_M, &two));
+        let mut record = record_with(Some(&elements));
+        let mut noise = noise();
+        let efforts = record.effort.iter_mut();
+        efforts.for_each(|effort| *effort += 200.0 * noise());
+        let dataset = declared(record);
+        let motion = Kinematics::new(&dataset, &dataset.train).unwrap();
+        let bench = Bench::new(&dataset, &motion);
+        let pair = Pair {
+            bench: &bench,
+            low: &bench,
+        };
+        let found = fitted(&dataset, &motion, Some(DEFLECTION_M)).or_slipping(pair, &bench);
+        assert!(matches!(found.bristle, Some(Bristle::Dahl(_))));
+        assert_near(found.slips_at.unwrap(), elements.deflection(), 0.3);
     }
 
     /// Lag of the fall of [`lagging`].
@@ -393,6 +485,7 @@ pub(crate) mod tests {
             fitted: Bench::new(&dataset, &motion).fit(&crate::fit::made::model(&[Inertia])),
             bristle: None,
             by_the_load: None,
+            slips_at: None,
         };
         assert_eq!(model.on(&dataset, &motion).reversal_rms, 0.0);
     }

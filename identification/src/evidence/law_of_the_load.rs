@@ -64,6 +64,7 @@ fn by_the_load(
         fitted: bench.fit(&told::of_the_others(&bench, model)),
         bristle: Some(bristle),
         by_the_load: Some(told.deflection),
+        slips_at: None,
     })
 }
 
@@ -132,6 +133,7 @@ mod tests {
             fitted: Bench::new(dataset, &seen).fit(model),
             bristle: Some(dahl),
             by_the_load: None,
+            slips_at: None,
         };
         or_by_the_load(before, [&bench, &bench], Some(told))
     }

@@ -270,6 +270,7 @@ mod tests {
                 fitted: Bench::new(&dataset, &motion).fit(&model),
                 bristle: None,
                 by_the_load: None,
+                slips_at: None,
             };
             reason(&dataset, [&motion, &other], &model, error_percent).is_some()
         };

@@ -18,8 +18,8 @@ use self::bristle::{Bristle, deflections};
 use self::gap::{Plant, SeenGap};
 use self::slip::{Elements, Fall};
 use crate::evidence::thresholds::{
-    BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SLIP_RATIO, SUSPICION_RATIO,
-    VETO_RATIO,
+    AS_MUCH_RATIO, BRISTLE_RATIO, BRISTLE_T, FEWEST_COUNTS, FEWEST_REVERSAL_ROWS, SLIP_RATIO,
+    SUSPICION_RATIO, VETO_RATIO,
 };
 use crate::fit::bench::Bench;
 use crate::fit::fitted::{Fitted, Term};
@@ -86,10 +86,18 @@ pub(crate) fn presliding(
     })
 }
 
-/// Maxwell slip in place of Dahl's bristle, for a model as it is fitted to each of two records:
-/// where it leaves clearly less about the reversals of both. `None` where it does not.
+/// Maxwell slip that leaves no more about the reversals of two records than Dahl's bristle.
+pub(crate) struct Slipping {
+    /// What slips.
+    pub elements: Elements,
+    /// Whether it leaves clearly less of both.
+    pub is_clear: bool,
+}
+
+/// Maxwell slip in place of Dahl's bristle, for a model as it is fitted to each of two records.
+/// `None` where it leaves more about the reversals of one of them.
 #[must_use]
-pub(crate) fn slip(records: [(&Bench<'_>, &Fitted); 2], about: f64) -> Option<Elements> {
+pub(crate) fn slip(records: [(&Bench<'_>, &Fitted); 2], about: f64) -> Option<Slipping> {
     let [own, other] = records.map(|(bench, fitted)| Observed::new(bench, fitted));
     let (own, other) = (own?, other?);
     let bench = records[0].0;
@@ -100,11 +108,15 @@ pub(crate) fn slip(records: [(&Bench<'_>, &Fitted); 2], about: f64) -> Option<El
         rms(&bristle.error(observed), &observed.motion.slow)
     };
     let [dahl, slip] = [Bristle::Dahl(deflection), Bristle::Slip(elements.clone())];
-    let is_less = |observed: &Observed<'_>| {
-        !has_reversals(observed.motion)
-            || left(observed, &slip) <= SLIP_RATIO * left(observed, &dahl)
+    let of_dahls = |observed: &Observed<'_>| {
+        has_reversals(observed.motion).then(|| left(observed, &slip) / left(observed, &dahl))
     };
-    (is_less(&own) && is_less(&other)).then_some(elements)
+    let ratios = [of_dahls(&own), of_dahls(&other)];
+    let are_at_most = |most: f64| ratios.iter().flatten().all(|ratio| *ratio <= most);
+    are_at_most(AS_MUCH_RATIO).then(|| Slipping {
+        elements,
+        is_clear: are_at_most(SLIP_RATIO),
+    })
 }
 
 /// A gap before the bristle of a model whose bristle was accepted; `None` where the model has no

@@ -110,6 +110,7 @@ mod tests {
             fitted: axis.bench().fit(&model(names)),
             bristle: None,
             by_the_load: None,
+            slips_at: None,
         };
         let reason = reasons(&axis.dataset, &axis.motion, &model);
         assert!(reason.iter().all(|reason| reason.counts));

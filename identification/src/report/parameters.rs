@@ -391,11 +391,20 @@ fn of_the_shape(findings: &Findings<'_>) -> (&'static str, Vec<Entry>) {
         return (output, shape);
     }
     let levels = first(EffectName::Coulomb).zip(first(EffectName::Stribeck));
-    if let Some(share) = levels.and_then(|(sliding, excess)| share_of_rest(sliding, excess)) {
-        let deflections = shape.iter_mut().filter(|(name, _)| name == DEFLECTION);
-        deflections.for_each(|(_, deflection)| *deflection = scaled(deflection, share));
+    let share = levels.and_then(|(sliding, excess)| share_of_rest(sliding, excess));
+    let deflections = shape.iter_mut().filter(|(name, _)| name == DEFLECTION);
+    for (_, deflection) in deflections {
+        let by_dahl = scaled(deflection, share.unwrap_or(1.0));
+        *deflection = as_near_as_laws_agree(by_dahl, extended.slips_at);
     }
     (output, shape)
+}
+
+/// A deflection by Dahl's law, no nearer known than elements agree that leave as much.
+fn as_near_as_laws_agree(by_dahl: Estimate, slips_at: Option<f64>) -> Estimate {
+    let apart = slips_at.map_or(0.0, |slips_at| (slips_at - by_dahl.value).abs());
+    let half_width = by_dahl.half_width().max(apart);
+    about(by_dahl.value, half_width, by_dahl.unit)
 }
 
 /// The sliding level over that at rest.
@@ -582,6 +591,15 @@ mod tests {
             (share_of_rest(20.0, -5.0), share_of_rest(0.0, 5.0)),
             (None, None)
         );
+    }
+
+    #[test]
+    fn a_deflection_is_no_nearer_known_than_two_laws_agree() {
+        let by_dahl = || about(4.0, 0.5, "m".into());
+        for (slips_at, half_width) in [(None, 0.5), (Some(3.8), 0.5), (Some(1.0), 3.0)] {
+            let told = as_near_as_laws_agree(by_dahl(), slips_at);
+            assert_eq!(told, about(4.0, half_width, "m".into()));
+        }
     }
 
     #[test]

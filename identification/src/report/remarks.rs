@@ -37,6 +37,7 @@ pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> V
     };
     list.extend(said.sentence());
     list.extend(of_slip(findings));
+    list.extend(of_two_laws(findings.models.extended.slips_at, parameters));
     list.extend(of_another_day(&findings.on_both.changes()));
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
@@ -84,6 +85,21 @@ fn of_slip(findings: &Findings<'_>) -> Option<String> {
         figures::error(findings.train.extended.reversal_rms),
         findings.dataset.effort.unit(),
         figures::error(dahl)
+    ))
+}
+
+/// That a deflection is as open as two laws leave it, where its interval holds both.
+fn of_two_laws(slips_at: Option<f64>, table: &ParameterTable) -> Option<String> {
+    const DEFLECTION: &str = "presliding_deflection";
+    let known = table
+        .get(DEFLECTION)
+        .map(|own| (own.low, own.high, &own.unit));
+    let unknown = table.unknown.get(DEFLECTION);
+    let (low, high, unit) = known.or(unknown.map(|own| (own.low, own.high, &own.unit)))?;
+    let slips_at = slips_at.filter(|slips_at| (low..=high).contains(slips_at))?;
+    Some(format!(
+        "presliding: elements that slip one after the other leave about as much about reversals as one bristle by Dahl's law, with a deflection of {} {unit}: the interval holds both",
+        figures::error(slips_at),
     ))
 }
 

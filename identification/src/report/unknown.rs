@@ -14,6 +14,16 @@ use crate::report::forms::{ParameterTable, UnknownParameter};
 /// Half width of an interval from which on a size is not known, as a share of its value.
 const TOO_WIDE: f64 = 0.5;
 
+/// Waves, each with its amplitude.
+const WAVES: [(&str, &str); 3] = [
+    ("torque_ripple", "torque_ripple_amplitude"),
+    ("torque_constant_ripple", "torque_constant_ripple"),
+    ("pitch_error", "pitch_error_amplitude"),
+];
+
+/// What is told of a wave beside its amplitude.
+const BESIDE_AMPLITUDE: [&str; 3] = ["order", "period", "phase"];
+
 /// The estimates, those that are not known apart.
 pub(crate) fn table(estimates: BTreeMap<String, Estimate>) -> ParameterTable {
     let mut table = ParameterTable::default();
@@ -31,7 +41,21 @@ pub(crate) fn table(estimates: BTreeMap<String, Estimate>) -> ParameterTable {
     if !table.known.contains_key("stribeck_lag") {
         table.known.remove("stribeck_lag_growth");
     }
+    for name in table.unknown.keys() {
+        of_no_known_wave(name).for_each(|own| drop(table.known.remove(&own)));
+    }
     table
+}
+
+/// What stands beside a wave whose amplitude has this name, and is nothing where that is unknown:
+/// another wave may stand there.
+fn of_no_known_wave(name: &str) -> impl Iterator<Item = String> {
+    let number = WAVES
+        .into_iter()
+        .find_map(|(wave, amplitude)| Some((wave, name.strip_prefix(amplitude)?)));
+    let number = number.filter(|(_, number)| is_number(number));
+    let of_wave = |(wave, number)| BESIDE_AMPLITUDE.map(|own| format!("{wave}_{own}{number}"));
+    number.into_iter().flat_map(of_wave)
 }
 
 fn is_unknown(estimate: &Estimate) -> bool {
@@ -62,10 +86,13 @@ fn size(name: &str) -> Option<Parameter> {
 fn is_called(own: &str, name: &str) -> bool {
     let rest = name.strip_prefix(own);
     let rest = rest.map(|rest| rest.strip_prefix("_order").unwrap_or(rest));
-    rest.is_some_and(|rest| {
-        let number = rest.strip_prefix('_').unwrap_or(rest);
-        number.chars().all(|digit| digit.is_ascii_digit())
-    })
+    rest.is_some_and(is_number)
+}
+
+/// Whether the end of a name is the number of its ripple, or nothing.
+fn is_number(end: &str) -> bool {
+    let number = end.strip_prefix('_').unwrap_or(end);
+    number.chars().all(|digit| digit.is_ascii_digit())
 }
 
 const fn what_to_record(effect: EffectName) -> &'static str {
@@ -147,6 +174,25 @@ mod tests {
     #[test]
     fn a_value_without_an_interval_is_told_as_it_was() {
         assert!(told("torque_ripple_order", 5.0, 0.0).unknown.is_empty());
+    }
+
+    #[test]
+    fn a_wave_of_unknown_amplitude_has_no_order() {
+        let estimate = |name: &str, value: f64, half_width: f64| {
+            let own = Estimate::about(value, half_width, "N");
+            (name.to_owned(), own)
+        };
+        let waves = [
+            estimate("torque_ripple_amplitude", 3.0, 0.1),
+            estimate("torque_ripple_order", 12.0, 0.1),
+            estimate("torque_ripple_amplitude_2", 3.0, 2.0),
+            estimate("torque_ripple_order_2", 24.0, 0.1),
+            estimate("torque_ripple_phase_2", 1.0, 0.1),
+        ];
+        let table = table(BTreeMap::from(waves));
+        let known: Vec<&str> = table.known.keys().map(String::as_str).collect();
+        assert_eq!(known, ["torque_ripple_amplitude", "torque_ripple_order"]);
+        assert!(table.unknown.contains_key("torque_ripple_amplitude_2"));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::record::dataset::Dataset;
 pub(crate) struct Delay;
 
 /// A delay below this is not worth a name, s: a tenth of the cycle of the axes that were recorded.
-const SHORTEST_S: f64 = 1.0e-4;
+pub(crate) const SHORTEST_S: f64 = 1.0e-4;
 /// Longest delay that is searched: so much, or so many rows of a slow record.
 const LONGEST_S: f64 = 6.0e-3;
 const LONGEST_ROWS: f64 = 6.0;
