@@ -160,6 +160,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_the_table_calls_unknown_is_not_known_for_a_value_elsewhere() {
+        let own = Estimate::about(2.0, 1.5, "m");
+        assert_eq!(Said::in_table(Some(&own), true), Said::Unknown);
+        assert_eq!(Said::in_table(Some(&own), false), Said::Known(2.0, 1.5));
+        assert_eq!(Said::in_table(None, false), Said::Nothing);
+    }
+
+    #[test]
     fn a_row_counts_what_holds_what_is_not_said_and_what_has_no_interval() {
         let said = [
             Said::Known(101.0, 2.0),

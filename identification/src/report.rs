@@ -109,7 +109,7 @@ fn report(findings: &Findings<'_>) -> Report {
         cutoff_hz: filter::fit_cutoff_hz(dataset, &dataset.train),
         as_defined: errors::as_defined(findings),
         verdict: findings.verdict.word().into(),
-        warnings: remarks::remarks(findings, &table),
+        warnings: remarks::remarks(findings, &table, &parameters.from),
         parameters: table,
         parameters_from: parameters.from,
         found: words(found.names()),

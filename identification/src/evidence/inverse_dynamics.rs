@@ -16,7 +16,7 @@ use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::Pair;
 use crate::model::effects::by_motion::place_among_usual;
-use crate::model::effects::{Stage, delay};
+use crate::model::effects::{Stage, delay, logged_late};
 use crate::model::inverse::{Model, Part};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
@@ -55,7 +55,8 @@ pub(crate) struct InverseDynamics {
     pub bristle: Option<Bristle>,
     /// Deflection of the load's friction, where its own motion told the law.
     pub by_the_load: Option<Known>,
-    /// Deflection of Maxwell slip, where that leaves about as much as Dahl's bristle.
+    /// Deflection of Maxwell slip, where that leaves no more than Dahl's bristle, and not so
+    /// clearly less of both records that it stands there.
     pub slips_at: Option<f64>,
 }
 
@@ -124,13 +125,16 @@ impl InverseDynamics {
         let Some(first) = asked(&self) else {
             return self;
         };
-        let slips_at = Some(first.elements.deflection());
-        if first.is_clear {
+        let again = if first.is_clear {
             let once = slipping(&self, first);
-            if let Some(again) = asked(&once).filter(|again| again.is_clear) {
-                return slipping(&once, again);
+            match asked(&once) {
+                Some(again) if again.is_clear => return slipping(&once, again),
+                again => again,
             }
-        }
+        } else {
+            Some(first)
+        };
+        let slips_at = again.map(|own| own.elements.deflection());
         Self { slips_at, ..self }
     }
 
@@ -177,9 +181,10 @@ impl InverseDynamics {
     }
 
     /// What was fitted with half widths of 95 % intervals, of a motion at both cut-offs. What the
-    /// deflection leaves open is in them. Noise of the positions that comes back through the
-    /// controller biases mass and friction, and much less at the lower cut-off: as far as they
-    /// differ there, they are uncertain too. No coefficient is known better than [`METHOD`].
+    /// deflection leaves open by its own law is in them. Noise of the positions that comes back
+    /// through the controller biases mass and friction, and much less at the lower cut-off: as far
+    /// as they differ there, they are uncertain too. No coefficient is known better than
+    /// [`METHOD`].
     pub(crate) fn estimates(
         &self,
         dataset: &Dataset,
@@ -254,7 +259,7 @@ impl InverseDynamics {
         let [early, none, late] = [-step, 0.0, step].map(|delay_s| bench.sse(&at(delay_s)));
         let bend = early + late - 2.0 * none;
         let least = 0.5 * step * (early - late) / bend;
-        let least = least.clamp(-delay::SHORTEST_S, delay::SHORTEST_S);
+        let least = least.clamp(-logged_late::SHORTEST_S, delay::SHORTEST_S);
         let seen = self.motion(motion);
         (bend > 0.0).then(|| Bench::new(dataset, &seen).fit(&at(least)))
     }

@@ -23,7 +23,7 @@ use crate::evidence::thresholds::MOST_EFFECTS;
 use crate::model::effects::curve;
 use crate::model::effects::position_dependent_friction::knot_name;
 use crate::report::forms::{ParameterTable, Report, UnknownParameter};
-use crate::report::parameters::COULOMB_ASYMMETRY;
+use crate::report::parameters::{COULOMB_ASYMMETRY, DEFLECTION};
 
 /// Parameters by the name that a report gives them.
 type Table = BTreeMap<String, Estimate>;
@@ -52,7 +52,10 @@ pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> 
 /// What is between motor and load: where a record knows of it only that it is in some interval
 /// above zero, the middle of that is nearer than a screw that is rigid, and is used with that
 /// interval.
-const USED_AS_AN_INTERVAL: [&str; 3] = ["compliance_stiffness", "compliance_damping", LOAD_INERTIA];
+const USED_ABOVE_ZERO: [&str; 3] = ["compliance_stiffness", "compliance_damping", LOAD_INERTIA];
+/// What is used wherever its interval lies: the middle of that is nearer than a friction that gives
+/// way at once, which a record with a bristle has not.
+const USED_ANYWHERE: [&str; 1] = [DEFLECTION];
 
 /// The parameters that are known, and those that are used though they are not.
 fn used(report: &Report) -> Table {
@@ -68,9 +71,10 @@ fn used(report: &Report) -> Table {
 fn amid_interval(
     parameters: &ParameterTable,
 ) -> impl Iterator<Item = (&'static str, &UnknownParameter)> {
-    USED_AS_AN_INTERVAL.into_iter().filter_map(|key| {
+    let each = USED_ABOVE_ZERO.into_iter().chain(USED_ANYWHERE);
+    each.filter_map(|key| {
         let unknown = parameters.unknown.get(key)?;
-        (unknown.low > 0.0).then_some((key, unknown))
+        (unknown.low > 0.0 || USED_ANYWHERE.contains(&key)).then_some((key, unknown))
     })
 }
 
@@ -320,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_screw_of_which_only_an_interval_is_known_is_used_amid_it() {
+    fn a_screw_or_bristle_of_which_only_an_interval_is_known_is_used_amid_it() {
         let mut report = report(&[("coulomb", 100.0)]);
         let unknown = |low: f64, unit: &str| UnknownParameter {
             unknown: true,
@@ -341,6 +345,10 @@ mod tests {
         let other = unknown(1.0, "N");
         report.parameters.unknown.insert("offset".into(), other);
         assert_eq!(found(&report), 2);
+        let bristle = unknown(0.0, "m");
+        report.parameters.unknown.insert(DEFLECTION.into(), bristle);
+        assert_eq!(found(&report), 3);
+        assert!(report.parameters.is_used_amid_interval(DEFLECTION));
     }
 
     #[test]

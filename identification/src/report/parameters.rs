@@ -24,7 +24,7 @@ use crate::model::name::Called;
 use crate::report::ranking;
 
 /// What the vocabulary calls the deflection of a bristle.
-const DEFLECTION: &str = "presliding_deflection";
+pub(crate) const DEFLECTION: &str = "presliding_deflection";
 
 /// What the vocabulary calls Coulomb friction by direction.
 pub(crate) const COULOMB_ASYMMETRY: &str = "coulomb_asymmetry";

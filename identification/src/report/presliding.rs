@@ -74,11 +74,13 @@ fn dahl(way: f64, deflection: Known) -> Known {
 fn of_level(way: f64, level: Known, state: Known) -> AfterReversal {
     let force = level.value * state.value;
     let half_width = (level.half_width * state.value).hypot(level.value * state.half_width);
+    // Whatever the deflection, friction is within its level.
+    let most = level.value + level.half_width;
     AfterReversal {
         way,
         force,
-        low: force - half_width,
-        high: force + half_width,
+        low: (force - half_width).max(-most),
+        high: (force + half_width).min(most),
     }
 }
 

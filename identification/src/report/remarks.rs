@@ -1,5 +1,7 @@
 //! Remarks: what stands behind a decision, and what the record or its description cannot give.
 
+use std::collections::BTreeMap;
+
 use crate::evidence::another_day::Change;
 use crate::evidence::difference::Difference;
 use crate::evidence::findings::Findings;
@@ -11,14 +13,19 @@ use crate::evidence::reversal_stage::ReversalStage;
 use crate::motion::excitation;
 use crate::report::figures;
 use crate::report::forms::{ParameterTable, UnknownParameter};
-use crate::report::parameters::COULOMB_ASYMMETRY;
+use crate::report::parameters::{COULOMB_ASYMMETRY, DEFLECTION};
+use crate::report::ranking;
 use crate::simulate::controller::known::{Controller, LARGEST_MISFIT};
 
 mod beyond;
 mod directions;
 
-/// All remarks, the strongest first.
-pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> Vec<String> {
+/// All remarks, the strongest first; each parameter is from an output.
+pub(crate) fn remarks(
+    findings: &Findings<'_>,
+    parameters: &ParameterTable,
+    from: &BTreeMap<String, &'static str>,
+) -> Vec<String> {
     let (dataset, stage) = (findings.dataset, &findings.stages.reversals);
     let free_run = stage.free_run.as_ref();
     let mut list: Vec<String> = free_run
@@ -37,7 +44,7 @@ pub(crate) fn remarks(findings: &Findings<'_>, parameters: &ParameterTable) -> V
     };
     list.extend(said.sentence());
     list.extend(of_slip(findings));
-    list.extend(of_two_laws(findings.models.extended.slips_at, parameters));
+    list.extend(of_two_laws(findings.models.extended.slips_at, from));
     list.extend(of_another_day(&findings.on_both.changes()));
     let model = findings.models.extended.fitted.model();
     list.extend(beyond::beyond_the_travel(dataset, model));
@@ -88,19 +95,12 @@ fn of_slip(findings: &Findings<'_>) -> Option<String> {
     ))
 }
 
-/// That a deflection is as open as two laws leave it, where its interval holds both.
-fn of_two_laws(slips_at: Option<f64>, table: &ParameterTable) -> Option<String> {
-    const DEFLECTION: &str = "presliding_deflection";
-    let known = table
-        .get(DEFLECTION)
-        .map(|own| (own.low, own.high, &own.unit));
-    let unknown = table.unknown.get(DEFLECTION);
-    let (low, high, unit) = known.or(unknown.map(|own| (own.low, own.high, &own.unit)))?;
-    let slips_at = slips_at.filter(|slips_at| (low..=high).contains(slips_at))?;
-    Some(format!(
-        "presliding: elements that slip one after the other leave about as much about reversals as one bristle by Dahl's law, with a deflection of {} {unit}: the interval holds both",
-        figures::error(slips_at),
-    ))
+/// That a deflection is as open as two laws leave it, where it is not by the load's own motion.
+fn of_two_laws(slips_at: Option<f64>, from: &BTreeMap<String, &'static str>) -> Option<String> {
+    let output = from.get(DEFLECTION)?;
+    (slips_at.is_some() && *output != ranking::DIFFERENCE).then(|| {
+        "presliding: elements that slip one after the other leave no more about reversals than one bristle by Dahl's law, so the deflection is no nearer known than the two agree".into()
+    })
 }
 
 /// Coefficients that the validation record has in another size.
@@ -258,6 +258,16 @@ mod tests {
     use axis_model::EffectName::{Coulomb, Viscous};
 
     use super::*;
+
+    #[test]
+    fn two_laws_of_a_deflection_are_told_where_the_load_does_not_tell_it() {
+        let from = |output| BTreeMap::from([(DEFLECTION.to_owned(), output)]);
+        let told = |slips_at, output| of_two_laws(slips_at, &from(output)).is_some();
+        assert!(told(Some(1.0e-6), ranking::FREE_RUN));
+        assert!(!told(Some(1.0e-6), ranking::DIFFERENCE));
+        assert!(!told(None, ranking::FREE_RUN));
+        assert!(of_two_laws(Some(1.0e-6), &BTreeMap::new()).is_none());
+    }
 
     #[test]
     fn another_day_is_told_with_every_change_and_its_interval() {

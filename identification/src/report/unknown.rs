@@ -41,8 +41,14 @@ pub(crate) fn table(estimates: BTreeMap<String, Estimate>) -> ParameterTable {
     if !table.known.contains_key("stribeck_lag") {
         table.known.remove("stribeck_lag_growth");
     }
-    for name in table.unknown.keys() {
-        of_no_known_wave(name).for_each(|own| drop(table.known.remove(&own)));
+    let waves: Vec<String> = table
+        .unknown
+        .keys()
+        .flat_map(|n| of_no_known_wave(n))
+        .collect();
+    for own in waves {
+        table.known.remove(&own);
+        table.unknown.remove(&own);
     }
     table
 }
@@ -188,11 +194,27 @@ mod tests {
             estimate("torque_ripple_amplitude_2", 3.0, 2.0),
             estimate("torque_ripple_order_2", 24.0, 0.1),
             estimate("torque_ripple_phase_2", 1.0, 0.1),
+            estimate("torque_constant_ripple", 0.1, 0.2),
+            estimate("torque_constant_ripple_period", 0.1, 0.2),
+            estimate("pitch_error_amplitude", 1.0e-6, 0.1e-6),
+            estimate("pitch_error_period", 0.01, 1.0e-5),
         ];
         let table = table(BTreeMap::from(waves));
         let known: Vec<&str> = table.known.keys().map(String::as_str).collect();
-        assert_eq!(known, ["torque_ripple_amplitude", "torque_ripple_order"]);
-        assert!(table.unknown.contains_key("torque_ripple_amplitude_2"));
+        assert_eq!(
+            known,
+            [
+                "pitch_error_amplitude",
+                "pitch_error_period",
+                "torque_ripple_amplitude",
+                "torque_ripple_order"
+            ]
+        );
+        let unknown: Vec<&str> = table.unknown.keys().map(String::as_str).collect();
+        assert_eq!(
+            unknown,
+            ["torque_constant_ripple", "torque_ripple_amplitude_2"]
+        );
     }
 
     #[test]

@@ -21,6 +21,8 @@ const GRID: u32 = 20;
 /// The grid about the deflection of Dahl's bristle, as shares of it.
 const FROM: f64 = 0.05;
 const TO: f64 = 10.0;
+/// Nearer to the first place of the grid than this many times it nothing else stands.
+const NEXT: f64 = 1.01;
 
 /// An element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +95,9 @@ pub(crate) struct Elements {
     without_folds: Vec<Vec<Element>>,
     /// The level at which they slip.
     fall: Fall,
+    /// Which share of their stiffness is at the first place of the grid: those slip there or
+    /// anywhere before.
+    open: f64,
 }
 
 impl Elements {
@@ -110,8 +115,12 @@ impl Elements {
         let blocks = blocks(observed, fall, &grid);
         let folds = blocks.non_negative_beside_without_folds(0);
         let without_folds = folds.iter().map(|shares| of_shares(&grid, shares));
+        let in_turn = of_shares(&grid, &blocks.non_negative_beside(0))?;
+        let first = in_turn.iter().filter(|own| own.deflection < NEXT * from);
+        let first: f64 = first.map(|own| own.share / own.deflection).sum();
         Some(Self {
-            in_turn: of_shares(&grid, &blocks.non_negative_beside(0))?,
+            open: first * deflection(&in_turn),
+            in_turn,
             without_folds: without_folds.collect::<Option<Vec<_>>>()?,
             fall,
         })
@@ -126,6 +135,7 @@ impl Elements {
             in_turn: of_shares(&ways, &shares)?,
             without_folds: without_folds.collect::<Option<Vec<_>>>()?,
             fall: Fall::default(),
+            open: 0.0,
         })
     }
 
@@ -163,9 +173,11 @@ impl Elements {
         deflection(&self.in_turn)
     }
 
-    /// The same with its interval.
+    /// The same with its interval, in which is what slips before the first place of the grid.
     pub(crate) fn known_deflection(&self) -> Known {
-        self.known(deflection)
+        let known = self.known(deflection);
+        let open = self.open * known.value;
+        Known::new(known.value, known.half_width.max(open))
     }
 
     /// Force over the level after a way from rest, with its interval.
@@ -197,6 +209,7 @@ impl Elements {
             in_turn: scaled(&self.in_turn),
             without_folds: self.without_folds.iter().map(scaled).collect(),
             fall: self.fall,
+            open: self.open,
         }
     }
 
@@ -290,7 +303,29 @@ pub(crate) mod tests {
             without_folds: vec![elements.clone(); 10],
             in_turn: elements,
             fall: Fall::default(),
+            open: 0.0,
         }
+    }
+
+    #[test]
+    fn what_slips_before_the_first_place_of_the_grid_leaves_the_deflection_open() {
+        let axis = made::axis(made::usual);
+        let motion = &axis.motion;
+        let of_both = |first: f64| {
+            let two = elements(1.0e-3, &[(first, 0.3), (1.0, 0.7)]);
+            let state = two.state(motion);
+            let observed = Observed {
+                motion,
+                level: vec![10.0; motion.len()],
+                friction: motion.low_passed(&state.iter().map(|z| 10.0 * z).collect::<Vec<_>>()),
+                resolution: 1.0e-6,
+            };
+            Elements::best(&observed, Fall::default(), 1.0e-3, 1.0e-4).unwrap()
+        };
+        // The grid begins at a tenth of the larger way: one slips behind that, the other before it.
+        let [behind, before] = [0.3, 0.02].map(|first| of_both(first).known_deflection());
+        assert!(behind.half_width < 0.1 * behind.value, "{behind:?}");
+        assert!(before.half_width > 0.5 * before.value, "{before:?}");
     }
 
     #[test]

@@ -22,7 +22,7 @@ use crate::record::dataset::Dataset;
 pub(crate) struct LoggedLate;
 
 /// Less is no name, s: filters and sampling of any current loop shift by that much.
-const SHORTEST_S: f64 = 1.5e-4;
+pub(crate) const SHORTEST_S: f64 = 1.5e-4;
 /// Longest lateness that is searched, s: two cycles of a slow fieldbus.
 const LONGEST_S: f64 = 2.0e-2;
 /// Grid and first value of the search, s: twenty a period of the search's low-pass of 30 Hz and
