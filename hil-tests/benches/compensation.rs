@@ -10,7 +10,7 @@
 
 use hil_tests::on_all_cores;
 use hil_tests::rig::circle;
-use identification::{Dataset, Identification, fit_declared};
+use identification::Identification;
 use plant_sim::Machine;
 use workbench::ballbar::CircleFigures;
 use workbench::circle_test;
@@ -107,12 +107,8 @@ fn fixed(machine: &Machine) -> Vec<Fixed> {
 fn identified(stand: &Stand<'_>) -> (Vec<Identification>, Vec<Identification>) {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     identified_axes::record(stand, folder.path()).expect("the axes can be recorded");
-    let declared = stand.axis_names().into_iter().map(|name| {
-        let path = folder.path().join(format!("records-{name}"));
-        let dataset = Dataset::read(&path, None, None).expect("the record was just written");
-        fit_declared(&dataset, &mut |_| ()).expect("the declared model fits")
-    });
-    let declared = declared.collect();
+    let declared =
+        identified_axes::declared(stand, folder.path()).expect("the declared model fits");
     let extended = identified_axes::identify(stand, folder.path()).expect("records can be fitted");
     (declared, extended)
 }

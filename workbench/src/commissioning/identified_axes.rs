@@ -92,12 +92,22 @@ pub fn identify(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
 /// # Errors
 /// As [`identify`].
 pub fn declared(stand: &Stand<'_>, out: &Path) -> Outcome<Vec<Identification>> {
-    each_axis(
+    let mut results = each_axis(
         stand,
         out,
         "declared model of",
         identification::fit_declared,
-    )
+    )?;
+    results.iter_mut().for_each(without_what_was_found);
+    Ok(results)
+}
+
+/// What reversals show of a bristle or a gap is no part of a declared model that lacks it.
+fn without_what_was_found(result: &mut Identification) {
+    let found = &result.report.found;
+    result
+        .effects
+        .retain(|effect| !found.iter().any(|name| name == effect.name().as_str()));
 }
 
 /// A fit of a dataset that tells of its steps.
