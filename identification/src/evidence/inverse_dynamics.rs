@@ -16,7 +16,7 @@ use crate::fit::bench::Bench;
 use crate::fit::fitted::{Estimate, Fitted};
 use crate::fit::tuning::Pair;
 use crate::model::effects::by_motion::place_among_usual;
-use crate::model::effects::{Stage, delay, logged_late};
+use crate::model::effects::{delay, logged_late};
 use crate::model::inverse::{Model, Part};
 use crate::motion::kinematics::Kinematics;
 use crate::record::dataset::Dataset;
@@ -245,11 +245,7 @@ impl InverseDynamics {
     /// friction of the mass times the square of a frequency times that.
     fn delayed(&self, dataset: &Dataset, [motion, low]: [&Kinematics; 2]) -> Option<Fitted> {
         let model = self.fitted.model();
-        if model
-            .parts
-            .iter()
-            .any(|part| part.effect.stage() == Stage::Time)
-        {
+        if !model.is_open_to(&delay::Delay) {
             return None;
         }
         let at = |delay_s: f64| model.with(Part::found(&delay::Delay, delay_s));

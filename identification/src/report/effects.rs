@@ -49,13 +49,16 @@ pub(crate) fn effects(report: &Report, travel: Travel) -> Vec<Effect<Estimate>> 
     effects
 }
 
-/// What is between motor and load: where a record knows of it only that it is in some interval
-/// above zero, the middle of that is nearer than a screw that is rigid, and is used with that
-/// interval.
-const USED_ABOVE_ZERO: [&str; 3] = ["compliance_stiffness", "compliance_damping", LOAD_INERTIA];
-/// What is used wherever its interval lies: the middle of that is nearer than a friction that gives
-/// way at once, which a record with a bristle has not.
-const USED_ANYWHERE: [&str; 1] = [DEFLECTION];
+/// What gives way: where a record knows of it only that it is in some interval above zero, the
+/// middle of that is nearer than a screw that is rigid, and is used with that interval. That of a
+/// deflection is used from zero on as well: it is nearer than a friction that gives way at once,
+/// which a record with a bristle has not.
+const USED_AS_AN_INTERVAL: [&str; 4] = [
+    "compliance_stiffness",
+    "compliance_damping",
+    LOAD_INERTIA,
+    DEFLECTION,
+];
 
 /// The parameters that are known, and those that are used though they are not.
 fn used(report: &Report) -> Table {
@@ -71,10 +74,9 @@ fn used(report: &Report) -> Table {
 fn amid_interval(
     parameters: &ParameterTable,
 ) -> impl Iterator<Item = (&'static str, &UnknownParameter)> {
-    let each = USED_ABOVE_ZERO.into_iter().chain(USED_ANYWHERE);
-    each.filter_map(|key| {
+    USED_AS_AN_INTERVAL.into_iter().filter_map(|key| {
         let unknown = parameters.unknown.get(key)?;
-        (unknown.low > 0.0 || USED_ANYWHERE.contains(&key)).then_some((key, unknown))
+        (unknown.low > 0.0 || key == DEFLECTION).then_some((key, unknown))
     })
 }
 
